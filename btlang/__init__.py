@@ -24,7 +24,7 @@ PUBLIC: dict[str, tuple[str, ...]] = {
         "whenever", "while_do_else",
     ),
     "btlang.components.component": ("Component", "Parameter"),
-    "btlang.decorators": ("action", "condition", "quantity"),
+    "btlang.vocabulary.decorators": ("action", "condition", "quantity"),
     "btlang.diagnostics.diagnostic": ("Diagnostic",),
     "btlang.diagnostics.errors": ("MissionError",),
     "btlang.engine.leaves.leaf": ("ActionFailed", "Failed", "NotThere", "Unknown"),
@@ -41,7 +41,7 @@ __all__ = sorted(_HOMES)
 
 
 def __getattr__(name: str) -> object:
-    """Public names are loaded when they are used, so that `btc` starts fast."""
+    """Load a public name when it is used, so that `btc` starts fast."""
     if name not in _HOMES:
         raise AttributeError(f"module 'btlang' has no attribute '{name}'")
     from importlib import import_module

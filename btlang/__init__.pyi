@@ -57,9 +57,6 @@ from btlang.builders import whenever as whenever
 from btlang.builders import while_do_else as while_do_else
 from btlang.components.component import Component as Component
 from btlang.components.component import Parameter as Parameter
-from btlang.decorators import action as action
-from btlang.decorators import condition as condition
-from btlang.decorators import quantity as quantity
 from btlang.diagnostics.diagnostic import Diagnostic as Diagnostic
 from btlang.diagnostics.errors import MissionError as MissionError
 from btlang.engine.leaves.leaf import ActionFailed as ActionFailed
@@ -82,6 +79,9 @@ from btlang.slots import Place as Place
 from btlang.slots import Speed as Speed
 from btlang.slots import Text as Text
 from btlang.slots import Zone as Zone
+from btlang.vocabulary.decorators import action as action
+from btlang.vocabulary.decorators import condition as condition
+from btlang.vocabulary.decorators import quantity as quantity
 
 PUBLIC: dict[str, tuple[str, ...]]
 __all__: list[str]

@@ -11,7 +11,7 @@ _COLLECT_AFTER = (
 
 
 def main() -> int:
-    """Runs the command; returns its exit code. Ctrl-C is no traceback, not even while modules are imported."""
+    """Run the command; return its exit code. Ctrl-C is no traceback, not even while modules are imported."""
     gc.set_threshold(_COLLECT_AFTER)
     try:
         from btlang.cli import main as run

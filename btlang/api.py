@@ -10,11 +10,11 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.frontends.mission.reader import DEFAULT_PARSER, read_mission
 from btlang.frontends.table import frontend_of, read_text
-from btlang.gc_pause import gc_paused
-from btlang.mission_vocabulary import described, mission_vocabulary, world_of, world_vocabulary
 from btlang.passes import compile_mission, errors_of, lower_mission, run_passes
 from btlang.passes.compilation import Compilation
-from btlang.record import Record
+from btlang.robots.mission_vocabulary import described, mission_vocabulary, world_of, world_vocabulary
+from btlang.support.gc_pause import gc_paused
+from btlang.support.record import Record
 from btlang.text.output import show
 from btlang.text.source import Source, Span
 from btlang.tree.ast import Fact, Program, all_facts, says_ports
@@ -28,8 +28,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from btlang.mission_vocabulary import Path
     from btlang.passes.compilation import Origins
+    from btlang.robots.mission_vocabulary import Path
     from btlang.robots.registry import Connect
     from btlang.run.outcome import Outcome
     from btlang.tree.dump import Outline
@@ -47,10 +47,10 @@ def parse_tree(
     values: Mapping[str, object] = {},
     origins: Origins | None = None,
 ) -> Mission:
-    """Compiles a mission in English, or a tree: a text that begins with `<` is XML of BehaviorTree.CPP, with `{` JSON.
+    """Compile a mission in English, or a tree: a text that begins with `<` is XML of BehaviorTree.CPP, with `{` JSON.
 
-    `parser` is "shunting-yard" or "lark" (both give the same tree). `keywords` are paths of keyword files, paths of
-    XML files whose nodes become words, names of installed packs, or functions decorated with `action` or `condition`.
+    `parser` is "shunting-yard" or "lark" (both give the same tree). `keywords` are paths of keyword files, paths of XML
+    files whose nodes become words, names of installed packs, or functions decorated with `action` or `condition`.
     `world` is the path of a world file, or its text, by default the world that ships. `main` is the ID of the tree to
     run, if XML or JSON has several. `language` is that of the mission: "en", "es" or the folder of another one.
     `values` are what the mission may use by these names though it doesn't set them, or others of the same kind: a run
@@ -80,7 +80,7 @@ def parse_file(
     include_root: str | None = None,
     language: str = ENGLISH,
 ) -> Mission:
-    """Like `parse_tree`, for the text in a file. It may include files in its folder and below `include_root`.
+    """Compile the text in a file, as `parse_tree` does. It may include files in its folder and below `include_root`.
 
     Its first lines can name its world and keyword files there: `world "museum.toml"`, `words "referee.toml"`. These run
     Python. A given `world` wins; `keywords` are added.
@@ -92,8 +92,8 @@ def parse_file(
 
 
 def mission_of(given: object, *, keywords: Keywords = (), world: Path | Source | None = None) -> Mission:
-    """The mission that something stands for: a text, the path of a file (an os.PathLike), a tree, a behavior made with
-    the functions of btlang.builders, a function decorated with `action` or `condition`, or a mission itself.
+    """Return the mission that something stands for: a text, the path of a file (an os.PathLike), a tree, a behavior
+    made with the functions of btlang.builders, a function decorated with `action` or `condition`, or a mission itself.
 
     A str is always the text of a mission, never a path: a program may get it from anybody. `keywords` and `world` are
     those of `parse_tree`. Raises MissionError for mistakes, TypeError for anything else.
@@ -125,7 +125,7 @@ def mission_of_tree(
 
 
 def source_of(text: object) -> Source:
-    """The source of a text. Raises TypeError for anything else."""
+    """Return the source of a text. Raises TypeError for anything else."""
     if isinstance(text, Source):
         return text
     if isinstance(text, str):
@@ -142,7 +142,7 @@ def format_mission(
     world: Path | Source | None = None,
     language: str = ENGLISH,
 ) -> str:
-    """The text in the canonical layout: with the same words, comments, lines and tree.
+    """Return the text in the canonical layout: with the same words, comments, lines and tree.
 
     The text may contain only definitions. Raises MissionError if the mission has mistakes.
     """
@@ -167,7 +167,7 @@ def _known(values: Mapping[str, object]) -> dict[str, Known]:
 
 
 def value_key(name: str) -> str:
-    """The key on the blackboard of a value that a program gives: `name` as it is written in missions."""
+    """Return the key on the blackboard of a value that a program gives: `name` as it is written in missions."""
     return key_of(name.lower().split())
 
 
@@ -206,11 +206,11 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):
         return Outline((("", self.tree.root), *self.tree.subtrees), self._described)
 
     def print(self) -> None:
-        """Prints the tree with its branches drawn."""
+        """Print the tree with its branches drawn."""
         show(self)
 
     def run(self, *, robot: str | Connect = "simulated", **options: Any) -> Outcome:
-        """Runs the mission to its end, or Ctrl-C, in a new session, so in a fresh world.
+        """Run the mission to its end, or Ctrl-C, in a new session, so in a fresh world.
 
         `robot` is the same as for btlang.Session. The other options are those of `Session.prepare`: `speed`, `rate`,
         `time_limit`, `sinks`, `seed`. Raises MissionError and ValueError as these do.
@@ -221,7 +221,7 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):
             return session.prepare(self, **options).execute()
 
     def explain(self, width: int = 100) -> str:
-        """Each statement as written, in English with brackets that show its structure, and as a tree.
+        """Write each statement as written, in English with brackets that show its structure, and as a tree.
 
         For a tree that wasn't a mission, the statements are those of its English. Lines have at most `width` columns.
         Raises MissionError (BT142) if English can't express it.
@@ -235,7 +235,7 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):
         return explain_mission(program, tree, self.vocabulary, self._described, width)
 
     def check(self, robot: str = "") -> None:
-        """Raises MissionError with everything that would keep it from running, as far as known without the robot; with
+        """Raise MissionError with everything that would keep it from running, as far as known without the robot; with
         the `robot`, a robot file or name, also what its body lacks.
 
         A tree that was compiled from a mission has no other problems, unless it names nodes by their ids.
@@ -257,7 +257,7 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):
             raise MissionError(problems)
 
     def to(self, target: str, **options: Any) -> str | bytes:
-        """The tree as "xml", "english", "json" or another target of btlang.backends.targets.
+        """Return the tree as "xml", "english", "json" or another target of btlang.backends.targets.
 
         Raises ValueError for an unknown target or option, MissionError if the target can't express it.
         """
@@ -268,19 +268,19 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):
         return compiled(self.tree, self.vocabulary, target, given=given, **options)
 
     def label(self, node: Node) -> str:
-        """The English of a leaf, `Id port=value` of any other node."""
+        """Return the English of a leaf, `Id port=value` of any other node."""
         from btlang.printer.phrase import phrase_of
 
         return node.name or phrase_of(node, self.vocabulary)
 
     def is_action(self, node: Node) -> bool:
-        """Whether the node is a command of a keyword file."""
+        """Return whether the node is a command of a keyword file."""
         entry = self.vocabulary.entry(node.id)
         return entry is not None and entry.sort == "action"
 
     @property
     def says_ids(self) -> bool:
-        """Whether it may name unknown nodes: it wasn't a mission, or it names nodes by their ids."""
+        """Return whether it may name unknown nodes: it wasn't a mission, or it names nodes by their ids."""
         return self.syntax is None or says_ports(self.syntax)
 
     def _described(self, node: Node) -> str:

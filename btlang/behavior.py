@@ -10,9 +10,9 @@ from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.engine.script.values import kept
 from btlang.frontends.table import read_text
-from btlang.mission_vocabulary import described, world_vocabulary
 from btlang.passes import compile_mission, errors_of
-from btlang.record import Record
+from btlang.robots.mission_vocabulary import described, world_vocabulary
+from btlang.support.record import Record
 from btlang.text.python_line import calling_line
 from btlang.text.source import NOWHERE, Source, Span
 from btlang.tree.ast import Fact, all_facts
@@ -80,7 +80,7 @@ class Behavior(Record, uncompared=("span",)):
         return self.mission().run(**options)
 
     def to(self, target: str, **options: Any) -> str | bytes:
-        """The tree as "english", "xml" or another target of `btlang.Mission.to`."""
+        """Return the tree as "english", "xml" or another target of `btlang.Mission.to`."""
         return self.mission().to(target, **options)
 
     def __str__(self) -> str:
@@ -91,7 +91,8 @@ Child: TypeAlias = "Behavior | str | Source | Node | Tree | Mission | Callable[.
 
 
 def leaf(what: str | Callable[..., object], /, *values: Value, name: str = "", **ports: Value) -> Behavior:
-    """A command or condition: a decorated function (`btlang.action`, `btlang.condition`), or the id of a known one.
+    """Make a command or condition: a decorated function (`btlang.action`, `btlang.condition`), or the id of a known
+    one.
 
     `leaf(cheer, "Alice", times=2)` and `leaf("GoTo", place="lab")`. The values are for the slots of the function in the
     order of its phrase. A port called `name` is set with a value in that order. Raises TypeError if they don't fit.
@@ -113,7 +114,7 @@ def leaf(what: str | Callable[..., object], /, *values: Value, name: str = "", *
 
 
 def from_py_trees(root: object, *, names: bool = True) -> Behavior:
-    """The behavior of a live py_trees tree: its root, or a `BehaviourTree`.
+    """Return the behavior of a live py_trees tree: its root, or a `BehaviourTree`.
 
     Nodes become their counterparts (docs/engine.md lists the differences). Leaves that btlang made for py_trees are
     commands and conditions again. Other behaviours without children stay what they are, and are ticked as leaves: call
@@ -138,7 +139,10 @@ def built(
     name: str,
     scripts: Mapping[str, object],
 ) -> Behavior:
-    """A behavior of a built-in node: what the functions of btlang.builders do. Raises TypeError if it doesn't fit."""
+    """Make a behavior of a built-in node: what the functions of btlang.builders do.
+
+    Raises TypeError if it doesn't fit.
+    """
     kind, own = CATALOGUE[node_id], tuple(child for child in children if child is not None)
     if not kind.least <= len(own) <= kind.most:
         most = "" if kind.most >= MOST_NODES else f" to {kind.most}" if kind.most != kind.least else ""
@@ -178,7 +182,7 @@ def _entry(what: object) -> Entry:
 
 
 def _functions(waiting: list[Child]) -> list[Callable[..., object]]:
-    """The functions in behaviors, and those that the words of their missions call."""
+    """Return the functions in behaviors, and those that the words of their missions call."""
     found: list[Callable[..., object]] = []
     while waiting:
         child = waiting.pop()
@@ -197,7 +201,7 @@ _ONLY_A_CONDITION = "BT028"
 
 
 class _Assembly:
-    """Makes one tree of behaviors, and collects what their texts define."""
+    """An assembly of one tree from behaviors, which collects what their texts define."""
 
     def __init__(self, vocabulary: Lexicon) -> None:
         self._vocabulary = vocabulary
@@ -205,7 +209,7 @@ class _Assembly:
         self.facts: list[Fact] = []
 
     def define(self, name: str, root: Node) -> None:
-        """Raises MissionError (BT127) for another tree with a name that is taken."""
+        """Define a tree by its name. Raises MissionError (BT127) for another tree with a name that is taken."""
         if self.subtrees.setdefault(name, root) != root:
             raise MissionError([diagnostic("BT127", root.span or NOWHERE, name=name)])
 
@@ -245,13 +249,13 @@ class _Assembly:
         return compile_mission(read.mission, self._vocabulary)
 
     def _id_of(self, call: object) -> str:
-        """The id of a function that replaces the word with its phrase."""
+        """Return the id of a function that replaces the word with its phrase."""
         found = (node_id for node_id, known in self._vocabulary.entries.items() if any(e.call is call for e in known))
         return next(found, "")
 
 
 def _parts(child: Child) -> tuple[Child, ...]:
-    """The children of a behavior; texts and functions are at its line."""
+    """Return the children of a behavior; texts and functions are at its line."""
     if not isinstance(child, Behavior):
         return ()
     span = child.span

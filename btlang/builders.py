@@ -80,47 +80,47 @@ __all__ = [
 
 
 def sequence(*children: Child, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
-    """The node Sequence of BehaviorTree.CPP."""
+    """Make the node Sequence of BehaviorTree.CPP."""
     return built("Sequence", children, {}, name, scripts)
 
 
 def async_sequence(*children: Child, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
-    """The node AsyncSequence of BehaviorTree.CPP."""
+    """Make the node AsyncSequence of BehaviorTree.CPP."""
     return built("AsyncSequence", children, {}, name, scripts)
 
 
 def sequence_with_memory(*children: Child, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
-    """The node SequenceWithMemory of BehaviorTree.CPP."""
+    """Make the node SequenceWithMemory of BehaviorTree.CPP."""
     return built("SequenceWithMemory", children, {}, name, scripts)
 
 
 def reactive_sequence(*children: Child, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
-    """The node ReactiveSequence of BehaviorTree.CPP."""
+    """Make the node ReactiveSequence of BehaviorTree.CPP."""
     return built("ReactiveSequence", children, {}, name, scripts)
 
 
 def pipeline_sequence(*children: Child, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
-    """The node PipelineSequence of Nav2."""
+    """Make the node PipelineSequence of Nav2."""
     return built("PipelineSequence", children, {}, name, scripts)
 
 
 def fallback(*children: Child, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
-    """The node Fallback of BehaviorTree.CPP."""
+    """Make the node Fallback of BehaviorTree.CPP."""
     return built("Fallback", children, {}, name, scripts)
 
 
 def async_fallback(*children: Child, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
-    """The node AsyncFallback of BehaviorTree.CPP."""
+    """Make the node AsyncFallback of BehaviorTree.CPP."""
     return built("AsyncFallback", children, {}, name, scripts)
 
 
 def reactive_fallback(*children: Child, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
-    """The node ReactiveFallback of BehaviorTree.CPP."""
+    """Make the node ReactiveFallback of BehaviorTree.CPP."""
     return built("ReactiveFallback", children, {}, name, scripts)
 
 
 def round_robin(*children: Child, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
-    """The node RoundRobin of Nav2."""
+    """Make the node RoundRobin of Nav2."""
     return built("RoundRobin", children, {}, name, scripts)
 
 
@@ -131,28 +131,28 @@ def parallel(
     name: str = "",
     **scripts: Unpack[Scripts],
 ) -> Behavior:
-    """The node Parallel of BehaviorTree.CPP."""
+    """Make the node Parallel of BehaviorTree.CPP."""
     return built("Parallel", children, {"success_count": success_count, "failure_count": failure_count}, name, scripts)
 
 
 def parallel_all(
     *children: Child, max_failures: int | str | None = None, name: str = "", **scripts: Unpack[Scripts]
 ) -> Behavior:
-    """The node ParallelAll of BehaviorTree.CPP."""
+    """Make the node ParallelAll of BehaviorTree.CPP."""
     return built("ParallelAll", children, {"max_failures": max_failures}, name, scripts)
 
 
 def if_then_else(
     if_: Child, then: Child, else_: Child | None = None, *, name: str = "", **scripts: Unpack[Scripts]
 ) -> Behavior:
-    """The node IfThenElse of BehaviorTree.CPP."""
+    """Make the node IfThenElse of BehaviorTree.CPP."""
     return built("IfThenElse", (if_, then, else_), {}, name, scripts)
 
 
 def while_do_else(
     while_: Child, do: Child, else_: Child | None = None, *, name: str = "", **scripts: Unpack[Scripts]
 ) -> Behavior:
-    """The node WhileDoElse of BehaviorTree.CPP."""
+    """Make the node WhileDoElse of BehaviorTree.CPP."""
     return built("WhileDoElse", (while_, do, else_), {}, name, scripts)
 
 
@@ -165,8 +165,8 @@ def whenever(
     name: str = "",
     **scripts: Unpack[Scripts],
 ) -> Behavior:
-    """The node Whenever of btlang. Condition, reaction, work. Each time the condition becomes true (with once=true
-    only the first time), the work is suspended, the reaction runs once, and the work goes on.
+    """Make the node Whenever of btlang. Condition, reaction, work. Each time the condition becomes true (with
+    once=true only the first time), the work is suspended, the reaction runs once, and the work goes on.
     """
     return built("Whenever", (whenever, reaction, work), {"once": once}, name, scripts)
 
@@ -174,21 +174,21 @@ def whenever(
 def try_catch(
     *children: Child, catch_on_halt: bool | str | None = None, name: str = "", **scripts: Unpack[Scripts]
 ) -> Behavior:
-    """The node TryCatch of BehaviorTree.CPP."""
+    """Make the node TryCatch of BehaviorTree.CPP."""
     return built("TryCatch", children, {"catch_on_halt": catch_on_halt}, name, scripts)
 
 
 def recovery_node(
     *children: Child, number_of_retries: int | str | None = None, name: str = "", **scripts: Unpack[Scripts]
 ) -> Behavior:
-    """The node RecoveryNode of Nav2."""
+    """Make the node RecoveryNode of Nav2."""
     return built("RecoveryNode", children, {"number_of_retries": number_of_retries}, name, scripts)
 
 
 def switch_2(
     *children: Child, variable: Value, case_1: Value, case_2: Value, name: str = "", **scripts: Unpack[Scripts]
 ) -> Behavior:
-    """The node Switch2 of BehaviorTree.CPP."""
+    """Make the node Switch2 of BehaviorTree.CPP."""
     return built("Switch2", children, {"variable": variable, "case_1": case_1, "case_2": case_2}, name, scripts)
 
 
@@ -201,7 +201,7 @@ def switch_3(
     name: str = "",
     **scripts: Unpack[Scripts],
 ) -> Behavior:
-    """The node Switch3 of BehaviorTree.CPP."""
+    """Make the node Switch3 of BehaviorTree.CPP."""
     return built(
         "Switch3", children, {"variable": variable, "case_1": case_1, "case_2": case_2, "case_3": case_3}, name, scripts
     )
@@ -217,7 +217,7 @@ def switch_4(
     name: str = "",
     **scripts: Unpack[Scripts],
 ) -> Behavior:
-    """The node Switch4 of BehaviorTree.CPP."""
+    """Make the node Switch4 of BehaviorTree.CPP."""
     return built(
         "Switch4",
         children,
@@ -238,7 +238,7 @@ def switch_5(
     name: str = "",
     **scripts: Unpack[Scripts],
 ) -> Behavior:
-    """The node Switch5 of BehaviorTree.CPP."""
+    """Make the node Switch5 of BehaviorTree.CPP."""
     return built(
         "Switch5",
         children,
@@ -267,7 +267,7 @@ def switch_6(
     name: str = "",
     **scripts: Unpack[Scripts],
 ) -> Behavior:
-    """The node Switch6 of BehaviorTree.CPP."""
+    """Make the node Switch6 of BehaviorTree.CPP."""
     return built(
         "Switch6",
         children,
@@ -286,34 +286,34 @@ def switch_6(
 
 
 def inverter(child: Child, *, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
-    """The node Inverter of BehaviorTree.CPP."""
+    """Make the node Inverter of BehaviorTree.CPP."""
     return built("Inverter", (child,), {}, name, scripts)
 
 
 def force_success(child: Child, *, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
-    """The node ForceSuccess of BehaviorTree.CPP."""
+    """Make the node ForceSuccess of BehaviorTree.CPP."""
     return built("ForceSuccess", (child,), {}, name, scripts)
 
 
 def force_failure(child: Child, *, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
-    """The node ForceFailure of BehaviorTree.CPP."""
+    """Make the node ForceFailure of BehaviorTree.CPP."""
     return built("ForceFailure", (child,), {}, name, scripts)
 
 
 def repeat(child: Child, *, num_cycles: int | str, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
-    """The node Repeat of BehaviorTree.CPP."""
+    """Make the node Repeat of BehaviorTree.CPP."""
     return built("Repeat", (child,), {"num_cycles": num_cycles}, name, scripts)
 
 
 def retry_until_successful(
     child: Child, *, num_attempts: int | str, name: str = "", **scripts: Unpack[Scripts]
 ) -> Behavior:
-    """The node RetryUntilSuccessful of BehaviorTree.CPP."""
+    """Make the node RetryUntilSuccessful of BehaviorTree.CPP."""
     return built("RetryUntilSuccessful", (child,), {"num_attempts": num_attempts}, name, scripts)
 
 
 def keep_running_until_failure(child: Child, *, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
-    """The node KeepRunningUntilFailure of BehaviorTree.CPP."""
+    """Make the node KeepRunningUntilFailure of BehaviorTree.CPP."""
     return built("KeepRunningUntilFailure", (child,), {}, name, scripts)
 
 
@@ -326,7 +326,7 @@ def loop_int(
     name: str = "",
     **scripts: Unpack[Scripts],
 ) -> Behavior:
-    """The node LoopInt of BehaviorTree.CPP."""
+    """Make the node LoopInt of BehaviorTree.CPP."""
     return built("LoopInt", (child,), {"queue": queue, "if_empty": if_empty, "value": value}, name, scripts)
 
 
@@ -339,7 +339,7 @@ def loop_bool(
     name: str = "",
     **scripts: Unpack[Scripts],
 ) -> Behavior:
-    """The node LoopBool of BehaviorTree.CPP."""
+    """Make the node LoopBool of BehaviorTree.CPP."""
     return built("LoopBool", (child,), {"queue": queue, "if_empty": if_empty, "value": value}, name, scripts)
 
 
@@ -352,7 +352,7 @@ def loop_double(
     name: str = "",
     **scripts: Unpack[Scripts],
 ) -> Behavior:
-    """The node LoopDouble of BehaviorTree.CPP."""
+    """Make the node LoopDouble of BehaviorTree.CPP."""
     return built("LoopDouble", (child,), {"queue": queue, "if_empty": if_empty, "value": value}, name, scripts)
 
 
@@ -365,106 +365,108 @@ def loop_string(
     name: str = "",
     **scripts: Unpack[Scripts],
 ) -> Behavior:
-    """The node LoopString of BehaviorTree.CPP."""
+    """Make the node LoopString of BehaviorTree.CPP."""
     return built("LoopString", (child,), {"queue": queue, "if_empty": if_empty, "value": value}, name, scripts)
 
 
 def keep_out(child: Child, *, zones: Value, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
-    """The node KeepOut of btlang. The robot keeps out of the zones (names between semicolons) while the child runs."""
+    """Make the node KeepOut of btlang. The robot keeps out of the zones (names between semicolons) while the child
+    runs.
+    """
     return built("KeepOut", (child,), {"zones": zones}, name, scripts)
 
 
 def keep_in(child: Child, *, zones: Value, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
-    """The node KeepIn of btlang. The robot stays in the zones (names between semicolons) while the child runs."""
+    """Make the node KeepIn of btlang. The robot stays in the zones (names between semicolons) while the child runs."""
     return built("KeepIn", (child,), {"zones": zones}, name, scripts)
 
 
 def timeout(child: Child, *, msec: int | str, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
-    """The node Timeout of BehaviorTree.CPP."""
+    """Make the node Timeout of BehaviorTree.CPP."""
     return built("Timeout", (child,), {"msec": msec}, name, scripts)
 
 
 def delay(child: Child, *, delay_msec: int | str, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
-    """The node Delay of BehaviorTree.CPP."""
+    """Make the node Delay of BehaviorTree.CPP."""
     return built("Delay", (child,), {"delay_msec": delay_msec}, name, scripts)
 
 
 def rate_controller(
     child: Child, *, hz: float | str | None = None, name: str = "", **scripts: Unpack[Scripts]
 ) -> Behavior:
-    """The node RateController of Nav2."""
+    """Make the node RateController of Nav2."""
     return built("RateController", (child,), {"hz": hz}, name, scripts)
 
 
 def run_once(
     child: Child, *, then_skip: bool | str | None = None, name: str = "", **scripts: Unpack[Scripts]
 ) -> Behavior:
-    """The node RunOnce of BehaviorTree.CPP."""
+    """Make the node RunOnce of BehaviorTree.CPP."""
     return built("RunOnce", (child,), {"then_skip": then_skip}, name, scripts)
 
 
 def precondition(
     child: Child, *, if_: Value, else_: Value | None = None, name: str = "", **scripts: Unpack[Scripts]
 ) -> Behavior:
-    """The node Precondition of BehaviorTree.CPP."""
+    """Make the node Precondition of BehaviorTree.CPP."""
     return built("Precondition", (child,), {"if": if_, "else": else_}, name, scripts)
 
 
 def skip_unless_updated(child: Child, *, entry: Value, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
-    """The node SkipUnlessUpdated of BehaviorTree.CPP."""
+    """Make the node SkipUnlessUpdated of BehaviorTree.CPP."""
     return built("SkipUnlessUpdated", (child,), {"entry": entry}, name, scripts)
 
 
 def wait_value_update(child: Child, *, entry: Value, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
-    """The node WaitValueUpdate of BehaviorTree.CPP."""
+    """Make the node WaitValueUpdate of BehaviorTree.CPP."""
     return built("WaitValueUpdate", (child,), {"entry": entry}, name, scripts)
 
 
 def was_entry_updated(*, entry: Value, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
-    """The node WasEntryUpdated of BehaviorTree.CPP."""
+    """Make the node WasEntryUpdated of BehaviorTree.CPP."""
     return built("WasEntryUpdated", (), {"entry": entry}, name, scripts)
 
 
 def script_condition(*, code: Value, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
-    """The node ScriptCondition of BehaviorTree.CPP."""
+    """Make the node ScriptCondition of BehaviorTree.CPP."""
     return built("ScriptCondition", (), {"code": code}, name, scripts)
 
 
 def script(*, code: Value, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
-    """The node Script of BehaviorTree.CPP."""
+    """Make the node Script of BehaviorTree.CPP."""
     return built("Script", (), {"code": code}, name, scripts)
 
 
 def set_blackboard(*, value: Value, output_key: Value, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
-    """The node SetBlackboard of BehaviorTree.CPP."""
+    """Make the node SetBlackboard of BehaviorTree.CPP."""
     return built("SetBlackboard", (), {"value": value, "output_key": output_key}, name, scripts)
 
 
 def unset_blackboard(*, key: Value, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
-    """The node UnsetBlackboard of BehaviorTree.CPP."""
+    """Make the node UnsetBlackboard of BehaviorTree.CPP."""
     return built("UnsetBlackboard", (), {"key": key}, name, scripts)
 
 
 def sleep(*, msec: int | str, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
-    """The node Sleep of BehaviorTree.CPP."""
+    """Make the node Sleep of BehaviorTree.CPP."""
     return built("Sleep", (), {"msec": msec}, name, scripts)
 
 
 def wait_for_time(*, time: Value, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
-    """The node WaitForTime of btlang. Ends when the clock next shows a time of day such as 18:30."""
+    """Make the node WaitForTime of btlang. Ends when the clock next shows a time of day such as 18:30."""
     return built("WaitForTime", (), {"time": time}, name, scripts)
 
 
 def always_success(*, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
-    """The node AlwaysSuccess of BehaviorTree.CPP."""
+    """Make the node AlwaysSuccess of BehaviorTree.CPP."""
     return built("AlwaysSuccess", (), {}, name, scripts)
 
 
 def always_failure(*, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
-    """The node AlwaysFailure of BehaviorTree.CPP."""
+    """Make the node AlwaysFailure of BehaviorTree.CPP."""
     return built("AlwaysFailure", (), {}, name, scripts)
 
 
 def sub_tree(*, ID: Value, name: str = "", **scripts: Value) -> Behavior:
-    """The node SubTree of BehaviorTree.CPP."""
+    """Make the node SubTree of BehaviorTree.CPP."""
     return built("SubTree", (), {"ID": ID}, name, scripts)

@@ -25,15 +25,14 @@ from btlang.robots.spoken_commands import SpokenCommands, choices
 from btlang.robots.worlds.world import Place
 from btlang.robots.worlds.world_file import read_world
 from btlang.run.bus import Bus
+from btlang.run.connection import RunChoices
 from btlang.run.controls import Controls, disable
-from btlang.run.failure_history import FailureHistory
+from btlang.run.failure_history import FailureHistory, failure_report
 from btlang.run.limits import RATES, SLOWEST
 from btlang.run.outcome import Outcome
 from btlang.run.recent import RecentEvents
-from btlang.run.report import failure_report
-from btlang.run.resumption import RunChoices
-from btlang.run.runner import Runner, traced_engine
-from btlang.run.snapshot import Follower, Snapshot
+from btlang.run.runner import Runner, trace_engine
+from btlang.run.snapshot import RunFollower, Snapshot
 from btlang.run.statuses import Status
 from btlang.text.escaping import RED
 from btlang.text.source import NOWHERE, Source
@@ -57,7 +56,7 @@ if TYPE_CHECKING:
     from btlang.vocabulary.load import Keywords
 
     class Runnable(Protocol):
-        """What a session needs from a mission; see btlang.api.Mission."""
+        """A mission as a session needs it; see btlang.api.Mission."""
 
         @property
         def tree(self) -> Tree: ...
@@ -74,7 +73,7 @@ if TYPE_CHECKING:
         def label(self, node: Node) -> str: ...
 
     class Compilable(Protocol):
-        """What a mission can be made from; see btlang.behavior.Behavior."""
+        """A thing that a mission can be made from; see btlang.behavior.Behavior."""
 
         def mission(self, *, keywords: Keywords = ..., world: str | Source | None = ...) -> Runnable: ...
 
@@ -85,7 +84,7 @@ _MISSION_OF = "btlang.api", "mission_of"
 
 
 def _words_of(body: Body | None) -> list[str]:
-    """The keyword files of a body."""
+    """Return the keyword files of a body."""
     if body is None or not (body.components or body.gestures):
         return []
     from btlang.components.words import words_of  # most robots have none
@@ -128,7 +127,7 @@ class Session:
         return f"<Session on {type(self.robot).__name__}{f', {self.current!r}' if self.current is not None else ''}>"
 
     def map(self, unicode: bool) -> TerminalMap | None:
-        """The world for a terminal, if the robot moves in it, and not in a room of which it may be no map."""
+        """Return the world for a terminal, if the robot moves in it, and not in a room of which it may be no map."""
         if not self._is_simulated:
             return None
         from btlang.pictures.terminal_map import TerminalMap
@@ -153,7 +152,7 @@ class Session:
         seed: int | None = None,
         hooks: Hooks | None = None,
     ) -> Run:
-        """A run that hasn't started yet: for `Run.execute` and `Run.tick`.
+        """Make a run that hasn't started yet: for `Run.execute` and `Run.tick`.
 
         `mission` is a btlang.Mission, the text of one, the path of a file (pathlib.Path), a tree or a behavior. Texts
         are read with the world and `keywords` of this session.
@@ -185,7 +184,7 @@ class Session:
         return self.current
 
     def restore(self, mission: Given, saved: Mapping[str, Any], **options: Any) -> Run:
-        """Like `prepare`, for a run that goes on where another one was saved, maybe in another process.
+        """Make a run as `prepare` does, which goes on where another one was saved, maybe in another process.
 
         Positions, counts, timers, values and mission time are as they were; commands that were running start again.
         `saved` comes from `Run.save`. Raises MissionError (BT193) if it isn't from a run of this mission.
@@ -195,13 +194,13 @@ class Session:
         return run
 
     def run(self, mission: Given, **options: Any) -> Run:
-        """Runs a mission to its end, in this thread; what it takes is as for `prepare`. Ctrl-C ends it."""
+        """Run a mission to its end, in this thread; what it takes is as for `prepare`. Ctrl-C ends it."""
         run = self.prepare(mission, **options)
         run.execute()
         return run
 
     def start(self, mission: Given, **options: Any) -> Run:
-        """Like `run`, but in a separate thread; returns at once."""
+        """Run a mission as `run` does, but in a separate thread; return at once."""
         run = self.prepare(mission, **options)
         run.start()
         return run
@@ -214,14 +213,14 @@ class Session:
         return made
 
     def emergency_stop(self) -> None:
-        """Stops the robot at once, from any thread, and ends the current or prepared run before its next tick."""
+        """Stop the robot at once, from any thread, and end the current or prepared run before its next tick."""
         if self.current is not None:
             self.current.emergency_stop()
         else:
             disable(self.connection.robot)
 
     def close(self) -> None:
-        """Ends the current run, brings the robot to rest and disconnects. May be called twice."""
+        """End the current run, bring the robot to rest and disconnect. May be called twice."""
         if self.current is not None and self.current.is_under_way:
             self.current.stop()
             self.current.wait(threading.TIMEOUT_MAX)
@@ -271,7 +270,7 @@ class Run:
         self._under_way = False
         self._engine = self._bound(connection, sinks, values, hooks, timed=speed < math.inf)
         self._story = FailureHistory(self._engine)
-        self.follower = Follower(self._engine)
+        self.follower = RunFollower(self._engine)
         """The statuses of all nodes, for any thread."""
         self._recent = RecentEvents()
         self._choices = RunChoices()
@@ -299,11 +298,11 @@ class Run:
 
     @property
     def is_under_way(self) -> bool:
-        """Whether it has started and hasn't ended."""
+        """Return whether it has started and hasn't ended."""
         return self._under_way
 
     def execute(self) -> Outcome:
-        """Runs to the end, in this thread, and brings the robot to rest. Once for each run."""
+        """Run to the end, in this thread, and bring the robot to rest. Once for each run."""
         self._under_way = True
         try:
             self.outcome = outcome = self._explained(self._runner.run())
@@ -315,7 +314,7 @@ class Run:
             self._recent.close()
 
     def start(self) -> None:
-        """Like `execute`, but in a separate thread; returns at once."""
+        """Run as `execute` does, but in a separate thread; return at once."""
         self._under_way = True
         self._thread = threading.Thread(target=self._work, name="btlang run", daemon=True)
         self._thread.start()
@@ -341,7 +340,7 @@ class Run:
         return self.outcome
 
     def tick(self, seconds: float | None = None) -> Status:
-        """Ticks once, in a loop of your own, and returns the status; then that much mission time passes.
+        """Tick once, in a loop of your own, and return the status; then that much mission time passes.
 
         By default it is one period of the rate. Mission time, and so a simulated world, only goes on by that: pass the
         time since the last tick on a robot that moves by itself. Once the tree completes there is an `outcome`; another
@@ -353,31 +352,31 @@ class Run:
         return status
 
     def halt(self) -> None:
-        """Halts every running leaf and stops the robot; the next tick starts over."""
+        """Halt every running leaf and stop the robot; the next tick starts over."""
         self._runner.halt()
 
     def pause(self) -> None:
-        """The robot comes to rest, and mission time stands still."""
+        """Bring the robot to rest, and stop the mission time."""
         self.controls.pause()
 
     def resume(self) -> None:
-        """Continues; the commands that the pause interrupted start over."""
+        """Continue; the commands that the pause interrupted start over."""
         self.controls.resume()
 
     def step(self) -> None:
-        """Makes one more tick, then pauses."""
+        """Make one more tick, then pause."""
         self.controls.step()
 
     def stop(self) -> None:
-        """Ends the run; if it hasn't started, before its first tick."""
+        """End the run; if it hasn't started, before its first tick."""
         self.controls.stop()
 
     def suspend(self) -> None:
-        """Ends the run so that `Session.restore` can go on with what `save` then gives; its outcome is "suspended"."""
+        """End the run so that `Session.restore` can go on with what `save` then gives; its outcome is "suspended"."""
         self.controls.suspend()
 
     def save(self) -> dict[str, Any]:
-        """All that `Session.restore` needs, as JSON. Waits for the moment between two ticks.
+        """Return all that `Session.restore` needs, as JSON. Waits for the moment between two ticks.
 
         Raises MissionError (BT192) if a value of the mission can't be saved.
         """
@@ -388,11 +387,11 @@ class Run:
         return {**saved, **self._choices.save(), "seed": self.seed}
 
     def call(self, call: Callable[[], Any]) -> Any:
-        """What `call` returns or raises, in the thread of the run, between two ticks; waits until then."""
+        """Return or raise what `call` does, in the thread of the run, between two ticks; wait until then."""
         return self._runner.between_ticks(call)
 
     def after_ticks(self, call: Callable[[], object]) -> None:
-        """Calls it after each tick, in the thread of the run; what it raises ends the run."""
+        """Call a function after each tick, in the thread of the run; what it raises ends the run."""
         self._runner.after_tick = call
 
     def _restore(self, saved: Mapping[str, Any]) -> None:
@@ -403,7 +402,7 @@ class Run:
             raise MissionError([diagnostic("BT193", NOWHERE, reason=str(error))]) from None
 
     def emergency_stop(self) -> None:
-        """Stops the robot at once without waiting for the current tick, then ends the run.
+        """Stop the robot at once without waiting for the current tick, then end the run.
 
         A hanging leaf doesn't delay it, and further commands in that tick are ignored. A `tick` halts the tree and
         returns IDLE.
@@ -411,7 +410,7 @@ class Run:
         self.controls.emergency_stop()
 
     def why(self, *, colour: bool = False) -> str:
-        """Why it failed, as in `btc run`; "" if it didn't fail.
+        """Return why it failed, as in `btc run`; "" if it didn't fail.
 
         Shows the sentence (with `colour` underlined in red), the leaf and its reason, and the earlier failures.
         """
@@ -421,7 +420,7 @@ class Run:
         return failure_report(failure, self._story, self.mission.label, RED if colour else "")
 
     def events(self) -> Iterator[Event]:
-        """The latest events (up to btlang.run.recent.MOST_EVENTS), then new ones until the run is over."""
+        """Yield the latest events (up to btlang.run.recent.MOST_EVENTS), then new ones until the run is over."""
         return self._recent.events()
 
     def __aiter__(self) -> AsyncIterator[Event]:
@@ -438,11 +437,11 @@ class Run:
         return ended().__await__()
 
     def snapshot(self) -> Snapshot:
-        """The statuses of all nodes and the state of the robot, after the event with the number in it."""
+        """Return the statuses of all nodes and the state of the robot, after the event with the number in it."""
         return self.follower.snapshot(self.mission.label)
 
     def statuses(self) -> dict[str, Status]:
-        """The current or last status of each node, by its words; nodes with equal words share the latest.
+        """Return the current or last status of each node, by its words; nodes with equal words share the latest.
 
         IDLE nodes were not reached, or were reset when a node above them ended.
         """
@@ -479,7 +478,7 @@ class Run:
         connection.begin(self.bus)
         bind = cache(partial(_bind, mission.vocabulary, connection, awaited(mission.tree)))
         try:
-            return traced_engine(
+            return trace_engine(
                 mission.tree, bind, bus=self.bus, services={"robot": connection.robot}, proxies={"robot": RobotProxy},
                 blackboard=values, stopwatch=Stopwatch() if timed else None, hooks=hooks,
             )  # fmt: skip
@@ -487,7 +486,7 @@ class Run:
             raise MissionError(self._refused(error, connection)) from None
 
     def _refused(self, error: EngineError, connection: Connection) -> list[Diagnostic]:
-        """The error for a tree that no engine runs: all its problems, if it names nodes by their ids."""
+        """Return the error for a tree that no engine runs: all its problems, if it names nodes by their ids."""
         mission = self.mission
         span = error.node.span or NOWHERE
         refused = diagnostic("BT080", span, id=error.node.id, reason=error.message)

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from btlang.pictures.style import INK, SMALL, SOFT, TITLE
-from btlang.pictures.svg import SvgSurface
+from btlang.pictures.drawing import SvgSurface
+from btlang.pictures.surface import INK, SMALL, SOFT, TITLE
 
 CLIENTS = ("page", "HTTP, WebSocket", "programs", "ROS 2")
 LAYERS = (
     (
         "Representative server", "who may say what to which robot",
-        ("server/app.py", "server/access.py", "server/roles.py", "server/clients.py"), "commands",
+        ("server/accounts", "server/http", "server/live", "server/fleet"), "commands",
     ),
     (
         "Task layer", "which mission is due, which one waits",
-        ("task/handler.py", "task/manager.py", "task/executor.py", "task/store.py"), "one run at a time",
+        ("task/commands", "task/execution", "task/schedule", "task/store"), "one run at a time",
     ),
     (
         "Behavior trees", "sentences, a tree, ticks",
@@ -21,15 +21,15 @@ LAYERS = (
     ),
     (
         "Component layer", "what the robot can do",
-        ("actions", "robots/robot.py", "robots/motion", "components/manager.py"), "readings and commands",
+        ("actions", "robots/capabilities.py", "robots/motion", "components/manager.py"), "readings and commands",
     ),
     (
         "Hardware layer", "motors, sensors, speakers",
-        ("devices/kinds.py", "devices/loop.py", "devices/driver.py", "ros/devices"), "",
+        ("devices/kinds.py", "devices/loop.py", "devices/drivers.py", "ros/devices"), "",
     ),
 )  # fmt: skip
 """From top to bottom: what each is, what it decides, its modules below btlang, and what goes to the next one."""
-STOP = ("task/socket_server.py", "task/emergency.py", "run/controls.py", "robots/command_gate.py")
+STOP = ("task/commands", "task/execution", "run/controls.py", "robots/latch.py")
 """The modules on the way of the emergency stop."""
 _FILL, _EDGE, _ALARM, _PALE = "#f8faf8", "#4f7d62", "#c0440c", "#fde4da"
 
@@ -72,7 +72,7 @@ def draw_layers() -> bytes:
             y = top + layer * (high + gap) + high / 2
             sheet.line(((at, y), (left + wide + 7, y)), colour=_ALARM)
             sheet.polygon(((left + wide + 1, y), (left + wide + 8, y - 4), (left + wide + 8, y + 4)), fill=_ALARM)
-    return sheet.encoded(".svg")
+    return sheet.encode(".svg")
 
 
 def _arrow(sheet: SvgSurface, x: float, start: float, end: float, colour: str = SOFT) -> None:

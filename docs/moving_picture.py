@@ -15,16 +15,12 @@ from moving_svg import FASTER, MovingSurface
 
 import btlang
 from btlang.pictures import letters
-from btlang.pictures.placing import Area, Placer, along
-from btlang.pictures.run_legend import outcome
-from btlang.pictures.run_record import RunRecord, Sample
-from btlang.pictures.statuses import LastStatuses
-from btlang.pictures.style import BUBBLES, INK, LOOKS, NEVER, SMALL, SOFT, TITLE, Look
+from btlang.pictures.run_record import LastStatuses, PathSample, RunRecord, outcome
+from btlang.pictures.surface import BUBBLES, INK, LOOKS, NEVER, SMALL, SOFT, TITLE, Look
 from btlang.pictures.track import END, draw_body, way
-from btlang.pictures.tree_boxes import Maker
-from btlang.pictures.tree_layout import Layout, laid_out
+from btlang.pictures.tree_layout import Maker, TreeLayout, lay_out
 from btlang.pictures.tree_picture import _TreePicture
-from btlang.pictures.world_map import OBJECT, WorldMap
+from btlang.pictures.world_map import OBJECT, Area, Placer, WorldMap, along
 from btlang.robots.geometry import Pose, wrap
 from btlang.robots.worlds.world import Thing, World
 from btlang.robots.worlds.world_file import load_world
@@ -66,10 +62,10 @@ class Watcher:
         [sheet] = Maker(*self._maker, self._last).sheets()
         self.frames.append((event.t, tuple(box.status for box in sheet.boxes)))
 
-    def layout(self) -> Layout:
+    def layout(self) -> TreeLayout:
         """Where the boxes of the tree go."""
         [sheet] = Maker(*self._maker, self._last).sheets()
-        return laid_out(sheet.boxes, signs=True)
+        return lay_out(sheet.boxes, signs=True)
 
 
 def line_of(span: Span) -> int:
@@ -153,7 +149,7 @@ def moving_picture(path: Path) -> bytes:
     draw_headline(surface, watcher.record, end, map_top - 16)
     draw_map(surface, map, still, watcher.record, cup, end)
     MovingTree(surface, watcher, end).draw(_MARGIN + _LEFT + 24, _TOP - 6)
-    return surface.encoded(".svg")
+    return surface.encode(".svg")
 
 
 def draw_clock(surface: MovingSurface, record: RunRecord, end: float, right: float) -> None:
@@ -259,7 +255,7 @@ def draw_bubble(surface: MovingSurface, map: WorldMap, text: str, kind: str, pos
     surface.text(left + 5, y + 9, text, size=SMALL)
 
 
-def sample_at(record: RunRecord, time: float) -> Sample:
+def sample_at(record: RunRecord, time: float) -> PathSample:
     """Where the robot was, between two samples too."""
     track = record.track
     after = next((i for i, sample in enumerate(track) if sample.t > time), len(track))
@@ -269,4 +265,4 @@ def sample_at(record: RunRecord, time: float) -> Sample:
     share, p, q = (time - a.t) / (b.t - a.t), a.pose, b.pose
     heading = p.heading + wrap(q.heading - p.heading) * share
     pose = Pose(p.x + (q.x - p.x) * share, p.y + (q.y - p.y) * share, heading)
-    return Sample(time, pose, a.battery + (b.battery - a.battery) * share)
+    return PathSample(time, pose, a.battery + (b.battery - a.battery) * share)

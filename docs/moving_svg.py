@@ -8,7 +8,7 @@ from itertools import pairwise
 from math import dist
 from operator import itemgetter
 
-from btlang.pictures.svg import SvgSurface, joined
+from btlang.pictures.drawing import SvgSurface, write_points
 
 FASTER = 3.0
 """Seconds of the mission in a second of the picture."""
@@ -75,7 +75,7 @@ class MovingSurface(SvgSurface):
         left = ";".join(f"{1 - length / gone[-1]:.4f}" for length in gone)
         moved = self._animation("stroke-dashoffset", left, [self._share(time) for time in times], "linear")
         self._add(
-            0.0, "polyline", moved, pathLength="1", stroke_dasharray="1 1", points=joined(points), fill="none",
+            0.0, "polyline", moved, pathLength="1", stroke_dasharray="1 1", points=write_points(points), fill="none",
             stroke=colour, stroke_width="2", stroke_linejoin="round", stroke_linecap="round",
         )  # fmt: skip
 

@@ -6,24 +6,14 @@ import argparse
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
-from btlang.cli_options import GROUPS, verb_parsers
-from btlang.command_examples import EXAMPLES
-from btlang.gestures.options import ACTS as GESTURE_ACTS
-from btlang.server.options import USER_ACTS
-from btlang.task.applicable import COMPONENT_ACTS, ROBOT_ACTS, ROBOT_OPTIONS, TASK_ACTS, TASK_OPTIONS
+from btlang.cli.options import Verb
+from btlang.cli.parser import verb_parser
+from btlang.cli.verbs import VERBS
 
 PAGE = Path(__file__).parent.parent / "docs" / "cli.md"
 MARK = "<!-- Made by `python -m tests.generate` from here on. -->\n"
 SHARED = 3
 """Verbs that have an option with the same help, at least, for it to be described once for all of them."""
-ACTS: Mapping[str, tuple[Mapping[str, str], Mapping[str, Sequence[str]]]] = {
-    "robot": (ROBOT_ACTS, ROBOT_OPTIONS),
-    "task": (TASK_ACTS, TASK_OPTIONS),
-    "components": (COMPONENT_ACTS, {}),
-    "user": (USER_ACTS, {}),
-    "gesture": (GESTURE_ACTS, {}),
-}
-"""By verbs: what each act does, and which options it takes where that is checked."""
 _UNTESTED = ("repl", "diff", "edit", "watch", "serve", "mcp", "sim-ros", "ros-node", "ros-devices", "serve-actions")
 """Verbs whose examples wait for somebody, need ROS 2 or exit with 1: tests/test_readme.py runs all others."""
 _PAGES = {
@@ -66,12 +56,14 @@ def cli_page() -> str:
 
 
 def _made() -> Iterator[str]:
-    parsers = verb_parsers()
+    parsers = {name: verb_parser(verb) for name, verb in VERBS.items()}
     shared = _shared(parsers)
-    for title, verbs in GROUPS.items():
-        yield f"\n## {title[0].upper()}{title[1:]}"
-        for verb in verbs:
-            yield from _verb(verb, *parsers[verb], shared)
+    group = ""
+    for name, verb in VERBS.items():
+        if verb.group != group:
+            group = verb.group
+            yield f"\n## {group[0].upper()}{group[1:]}"
+        yield from _verb(verb, parsers[name], shared)
     yield "\n## Options of several verbs\n"
     yield "| option | verbs | what it does |"
     yield "|---|---|---|"
@@ -79,20 +71,19 @@ def _made() -> Iterator[str]:
         yield f"| {names} | {', '.join(its_verbs)} | {about} |"
 
 
-def _verb(
-    verb: str, about: str, parser: argparse.ArgumentParser, shared: Mapping[tuple[str, str], object]
-) -> Iterator[str]:
-    yield f"\n### btc {verb}\n"
-    yield f"{about[0].upper()}{about[1:]}{'' if about.endswith('...') else '.'}{_read_more(verb)}"
-    yield f"\n```text\n{_usage(verb, parser)}\n```"
-    if verb in EXAMPLES:
-        width = max(len(command) for command, _ in EXAMPLES[verb])
-        yield f"\n```{'bash' if verb in _UNTESTED else 'sh'}"
-        yield from (f"{command:{width}}  # {what}" for command, what in EXAMPLES[verb])
+def _verb(verb: Verb, parser: argparse.ArgumentParser, shared: Mapping[tuple[str, str], object]) -> Iterator[str]:
+    about = verb.about
+    yield f"\n### btc {verb.name}\n"
+    yield f"{about[0].upper()}{about[1:]}{'' if about.endswith('...') else '.'}{_read_more(verb.name)}"
+    yield f"\n```text\n{_usage(verb.name, parser)}\n```"
+    if verb.examples:
+        width = max(len(command) for command, _ in verb.examples)
+        yield f"\n```{'bash' if verb.name in _UNTESTED else 'sh'}"
+        yield from (f"{command:{width}}  # {what}" for command, what in verb.examples)
         yield "```"
     rows = [(_names(option), _about(option, parser)) for option in _options(parser)]
     own = [row for row in rows if row not in shared]
-    if verb in ACTS:
+    if verb.acts:
         yield from _acts(verb, parser)
     if own:
         yield "\n| argument or option | what it does |"
@@ -104,18 +95,19 @@ def _verb(
         yield f"\nAlso [options of several verbs](#options-of-several-verbs): {listed}."
 
 
-def _acts(verb: str, parser: argparse.ArgumentParser) -> Iterator[str]:
-    acts, options = ACTS[verb]
+def _acts(verb: Verb, parser: argparse.ArgumentParser) -> Iterator[str]:
+    has_options = any(act.options is not None for act in verb.acts.values())
     flags = {option.dest: option.option_strings[-1] for option in _options(parser) if option.option_strings}
-    yield f"\n| act | what it does | example |{' options |' if options else ''}"
-    yield f"|---|---|---|{'---|' if options else ''}"
-    for act, text in acts.items():
-        about, _, example = text.partition(": btc ")
-        shown = ", ".join(f"`btc {each.removeprefix('btc ')}`" for each in (example or f"{verb} {act}").split(", "))
-        cells = [f"`{act}`", about, shown, *([_taken(options[act], flags)] if options else [])]
+    yield f"\n| act | what it does | example |{' options |' if has_options else ''}"
+    yield f"|---|---|---|{'---|' if has_options else ''}"
+    for name, act in verb.acts.items():
+        about, _, example = act.about.partition(": btc ")
+        examples = (example or f"{verb.name} {name}").split(", ")
+        shown = ", ".join(f"`btc {each.removeprefix('btc ')}`" for each in examples)
+        cells = [f"`{name}`", about, shown, *([] if act.options is None else [_taken(act.options, flags)])]
         yield f"| {' | '.join(map(_cell, cells))} |"
-    if options:
-        but = ", but `stop` ignores them" * ("stop" in acts)
+    if has_options:
+        but = ", but `stop` ignores them" * ("stop" in verb.acts)
         yield f"\n`--name` goes with every act. Options that don't apply to an act are refused{but}."
 
 
@@ -138,10 +130,10 @@ def _options(parser: argparse.ArgumentParser) -> list[Option]:
     return sorted(found, key=lambda action: bool(action.option_strings))
 
 
-def _shared(parsers: Mapping[str, tuple[str, argparse.ArgumentParser]]) -> dict[tuple[str, str], list[str]]:
+def _shared(parsers: Mapping[str, argparse.ArgumentParser]) -> dict[tuple[str, str], list[str]]:
     """The options that several verbs have with the same help, each with these verbs."""
     verbs: dict[tuple[str, str], list[str]] = {}
-    for verb, (_, parser) in parsers.items():
+    for verb, parser in parsers.items():
         for option in _options(parser):
             if option.option_strings:
                 verbs.setdefault((_names(option), _about(option, parser)), []).append(verb)

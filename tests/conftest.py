@@ -173,7 +173,7 @@ def take_away_what_is_missed(code: str, patch: pytest.MonkeyPatch) -> None:
     if code == "BT200":
         patch.setitem(sys.modules, "argon2", None)
     if code == "BT211":
-        patch.setattr("btlang.server.local_page.PAGE", Path("nowhere"))
+        patch.setattr("btlang.server.page.local_page.PAGE", Path("nowhere"))
     if code == "BT189":
         patch.setitem(sys.modules, "psycopg", None)
     if code == "BT086":

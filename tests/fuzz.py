@@ -19,13 +19,13 @@ from collections.abc import Callable
 from functools import partial
 
 from btlang.api import Mission
+from btlang.cli.examples import examples
 from btlang.diagnostics.errors import MissionError
-from btlang.examples import examples
 from btlang.frontends.mission.completion.completer import completions
 from btlang.frontends.mission.reader import read_mission
-from btlang.mission_vocabulary import world_vocabulary
 from btlang.passes import compile_mission
 from btlang.printer.layout import laid_out
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.text.source import Source
 
 VOCABULARY = world_vocabulary()

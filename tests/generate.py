@@ -16,9 +16,9 @@ from typing import Any
 import btlang
 from btlang import PUBLIC
 from btlang.run.events import LOGGED, Event
-from btlang.run.field_types import field_type
-from btlang.run.json_log import described
-from btlang.task import command_schema
+from btlang.run.logs import describe_event
+from btlang.support.field_types import field_type
+from btlang.task.commands import schema as command_schema
 from btlang.tree.catalogue import CATALOGUE, POST_CONDITIONS, PRE_CONDITIONS, NodeKind, Port
 from tests.cli_page import cli_page
 
@@ -35,7 +35,7 @@ def log_schema() -> dict[str, Any]:
         "type": "object",
         "properties": common,
         "required": list(common),
-        "oneOf": [described(kind) for kind in LOGGED],
+        "oneOf": [describe_event(kind) for kind in LOGGED],
     }
 
 
@@ -55,7 +55,7 @@ def events_module() -> str:
     """The TypeScript types of events, the defaults of their fields, and which of them say that something is wrong."""
     kinds = [kind for kind in LOGGED if kind.tag]
     common = " ".join(_fields(log_schema()))
-    each = "\n".join(f"  | {{ {' '.join(_fields(described(kind)))} }} // {kind.__name__}" for kind in kinds)
+    each = "\n".join(f"  | {{ {' '.join(_fields(describe_event(kind)))} }} // {kind.__name__}" for kind in kinds)
     defaults = "\n".join(f"  {kind.tag}: {json.dumps(found)}," for kind in kinds if (found := _defaults(kind)))
     alarms = ", ".join(f'"{kind.tag}"' for kind in kinds if kind.alarms)
     return f"""\
@@ -98,7 +98,7 @@ def _type(schema: dict[str, Any]) -> str:
 
 
 def _defaults(kind: type[Event]) -> dict[str, Any]:
-    properties = described(kind)["properties"]
+    properties = describe_event(kind)["properties"]
     return {name: schema["default"] for name, schema in properties.items() if "default" in schema}
 
 
@@ -167,7 +167,7 @@ def _builder(kind: NodeKind) -> str:
     head = _wrapped(f"def {builder_name(kind.id)}(", parameters, ") -> Behavior:", "")
     values = ", ".join(f'"{port}": {_parameter(port)}' for port in kind.ports)
     arguments = [f'"{kind.id}"', given, f"{{{values}}}", "name", "scripts"]
-    about = f"The node {kind.id} of {kind.origin}." if kind.origin != "btlang" else f"The node {kind.id} of btlang."
+    about = f"Make the node {kind.id} of {kind.origin}."
     text = textwrap.fill(f"{about} {kind.text}".strip(), 112, subsequent_indent="    ")
     end = "\n    " if "\n" in text else ""
     body = _wrapped("    return built(", arguments, ")", "    ")

@@ -11,8 +11,8 @@ from btlang.api import parse_tree
 from btlang.cli import main
 from btlang.engine.status import RUNNING, SUCCESS
 from btlang.frontends.mission.reader import read_mission
-from btlang.mission_vocabulary import world_vocabulary
 from btlang.passes import compile_mission
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.text.source import Source
 from tests.profiles import amount, searches
 from tests.trial import Trial

@@ -272,7 +272,7 @@ def test_a_script_that_fails_is_told_with_the_sentence_that_needed_it(capsys: py
 
 def test_without_a_verb_it_is_the_prompt(monkeypatch: pytest.MonkeyPatch) -> None:
     asked = []
-    monkeypatch.setitem(cli._VERBS, "repl", lambda options: asked.append(options) or 0)
+    monkeypatch.setattr(cli, "_run_handler", lambda options, _: asked.append(options) or 0)
     assert main([]) == 0
     assert main(["repl"]) == 0
     own = {"report": None, "refuse": None}  # methods of the parser of each verb

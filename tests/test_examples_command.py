@@ -8,8 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from btlang import examples
-from btlang.cli import main
+from btlang.cli import examples, main
 from tests.examples.cases import CASES
 from tests.profiles import cases
 

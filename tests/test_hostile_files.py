@@ -15,10 +15,10 @@ from btlang.components.calls import pack
 from btlang.maps.data_text import ForeignFileError, read_data
 from btlang.recording.channels import messages
 from btlang.run.events import RobotEvent, Sampled
-from btlang.run.json_log import JsonLog
+from btlang.run.logs import JsonLog
 from btlang.run.robot_state import Movements
-from btlang.task.store import open_store
-from btlang.task.task import MissionText, Task
+from btlang.task.store.records import MissionText, Task
+from btlang.task.store.task_store import open_store
 from btlang.text.json_text import dump_json, is_deep, load_json
 from btlang.text.source import Source
 

@@ -23,7 +23,7 @@ import pytest
 
 from btlang.cli import main
 from btlang.frontends.mission.reader import PARSERS
-from btlang.task.house import read_schedules
+from btlang.task.layer import read_schedules
 from tests.conftest import without_overruns
 
 ROOT = Path(__file__).parent.parent

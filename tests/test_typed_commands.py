@@ -4,18 +4,15 @@ from __future__ import annotations
 
 import re
 import shlex
-from collections.abc import Mapping
+from importlib import import_module
 from pathlib import Path
 
 import pytest
 
 from btlang import __version__
-from btlang.cli import _VERBS, main
-from btlang.cli_options import _OPTIONS, GROUPS, parsed
-from btlang.command_examples import EXAMPLES
-from btlang.gestures.options import ACTS as GESTURE_ACTS
-from btlang.server.options import USER_ACTS
-from btlang.task.applicable import COMPONENT_ACTS, ROBOT_ACTS, TASK_ACTS
+from btlang.cli import main
+from btlang.cli.parser import parse_arguments
+from btlang.cli.verbs import VERBS
 
 RUN = ["--speed", "max", "--lines"]
 
@@ -96,9 +93,13 @@ def test_a_missing_file_that_is_no_mission(capsys: pytest.CaptureFixture[str]) -
 def test_help_lists_the_verbs(line: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert not typed(*line)
     out = capsys.readouterr().out
-    assert [verb for verb in _VERBS if f"\n  {verb}" not in out] == []
-    assert _VERBS.keys() == _OPTIONS.keys()
-    assert sorted(verb for verbs in GROUPS.values() for verb in verbs) == sorted(_VERBS)
+    assert [verb for verb in VERBS if f"\n  {verb}" not in out] == []
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_every_verb_has_its_handler(verb: str) -> None:
+    module, _, function = VERBS[verb].handler.partition(":")
+    assert callable(getattr(import_module(module), function))
 
 
 def test_help_on_a_verb_is_that_of_the_verb(capsys: pytest.CaptureFixture[str]) -> None:
@@ -170,30 +171,24 @@ def test_a_failed_not_says_what_was_true(capsys: pytest.CaptureFixture[str]) -> 
     assert capsys.readouterr().err.endswith("\n  BatteryFull: 'battery is full' was true\n")
 
 
-@pytest.mark.parametrize(
-    ("verb", "acts"),
-    [
-        ("robot", ROBOT_ACTS), ("task", TASK_ACTS), ("components", COMPONENT_ACTS), ("user", USER_ACTS),
-        ("gesture", GESTURE_ACTS),
-    ],
-)  # fmt: skip
-def test_help_says_what_each_act_does(verb: str, acts: Mapping[str, str], capsys: pytest.CaptureFixture[str]) -> None:
+@pytest.mark.parametrize("verb", [name for name, verb in VERBS.items() if verb.acts])
+def test_help_says_what_each_act_does(verb: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert not typed("help", verb)
     out = capsys.readouterr().out
-    for act, about in acts.items():
-        assert f"\n  {act} " in out
-        for example in re.findall(r"(?<=btc )[^,]+", about):
-            options = parsed(shlex.split(example))
-            assert (options.verb, options.act) == (verb, act)
+    for name, act in VERBS[verb].acts.items():
+        assert f"\n  {name} " in out
+        for example in re.findall(r"(?<=btc )[^,]+", act.about):
+            options = parse_arguments(shlex.split(example))
+            assert (options.verb, options.act) == (verb, name)
 
 
-@pytest.mark.parametrize("verb", EXAMPLES)
+@pytest.mark.parametrize("verb", [name for name, verb in VERBS.items() if verb.examples])
 def test_examples_of_a_verb_are_commands(verb: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert not typed("help", verb)
     out = capsys.readouterr().out
-    for command, about in EXAMPLES[verb]:
+    for command, about in VERBS[verb].examples:
         assert f"\n  {command}\n      {about}\n" in out
-        assert parsed(shlex.split(command)[1:]).verb == verb
+        assert parse_arguments(shlex.split(command)[1:]).verb == verb
 
 
 def test_names_of_another_world_that_ships(capsys: pytest.CaptureFixture[str]) -> None:

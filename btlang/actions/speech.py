@@ -7,11 +7,11 @@ from typing import Protocol
 
 from btlang.actions.common import Watch
 from btlang.actions.motion import Steps
-from btlang.record import Record
 from btlang.robots.geometry import Point
 from btlang.robots.preflight import said_gesture
 from btlang.robots.robot import Gesturing, Operation, RobotError, Voice
 from btlang.speech.marks import GestureMark, read_marks, sentence_start
+from btlang.support.record import Record
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

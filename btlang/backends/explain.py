@@ -12,7 +12,7 @@ from btlang.printer.mission import printer_of
 from btlang.printer.pieces import is_longer
 from btlang.printer.printer import Printer
 from btlang.printer.sentence import statements
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import Source
 from btlang.text.words import END_OF_STATEMENT, Words, split
 from btlang.tree import ast

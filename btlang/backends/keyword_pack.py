@@ -14,7 +14,7 @@ from btlang.diagnostics.reading import read_source
 from btlang.frontends.btcpp.files import read_files
 from btlang.frontends.mission.reader import PARSERS, read_mission
 from btlang.passes import lower_mission
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import NOWHERE, Source, Span
 from btlang.tree.model import NodeModel
 from btlang.tree.node import Node

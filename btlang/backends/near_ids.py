@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 
 from btlang.backends.wording import id_words
 from btlang.frontends.mission.explanations.spelling_rule import is_respelling
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import Source, Span
 from btlang.text.words import split
 from btlang.tree.node import Node

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Sequence
 
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.tree.node import Node
 from btlang.tree.visit import fold
 

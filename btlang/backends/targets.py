@@ -6,7 +6,7 @@ import os
 from collections.abc import Mapping
 from importlib import import_module
 
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.tree.node import Tree
 from btlang.vocabulary.lexicon import Lexicon
 
@@ -49,8 +49,8 @@ TARGETS = {
     ),
     "py_trees": Target("btlang.backends.py_trees.module:to_module", "a Python module that builds it with py_trees"),
     "dot": Target("btlang.backends.dot:to_dot", "a graph for Graphviz", (".dot", ".gv")),
-    "svg": Target("btlang.pictures.target:to_svg", "a picture of the tree", (".svg",)),
-    "png": Target("btlang.pictures.target:to_png", "a picture of the tree", (".png",), binary=True),
+    "svg": Target("btlang.pictures.tree_picture:to_svg", "a picture of the tree", (".svg",)),
+    "png": Target("btlang.pictures.tree_picture:to_png", "a picture of the tree", (".png",), binary=True),
     "markdown": Target(
         "btlang.documents.pages:to_markdown", "a page about the tree; of a folder, pages with pictures", (".md",)
     ),

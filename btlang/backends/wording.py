@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterator, Sequence
 
-from btlang.record import Record
+from btlang.support.record import Record
 
 _AUXILIARIES = ("is", "are", "was", "were", "does", "did", "would", "should", "will")
 _OWN = ("has", "have", "can")  # what the robot has and can do

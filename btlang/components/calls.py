@@ -12,9 +12,9 @@ from queue import Empty, SimpleQueue
 from btlang.devices import kinds
 from btlang.devices.kinds import Command, Reading
 from btlang.engine.leaves.leaf import ActionFailed, Failed, Unknown, reason_of, reason_text
-from btlang.record import Record
 from btlang.robots.geometry import Pose
 from btlang.robots.robot import Robot
+from btlang.support.record import Record
 from btlang.text.json_text import dump_json, load_json
 
 TYPE_CHECKING = False

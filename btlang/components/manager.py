@@ -10,8 +10,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from btlang.components.component import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED, ComponentAbsent, ComponentError
 from btlang.components.location import locate_class
 from btlang.engine.leaves.leaf import ActionFailed, NotThere, described
-from btlang.record import Record
 from btlang.robots.bodies.body import ComponentPart
+from btlang.support.record import Record
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ import struct
 import zlib
 from collections.abc import Sequence
 
-from btlang.record import Record
+from btlang.support.record import Record
 
 _SIGNATURE = b"\x89PNG\r\n\x1a\n"
 

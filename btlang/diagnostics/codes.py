@@ -15,7 +15,7 @@ Each code has a page in `pages/`, which `btc explain` prints.
 
 from __future__ import annotations
 
-from btlang.record import Record
+from btlang.support.record import Record
 
 
 class Code(Record):

@@ -8,8 +8,8 @@ import sys
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.render import render
+from btlang.support.user_dirs import user_dir
 from btlang.text.source import Source, Span
-from btlang.user_dirs import user_dir
 
 _KNOWN = {MemoryError: "there is not enough memory for this", RecursionError: "this is nested too deep"}
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from btlang.diagnostics.codes import CODES, Code
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.escaping import one_line
 from btlang.text.source import Span
 

@@ -1,4 +1,4 @@
-"""The files of a project with their trees, as pages about them need them."""
+"""The files of a project with their trees, and the keys that these read and set, as pages need them."""
 
 from __future__ import annotations
 
@@ -8,21 +8,64 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from btlang.api import Mission
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
+from btlang.engine.instance import blackboard_key
+from btlang.engine.script.names import READS, SETS, uses_of_names
 from btlang.frontends.btcpp.file import XmlFile
 from btlang.frontends.btcpp.files import read_files
+from btlang.frontends.btcpp.models import nav2_models
 from btlang.frontends.btcpp.origin import XmlOrigin
 from btlang.frontends.btcpp.reader import MAIN
 from btlang.frontends.btcpp.spelling import MAIN_TREE
 from btlang.frontends.table import frontend_of
-from btlang.projects.files import begins_as_tree, files_below, named_files, nothing_in
-from btlang.record import Record
-from btlang.testing.names import is_test_file
+from btlang.projects.files import begins_as_tree, empty_folder_error, find_files_below, find_named_files
+from btlang.support.record import Record
+from btlang.support.test_files import is_test_file
 from btlang.text.source import Source
-from btlang.tree.catalogue import SUBTREE
+from btlang.tree.catalogue import CATALOGUE, KEY, SCRIPT, SUBTREE, held
 from btlang.tree.model import NodeModel
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import subtree_names
 from btlang.vocabulary.lexicon import Lexicon
+
+
+class KeyReader:
+    """A reader of keys: it knows the directions of ports by the models of a project and by the words."""
+
+    def __init__(self, models: Mapping[str, NodeModel], vocabulary: Lexicon) -> None:
+        self._models, self._vocabulary = models, vocabulary
+
+    def keys(self, root: Node) -> dict[str, set[str]]:
+        """Return `READS` and `SETS` by key, in the order of the tree."""
+        found: dict[str, set[str]] = {}
+        for node in Tree(root).walk():
+            for port, text in node.ports:
+                for key, uses in self._of_port(node, port, text):
+                    found.setdefault(key, set()).update(uses)
+        return found
+
+    def _of_port(self, node: Node, port: str, text: str) -> list[tuple[str, set[str]]]:
+        holds = held(node.id, port)
+        if holds == SCRIPT:
+            return list(uses_of_names(text).items())
+        if holds == KEY:
+            return [(text.strip("{} "), {SETS})]
+        key = blackboard_key(port, text)
+        if key is None or port[:1] == "_":
+            return []
+        return [(key, {"output": {SETS}, "inout": {READS, SETS}}.get(self._direction(node, port), {READS}))]
+
+    def _direction(self, node: Node, port: str) -> str:
+        """Return the direction of a port of a SubTree by the model of its tree."""
+        id = node.port("ID") if node.id == SUBTREE else node.id
+        kind = CATALOGUE.get(id)
+        if kind is not None and port in kind.ports:
+            return kind.ports[port].direction
+        model = self._models.get(id) or nav2_models([id]).get(id)
+        declared = next((each.direction for each in model.ports if each.name == port), "") if model is not None else ""
+        if declared:
+            return declared
+        return "output" if any(port in entry.outputs for entry in self._vocabulary.entries.get(id, ())) else "input"
+
 
 _ENDINGS = (".xml", ".txt")
 
@@ -58,19 +101,19 @@ class DocumentedProject(Record):
     left_out: tuple[str, ...] = ()
 
     def used(self, name: str, file: str) -> TreeChapter | None:
-        """The tree that a use in a file means: that of the same file before others."""
+        """Return the tree that a use in a file means: that of the same file before others."""
         found = [chapter for chapter in self.chapters if chapter.name == name]
         return next((chapter for chapter in found if chapter.file == file), found[0] if found else None)
 
     def users(self, used: TreeChapter) -> list[TreeChapter]:
-        """The trees that use one."""
+        """Return the trees that use one."""
         return [one for one in self.chapters if any(self.used(name, one.file) is used for name in one.uses)]
 
 
 def read_documents(
     paths: Sequence[str], vocabulary: Lexicon, compiled: Callable[[Source], Mission]
 ) -> DocumentedProject:
-    """Reads files, and in folders those that are trees in XML or missions; both are recognized by their content.
+    """Read files, and in folders those that are trees in XML or missions; both are recognized by their content.
 
     Raises MissionError for a file that is named, or begins as a tree, and can't be read, and where nothing is found.
     """
@@ -78,7 +121,7 @@ def read_documents(
     trees: list[tuple[str, Source]] = []
     chapters: list[TreeChapter] = []
     names, left_out = list[str](), list[str]()
-    for path in named_files(paths, _below):
+    for path in find_named_files(paths, _below):
         name = os.path.relpath(path, base).replace(os.sep, "/") if path != "-" else "-"
         source = read_source(path)
         if frontend_of(source) == "xml":
@@ -94,7 +137,7 @@ def read_documents(
                 raise
             left_out.append(name)
     if not names:
-        raise nothing_in(paths[0], "there are no trees in XML and no missions in it that can be read")
+        raise empty_folder_error(paths[0], "there are no trees in XML and no missions in it that can be read")
     read = read_files(source for _, source in trees)
     models, described = read.models, dict[str, tuple[NodeModel, ...]]()
     for (name, _), file in zip(trees, read.files, strict=True):
@@ -105,7 +148,7 @@ def read_documents(
 
 
 def _below(folder: str) -> Iterator[str]:
-    return (file for file in files_below(folder, _ENDINGS) if not is_test_file(file))
+    return (file for file in find_files_below(folder, _ENDINGS) if not is_test_file(file))
 
 
 def _common_folder(paths: Sequence[str]) -> str:
@@ -133,7 +176,7 @@ def _trees(name: str, file: XmlFile, models: Collection[NodeModel], vocabulary: 
 
 
 def nodes_of(tree: Tree) -> dict[str, list[Node]]:
-    """The nodes of a tree and its own subtrees, by id."""
+    """Return the nodes of a tree and its own subtrees, by id."""
     found: dict[str, list[Node]] = {}
     for node in tree.walk():
         found.setdefault(node.id, []).append(node)

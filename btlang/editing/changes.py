@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from btlang.record import Record
+from btlang.support.record import Record
 
 
 class Change(Record):
-    """The characters `start` to `end` (exclusive) of a text become others."""
+    """A change: the characters `start` to `end` (exclusive) of a text become others."""
 
     start: int
     end: int
@@ -16,7 +16,7 @@ class Change(Record):
 
 
 def changed(text: str, changes: Iterable[Change]) -> str:
-    """The text with the changes, which are in order and don't overlap."""
+    """Return the text with the changes, which are in order and don't overlap."""
     parts: list[str] = []
     at = 0
     for change in changes:

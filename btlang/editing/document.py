@@ -11,9 +11,9 @@ from btlang.editing.syntax import Syntax
 from btlang.editing.values import abilities, values_of
 from btlang.editing.words import Words
 from btlang.frontends.table import frontend_of
-from btlang.gc_pause import gc_paused
 from btlang.printer.mission import printer_of
 from btlang.printer.phrase import is_written
+from btlang.support.gc_pause import gc_paused
 from btlang.text.source import Source
 from btlang.tree.ast import Phrase, Program
 
@@ -50,23 +50,23 @@ _kept: list[_Read] = []
 
 
 def text_messages(source: Source, words: Words) -> dict[str, Any]:
-    """`ok`, `sort` and `messages` of a document. That of the same text is faster if it is the next one."""
+    """Return `ok`, `sort` and `messages` of a document. That of the same text is faster if it is the next one."""
     with gc_paused:
         _kept[:] = [_Read(source, words)]
         return _kept[0].summary()
 
 
 def document(source: Source, words: Words) -> dict[str, Any]:
-    """What is shown of a text, which may be anything. Offsets are characters.
+    """Return what is shown of a text, which may be anything. Offsets are characters.
 
     - `ok`: whether it compiles; `sort`: "english", "xml" or "json"; `messages`: see btlang.editing.messages.
 
     Where it compiles also:
 
     - `nodes`: those of `Tree.walk` with the number of their parent, -1 for none; `tree` is the name of their subtree.
-      One that can be changed (btlang.editing.edits) has the number of its `kind`;
+    One that can be changed (btlang.editing.edits) has the number of its `kind`;
     - `kinds`: of each the `sort`, "command" or "condition", the `edits` that may be done, and the `values`: name, type
-      and words of each;
+    and words of each;
     - `outline`: see btlang.editing.outline.
     """
     with gc_paused:
@@ -81,13 +81,13 @@ def document(source: Source, words: Words) -> dict[str, Any]:
 
 
 def _cache_key(source: Source, words: Words) -> tuple[object, ...]:
-    """What decides how a text is read, but for the files that it names."""
+    """Return what decides how a text is read, but for the files that it names."""
     world = words.world.text if isinstance(words.world, Source) else words.world
     return source.text, source.name, tuple(words.keywords), world, words.language
 
 
 def _misnamed(mission: Mission) -> tuple[Diagnostic, ...]:
-    """What would keep a tree from running that names its nodes by their ids."""
+    """Return what would keep a tree from running that names its nodes by their ids."""
     try:
         mission.check()
     except MissionError as error:
@@ -96,7 +96,7 @@ def _misnamed(mission: Mission) -> tuple[Diagnostic, ...]:
 
 
 def _nodes(mission: Mission, source: Source) -> list[dict[str, Any]]:
-    """In the order of `Tree.walk`, with their parents on the way."""
+    """Yield the nodes in the order of `Tree.walk`, with their parents on the way."""
     labels: dict[object, str] = {}
     found: list[dict[str, Any]] = []
     for name, root in (("", mission.tree.root), *mission.tree.subtrees):
@@ -123,7 +123,7 @@ def _nodes(mission: Mission, source: Source) -> list[dict[str, Any]]:
 
 
 def _kinds(nodes: list[dict[str, Any]], mission: Mission, program: Program, origins: Origins) -> list[dict[str, Any]]:
-    """Gives each node the number of its kind. Most are alike: so all that is sent of them stands there once."""
+    """Give each node the number of its kind. Most are alike: so all that is sent of them stands there once."""
     syntax = Syntax(program, mission.vocabulary)
     vocabulary = printer_of(program, mission.vocabulary).vocabulary
     numbers: dict[object, int] = {}  # of phrases, and of what is the same of them and of forms

@@ -21,7 +21,7 @@ from btlang.frontends.mission.reader import read_mission
 from btlang.frontends.table import frontend_of
 from btlang.passes import compile_mission, lower_mission
 from btlang.printer.sentence import statements
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import NOWHERE, Source, Span
 from btlang.tree import ast
 from btlang.vocabulary.lexicon import Lexicon
@@ -34,14 +34,13 @@ if TYPE_CHECKING:
 
 
 class Edit(Record):
-    """What is done to the node with this number, in the order of `Tree.walk`; or to it and its next siblings up to
-    `last`.
+    """An edit of the node with this number, in the order of `Tree.walk`; or to it and its next siblings up to `last`.
 
     - `delete`: it goes, with what only serves it.
     - `insert`: the commands or conditions `words` come `place` ("before", "after", "inside") the node.
     - `copy`, `move`: the node comes `place` the node `to`.
     - `wrap`: it becomes the body of the `form` (a key of btlang.editing.forms.FORMS), with `words` for what that needs:
-      a condition, a number, a duration or a time.
+    a condition, a number, a duration or a time.
     - `unwrap`: the parts of a form or chain take its place, conditions and amounts go.
     - `turn`: a condition, or that of a form, becomes its opposite; the parts of a chain of commands change their order.
     - `value`: its `port` gets the value `words`.
@@ -59,7 +58,7 @@ class Edit(Record):
 
 
 def read_edit(data: object) -> Edit:
-    """An edit from JSON: an object with its fields. Raises MissionError (BT220)."""
+    """Return an edit from JSON: an object with its fields. Raises MissionError (BT220)."""
     fields = data if isinstance(data, dict) else {}
     for name, value in fields.items():
         kind = int if name in ("node", "last", "to") else str
@@ -76,7 +75,7 @@ def _refused(reason: str, span: Span = NOWHERE) -> MissionError:
 
 
 class Edited(Record):
-    """The new text, the change that makes it, and the characters in it of what was touched."""
+    """The result of an edit: the new text, the change that makes it, and the characters in it of what was touched."""
 
     text: str
     change: Change
@@ -85,7 +84,8 @@ class Edited(Record):
 
 
 def edit(source: Source, words: Words, edit: Edit) -> dict[str, Any]:
-    """`changes` of a mission in English, and `start` and `end` of what they touched, in the text that they make.
+    """Return the `changes` of a mission in English, and `start` and `end` of what they touched, in the text that they
+    make.
 
     Raises MissionError: BT220 if the edit can't be done or said, any other code for what would be wrong with the
     mission then, or is wrong with it now.
@@ -101,7 +101,7 @@ def edit(source: Source, words: Words, edit: Edit) -> dict[str, Any]:
 
 
 class Editor:
-    """Does one edit of one text. Raises MissionError if that has something wrong."""
+    """An editor that does one edit of one text. Raises MissionError if that has something wrong."""
 
     def __init__(self, source: Source, vocabulary: Lexicon) -> None:
         self._source, self._vocabulary = source, vocabulary
@@ -110,12 +110,12 @@ class Editor:
         self._given: dict[int, tuple[str, ...]] = {}
 
     def span(self, wanted: Edit) -> Span:
-        """Where the node of an edit stands."""
+        """Return where the node of an edit stands."""
         found = self._sources[wanted.node] if 0 <= wanted.node < len(self._sources) else None
         return Span(self._source, 0, 0) if found is None else found.span
 
     def edited(self, wanted: Edit) -> Edited:
-        """Raises Unplaced and MissionError."""
+        """Raise Unplaced and MissionError."""
         if wanted.do not in _DOES:
             raise Unplaced(f"there is no edit '{wanted.do}'; there are {', '.join(_DOES)}")
         text, program, focus = _DOES[wanted.do](self, wanted)
@@ -148,7 +148,7 @@ class Editor:
         return self._done(writer.written(steps, program), program, copies[0])
 
     def move(self, wanted: Edit) -> _Done:
-        """A copy, without what was copied: so each of the two places is written for itself."""
+        """Return a copy, without what was copied: so each of the two places is written for itself."""
         nodes = self._nodes(wanted)
         target = self._target(wanted)
         if any(target is inner for node in nodes for inner in ast.parents_first(node)):
@@ -219,7 +219,9 @@ class Editor:
         return self._write(self._syntax.steps((node,), (new,)), new, first)
 
     def name(self, wanted: Edit) -> _Done:
-        """In two steps: a definition that nothing uses yet, and then its name in the place of what it says."""
+        """Name commands in two steps: a definition that nothing uses yet, and then its name in the place of what it
+        says.
+        """
         nodes = self._nodes(wanted)
         name = " ".join(wanted.words.split())
         if not name or any(each.name == name for each in self._syntax.mission.definitions):
@@ -241,8 +243,8 @@ class Editor:
     # -- parts of edits
 
     def _replaced(self, text: str, paths: Sequence[Path], new: Sequence[ast.Ast]) -> tuple[str, ast.Program]:
-        """The second step of an edit, in the text that the first one made: other nodes in the place of those at the end
-        of some ways. Their comments go, as far as they stand elsewhere by then.
+        """Return the second step of an edit, in the text that the first one made: other nodes in the place of those at
+        the end of some ways. Their comments go, as far as they stand elsewhere by then.
         """
         source = self._source.with_text(text)
         syntax = Syntax(read_mission(source, self._vocabulary).mission, self._vocabulary)
@@ -254,12 +256,12 @@ class Editor:
         return changed(text, [change]), after
 
     def _operator(self, node: ast.Ast) -> str:
-        """Of the chain that a node is a part of, or would be with others in its place."""
+        """Return the operator of the chain that a node is a part of, or would be with others in its place."""
         around = self._syntax.holder(node)
         return around.operator if isinstance(around, ast.Chain) else "sequence"
 
     def _placed(self, target: ast.Ast, place: str, new: Sequence[ast.Ast]) -> list[Step]:
-        """What comes before, after or inside a node."""
+        """Return what comes before, after or inside a node."""
         syntax = self._syntax
         if place == "inside":
             if isinstance(target, ast.Chain):
@@ -294,7 +296,7 @@ class Editor:
         return changed(self._source.text, [change]), program, focus
 
     def _read(self, words: str, is_condition: bool) -> list[ast.Ast]:
-        """New commands or a condition, where all names of the mission are known."""
+        """Read new commands or a condition, where all names of the mission are known."""
         check = f"{self._vocabulary.word('check')} " if is_condition else ""
         text = self._source.text
         source = self._source.with_text(f"{text}{'' if text.endswith(chr(10)) else chr(10)}{check}{words.strip()}\n")
@@ -313,7 +315,7 @@ class Editor:
         return read
 
     def _takes_condition(self, target: ast.Ast, place: str) -> bool:
-        """Whether conditions stand there, and no commands."""
+        """Return whether conditions stand there, and no commands."""
         return self._syntax.is_condition(target) and (place != "inside" or isinstance(target, ast.Chain | ast.AtLeast))
 
     def _target(self, wanted: Edit) -> ast.Ast:
@@ -328,7 +330,7 @@ class Editor:
         return found
 
     def _nodes(self, wanted: Edit) -> list[ast.Ast]:
-        """The node, or it and its siblings up to another."""
+        """Return the node, or it and its siblings up to another."""
         first, last = self._node(wanted.node), self._node(wanted.node if wanted.last is None else wanted.last)
         if first is last:
             is_mission = first is self._syntax.mission.body and isinstance(first, ast.Chain) and "\n" in first.span.text
@@ -340,7 +342,7 @@ class Editor:
         return list(slots[0].parent.items[one : other + 1])
 
     def _statement(self, node: ast.Ast) -> ast.Ast:
-        """The statement of the mission, or the definition, in which a node stands."""
+        """Return the statement of the mission, or the definition, in which a node stands."""
         while True:
             around = self._syntax.holder(node)
             slot = self._syntax.slots.get(id(around))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from btlang.editing.syntax import Unplaced
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.tree import ast
 from btlang.vocabulary.lexicon import Lexicon
 
@@ -15,7 +15,9 @@ if TYPE_CHECKING:
 
 
 class Form(Record):
-    """`needs` is "condition", the type of an amount, or "". `make` makes it of a body and of what it needs; one with an
+    """A form of the language.
+
+    `needs` is "condition", the type of an amount, or "". `make` makes it of a body and of what it needs; one with an
     `operator` is a chain of two or more instead. One of `of_conditions` is round conditions, any other one round
     commands.
     """
@@ -26,7 +28,7 @@ class Form(Record):
     of_conditions: bool = False
 
     def made(self, body: ast.Ast, what: object) -> ast.Ast:
-        """Only of one without an operator."""
+        """Make a form, but only one without an operator."""
         assert self.make is not None
         return self.make(body, what)
 
@@ -59,7 +61,7 @@ FORMS: Mapping[str, Form] = {
 
 
 def amount_of(kind: str, words: str, vocabulary: Lexicon) -> str:
-    """The port text of an amount. Raises Unplaced."""
+    """Return the port text of an amount. Raises Unplaced."""
     if not kind:
         return ""
     found = vocabulary.value(kind, words)

@@ -26,7 +26,7 @@ _ROLES: dict[type, str] = {Remembered: "remember", NodeCall: "do", Each: "each"}
 
 
 def hover(source: Source, at: int, words: Words) -> dict[str, Any]:
-    """`found`: what is at a character, None for nothing.
+    """Return `found`: what is at a character, None for nothing.
 
     `start` and `end` are its characters; `words` what was understood, in canonical English; `help` and `example` those
     of its phrase or joining word; `id` that of its node or role; `kind` "command", "condition", "name", "word", or
@@ -102,7 +102,7 @@ def _found(start: int, end: int, understood: str, id: str, kind: str, about: Ent
 
 
 def _smallest(program: ast.Program, source: Source, token: Token) -> ast.Ast | None:
-    """The smallest part of a mission around a token, with all that is said by the same words."""
+    """Return the smallest part of a mission around a token, with all that is said by the same words."""
     bodies = [each.body for each in program.definitions] + ([program.body] if program.body is not None else [])
     best: ast.Ast | None = None
     for body in bodies:

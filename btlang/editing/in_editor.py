@@ -26,7 +26,7 @@ _USUAL = "vi"  # as POSIX has it where neither VISUAL nor EDITOR is set
 
 
 def edit_xml(options: argparse.Namespace) -> int:
-    """Opens the English of the file in the editor; returns the exit code.
+    """Open the English of the file in the editor; return the exit code.
 
     Raises MissionError for a file that can't be read, said or written, and for a text that doesn't compile, which is
     kept then.

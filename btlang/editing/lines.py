@@ -17,7 +17,7 @@ _OPENS = re.compile(r"[:(]")
 
 
 class Lines:
-    """Of one text. Lines count from 1. `nodes` is the syntax of the text, parents first."""
+    """The lines of one text, counted from 1. `nodes` is the syntax of the text, parents first."""
 
     def __init__(self, source: Source, nodes: Iterable[ast.Ast], orthography: Orthography) -> None:
         self.source = source
@@ -40,7 +40,7 @@ class Lines:
                 self._last[line] = max(end, self._last.get(line, end))
 
     def place(self, node: ast.Ast) -> tuple[int, int]:
-        """The characters of a node; where it has one bracket of a pair, with the other one: `(A) twice`."""
+        """Return the characters of a node; where it has one bracket of a pair, with the other one: `(A) twice`."""
         start, end = node.span.start, node.span.end
         first, last = bisect_left(self._brackets, (start, "")), bisect_left(self._brackets, (end, ""))
         opened = missing = 0
@@ -54,17 +54,18 @@ class Lines:
         return start, end
 
     def text(self, node: ast.Ast) -> str:
-        """Its words there."""
+        """Return the words of lines."""
         start, end = self.place(node)
         return self.source.text[start:end]
 
     def margin(self, line: int) -> str:
-        """The blanks before the words of a line."""
+        """Return the blanks before the words of a line."""
         found = _MARGIN.match(self.source.line(line))
         return found.group() if found is not None else ""
 
     def own(self, node: ast.Ast, around: ast.Ast) -> range | None:
-        """The lines that are a statement's own, with the head of its block; None if something else stands there, too.
+        """Return the lines that are a statement's own, with the head of its block; None if something else stands there,
+        too.
 
         `around` is what it stands in.
         """
@@ -80,27 +81,29 @@ class Lines:
         return None if head is None else range(head, last + 1)
 
     def with_comments(self, lines: range) -> range:
-        """Also the comments right above, but for those at the beginning of the text."""
+        """Return lines with the comments right above, but for those at the beginning of the text."""
         first = lines.start
         while first - 1 in self.comments and first - 1 not in self.blocks:
             first -= 1
         return lines if first == 1 else range(first, lines.stop)
 
     def texts(self, lines: range) -> list[str]:
-        """Lines without the margin of the first one that has words."""
+        """Return lines without the margin of the first one that has words."""
         margin = self.margin(next((line for line in lines if line in self.blocks), lines.start))
         texts = [self.source.line(line) for line in lines]
         return [text[len(margin) :] if text.startswith(margin) else text.lstrip() for text in texts]
 
     def offsets(self, lines: range) -> tuple[int, int]:
-        """Where lines begin, and where what follows them does."""
+        """Return where lines begin, and where what follows them does."""
         text = self.source.text
         end = text.find("\n", self.source.offset(lines.stop - 1)) if lines else -1
         start = self.source.offset(lines.start) if lines.start <= self.count else len(text)
         return start, start if not lines else len(text) if end < 0 else end + 1
 
     def _head(self, node: ast.Ast, first: int, around: ast.Ast) -> int | None:
-        """The line where a statement begins: one above, if it's a block whose head is no part of what was read."""
+        """Return the line where a statement begins: one above, if it's a block whose head is no part of what was
+        read.
+        """
         source = self.source
         if not isinstance(node, ast.Chain) or not node.bracketed or source.text.startswith("(", node.span.start):
             return first
@@ -112,10 +115,10 @@ class Lines:
 
 
 def comments_in(text: str, orthography: Orthography) -> Counter[str]:
-    """How often a text has each comment."""
+    """Return how often a text has each comment."""
     return Counter(span.text.rstrip() for span in split(Source(text), orthography).comments)
 
 
 def indented(lines: Sequence[str], margin: str) -> str:
-    """Lines behind a margin, each with its end."""
+    """Return lines behind a margin, each with its end."""
     return "".join(f"{margin}{line}\n" if line else "\n" for line in lines)

@@ -14,12 +14,12 @@ if TYPE_CHECKING:
 
 
 def messages(problems: Iterable[Diagnostic], source: Source) -> list[dict[str, Any]]:
-    """Those of `as_data`; each place has its `start` and `end`, None where it is in another text."""
+    """Return the messages of `as_data`; each place has its `start` and `end`, None where it is in another text."""
     return [_message(problem, source) for problem in problems]
 
 
 def offsets(span: Span | None, source: Source) -> dict[str, int | None]:
-    """The characters of a place in a text."""
+    """Return the characters of a place in a text."""
     if span is None or span.source is not source:
         return {"start": None, "end": None}
     return {"start": span.start, "end": span.end}

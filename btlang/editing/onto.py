@@ -16,7 +16,7 @@ from btlang.text.source import Source, Span
 
 
 def write_onto(mission: Mission, path: str, out: str | None = None, *, force: bool = False) -> None:
-    """Writes a mission onto an XML file at once, or what that gives into the file `out`.
+    """Write a mission onto an XML file at once, or what that gives into the file `out`.
 
     Unless `force` is set, a file that has changed since the mission was made from it is refused, and so is one that the
     mission wasn't made from. If the mission is a file itself, it then notes the new state of the XML. Raises
@@ -43,7 +43,7 @@ def write_onto(mission: Mission, path: str, out: str | None = None, *, force: bo
 
 
 def _why_not(kept: Kept, original: Source, *, is_replaced: bool) -> str:
-    """Why a mission would undo what is in a file that it knows nothing of; "" where it would not."""
+    """Return why a mission would undo what is in a file that it knows nothing of; "" where it would not."""
     if not kept.digest:
         return "it doesn't say which file it was made from" if is_replaced else ""
     if kept.digest == digest_of(original.text):

@@ -16,7 +16,7 @@ _LONGEST = 80  # characters of what has no name
 
 
 def outline(mission: Mission, source: Source) -> list[dict[str, Any]]:
-    """In the order of the text. Offsets are characters.
+    """Return the parts in the order of the text. Offsets are characters.
 
     Each has its `name`; `start` and `end` of it, `of` the whole; its `kind`: "definition", "fact", "rule", "command" or
     "include". Of XML and JSON there are only the subtrees.
@@ -30,7 +30,7 @@ def outline(mission: Mission, source: Source) -> list[dict[str, Any]]:
 
 
 def _parts(mission: Mission) -> Iterator[tuple[str, str, Span, Span]]:
-    """The kind, the name, where that is, and the whole."""
+    """Return the kind, the name, where that is, and the whole."""
     program = mission.syntax
     if program is None:
         for name, root in mission.tree.subtrees:
@@ -49,7 +49,7 @@ def _parts(mission: Mission) -> Iterator[tuple[str, str, Span, Span]]:
 
 
 def _statements(body: ast.Ast | None) -> tuple[ast.Ast, ...]:
-    """The commands that follow one another."""
+    """Return the commands that follow one another."""
     if isinstance(body, ast.Chain) and body.operator == "sequence" and not body.bracketed:
         return body.items
     return () if body is None else (body,)

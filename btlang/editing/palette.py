@@ -29,7 +29,7 @@ _OWN = "this mission"
 
 
 def palette(source: Source, words: Words) -> dict[str, Any]:
-    """What can be put in, and put round what is there.
+    """Return what can be put in, and put round what is there.
 
     `topics`: each with its `topic` and its `items`, the names of the mission first.
 
@@ -79,7 +79,7 @@ def _shipped(vocabulary: Lexicon) -> list[dict[str, Any]]:
 
 
 def _inserted(item: Item, vocabulary: Lexicon) -> str:
-    """The example where it is whole in this world and says the item; else the phrase with other values."""
+    """Return the example where it is whole in this world and says the item; else the phrase with other values."""
     if item.sort == "value":
         return ""
     own = vocabulary.entries.get(item.names[0], ())
@@ -92,14 +92,16 @@ def _inserted(item: Item, vocabulary: Lexicon) -> str:
 
 
 def _says(item: Item, vocabulary: Lexicon) -> bool:
-    """Whether its example has its words: that of a word about other files has not, since it runs without them."""
+    """Return whether its example has its words: that of a word about other files has not, since it runs without
+    them.
+    """
     example = vocabulary.orthography.words(re.sub(r"[,:.]", " ", item.example.lower()))
     plain = (tuple(part for part in form if isinstance(part, str)) for way in item.ways for form in forms(way))
     return any(set(form) <= set(example) for form in plain)
 
 
 def _example(entry: Entry, vocabulary: Lexicon) -> Iterator[str]:
-    """Its phrases with examples of values."""
+    """Return a phrase with examples of values."""
     types = {slot.name: slot.type for slot in entry.slots}
     for phrase in entry.phrases:
         for form in reversed(forms(phrase)):

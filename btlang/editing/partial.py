@@ -27,10 +27,11 @@ _NO_ANTECEDENT = "BT038"
 
 
 def partial_reading(text: str, vocabulary: Lexicon, compiled: Callable[[str], Mission]) -> dict[str, Any]:
-    """Each sentence with its reading in controlled English, or with what was not understood and the phrases that fit.
+    """Return each sentence with its reading in controlled English, or with what was not understood and the phrases that
+    fit.
 
-    `compiled` compiles a text. A sentence that is refused is left out, so that the others are read without it.
-    Raises MissionError for what is wrong with no sentence.
+    `compiled` compiles a text. A sentence that is refused is left out, so that the others are read without it. Raises
+    MissionError for what is wrong with no sentence.
     """
     sentences = Sentences(Source(text), vocabulary)
     refused: dict[int, list[Diagnostic]] = {}
@@ -65,7 +66,9 @@ def partial_reading(text: str, vocabulary: Lexicon, compiled: Callable[[str], Mi
 
 
 def _depending(sentences: Sentences, refused: dict[int, list[Diagnostic]], vocabulary: Lexicon) -> set[int]:
-    """The sentences that go on with one that is refused, or may speak of its things: `it` would be something else."""
+    """Return the sentences that go on with one that is refused, or may speak of its things: `it` would be something
+    else.
+    """
     found: set[int] = set()
     for number in range(1, len(sentences)):
         own = {problem.code for problem in refused.get(number, ())}
@@ -85,7 +88,7 @@ def _depends(number: int, sentences: Sentences) -> dict[str, Any]:
 
 
 def _without(text: str, sentences: Sentences, refused: dict[int, list[Diagnostic]]) -> str:
-    """The text with blanks in the place of some sentences, so that all others stay where they are."""
+    """Return the text with blanks in the place of some sentences, so that all others stay where they are."""
     for number in refused:
         start, end = sentences.reach(number)
         blank = "".join(character if character.isspace() else " " for character in text[start:end])

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def path_of(node: ast.Ast, syntax: Syntax) -> Path:
-    """The way from a mission to a node of it; definitions go by their names, as they may stand in any order."""
+    """Return the way from a mission to a node of it; definitions go by their names, as they may stand in any order."""
     path: Path = []
     while node is not syntax.mission:
         slot = syntax.slots[id(node)]
@@ -24,7 +24,7 @@ def path_of(node: ast.Ast, syntax: Syntax) -> Path:
 
 
 def at_path(path: Path, program: ast.Program) -> ast.Ast:
-    """The node at the end of a way. Raises Unplaced."""
+    """Return the node at the end of a way. Raises Unplaced."""
     node: ast.Ast = program
     for field, at in path:
         part = getattr(node, field, None)
@@ -39,7 +39,7 @@ def at_path(path: Path, program: ast.Program) -> ast.Ast:
 
 
 def place_of(focus: ast.Ast | None, syntax: Syntax, read: ast.Program) -> tuple[int, int]:
-    """Where something of a mission stands in its text, once it is read again; nowhere for None."""
+    """Return where something of a mission stands in its text, once it is read again; nowhere for None."""
     if focus is None:
         return 0, 0
     try:
@@ -50,7 +50,7 @@ def place_of(focus: ast.Ast | None, syntax: Syntax, read: ast.Program) -> tuple[
 
 
 def difference(old: str, new: str) -> Change:
-    """The smallest change that makes one text of another."""
+    """Return the smallest change that makes one text of another."""
     most = min(len(old), len(new))
     start = next((i for i in range(most) if old[i] != new[i]), most)
     end = next((i for i in range(most - start) if old[-1 - i] != new[-1 - i]), most - start)

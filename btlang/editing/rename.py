@@ -15,7 +15,7 @@ from btlang.editing.words import Words
 from btlang.frontends.mission.reader import lexed
 from btlang.frontends.mission.tokens.lexer import Lexer
 from btlang.printer.exact import is_one_piece, quoted
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import Source, Span
 from btlang.tree import ast
 from btlang.tree.catalogue import SUBTREE
@@ -34,18 +34,19 @@ _WORD, _WORD_END = re.compile(r"\w*"), re.compile(r"\w*\Z")
 
 
 class _Use(Record):
-    """Where a definition is used: by its words, or quoted in a node that is said by its id."""
+    """A use of a definition: by its words, or quoted in a node that is said by its id."""
 
     span: Span
     is_exact: bool
 
 
 def rename(source: Source, at: int, words: Words, name: str | None = None) -> dict[str, Any]:
-    """What gives the definition that is named at a character another name: `changes`, from the front of the text.
+    """Return what gives the definition that is named at a character another name: `changes`, from the front of the
+    text.
 
-    Each has `start` and `end`, characters of the text, and the `text` that takes their place. Without a name it is
-    what would be renamed: its `words`, and their `start` and `end` there. Parameters stay the same, and are given in
-    braces: `greet {someone}`. Raises MissionError: that of the text, if it doesn't compile; else BT210.
+    Each has `start` and `end`, characters of the text, and the `text` that takes their place. Without a name it is what
+    would be renamed: its `words`, and their `start` and `end` there. Parameters stay the same, and are given in braces:
+    `greet {someone}`. Raises MissionError: that of the text, if it doesn't compile; else BT210.
     """
     mission = words.mission(source)
     found = _named_at(mission, source, at)
@@ -67,7 +68,7 @@ def _refused(source: Source, start: int, end: int, words: str, reason: str) -> M
 
 
 def _named_at(mission: Mission, source: Source, at: int) -> tuple[ast.Definition, Span] | None:
-    """A definition of this file, and the characters that name it at a place."""
+    """Return a definition of this file, and the characters that name it at a place."""
     program = mission.syntax
     for definition in program.definitions if program is not None else ():
         for place in (definition.name_span, *(use.span for use in _uses(mission, definition.name))):
@@ -77,7 +78,7 @@ def _named_at(mission: Mission, source: Source, at: int) -> tuple[ast.Definition
 
 
 def _uses(mission: Mission, name: str) -> Iterator[_Use]:
-    """In the order of the bodies."""
+    """Yield the uses in the order of the bodies."""
     assert mission.syntax is not None
     for body in ast.bodies(mission.syntax):
         for part in ast.parents_first(body):
@@ -88,7 +89,7 @@ def _uses(mission: Mission, name: str) -> Iterator[_Use]:
 
 
 def _checked(name: str, definition: ast.Definition, articles: Container[str], refuse: partial[MissionError]) -> str:
-    """A new name without blanks around it, and without an article, which the old one may have before it."""
+    """Return a new name without blanks around it, and without an article, which the old one may have before it."""
     first, _, rest = name.strip().partition(" ")
     name = rest.strip() if first.lower() in articles and not definition.is_quoted else name.strip()
     if not name or not name.isprintable() or len(name) > _LONGEST:
@@ -124,12 +125,12 @@ def _changes(mission: Mission, source: Source, definition: ast.Definition, name:
 
 
 def _like(written: str, name: str) -> str:
-    """A name with a capital where the old one was written with one."""
+    """Return a name with a capital where the old one was written with one."""
     return name[0].upper() + name[1:] if written[0].isupper() and not written.isupper() else name
 
 
 def _quote(place: Span, name: str, lexer: Lexer) -> Span | None:
-    """The quoted name of a subtree in a node that is said by its id."""
+    """Return the quoted name of a subtree in a node that is said by its id."""
     text = lexer.text
     for word in range(bisect_left(text.starts, place.start), bisect_left(text.starts, place.end)):
         if text.words[word] == f'"{name}':
@@ -138,7 +139,7 @@ def _quote(place: Span, name: str, lexer: Lexer) -> Span | None:
 
 
 def _filled(place: Span, old: str, new: str, lexer: Lexer) -> str:
-    """A new name with the values of a use as they were written."""
+    """Return a new name with the values of a use as they were written."""
     if "{" not in new:
         return new
     text, word = lexer.text, bisect_left(lexer.text.starts, place.start)
@@ -153,7 +154,7 @@ def _filled(place: Span, old: str, new: str, lexer: Lexer) -> str:
 
 
 def _written(first: int, last: int, lexer: Lexer) -> str:
-    """Words with the article before them."""
+    """Return words with the article before them."""
     text = lexer.text
     start, end = text.articles.get(first, (text.starts[first], 0))
     return text.source.text[start : text.ends[last - 1] if first < last else end]
@@ -163,7 +164,7 @@ def _verify(
     mission: Mission, source: Source, definition: ast.Definition, changes: Iterable[Change], words: Words,
     refuse: partial[MissionError],
 ) -> None:  # fmt: skip
-    """The new text has to compile to the same tree, but for the name."""
+    """Return the new text has to compile to the same tree, but for the name."""
     text = changed(source.text, changes)
     try:
         renamed = words.mission(source.with_text(text))
@@ -184,7 +185,9 @@ def _own(mission: Mission) -> tuple[ast.Definition, ...]:
 
 
 def _with_name(tree: Tree, old: str, new: str) -> Tree:
-    """A tree with another name of a subtree, and the ports of subtrees in an order that their names don't change."""
+    """Return a tree with another name of a subtree, and the ports of subtrees in an order that their names don't
+    change.
+    """
 
     def renamed(node: Node, children: list[Node]) -> Node:
         ports = node.ports

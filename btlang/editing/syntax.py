@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from btlang.passes import LOWERING, run_passes
 from btlang.passes.compilation import Compilation
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.tree import ast
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.lexicon import Lexicon
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Slot(Record):
-    """Where a node of the syntax stands: the field of its parent, and its number there if that holds several."""
+    """A place of a node in the syntax: the field of its parent, and its number there if that holds several."""
 
     parent: ast.Ast
     field: str
@@ -25,7 +25,7 @@ class Slot(Record):
 
 
 class Step(Record):
-    """Siblings that others take the place of: `old` becomes `new`, both perhaps nothing.
+    """A step of a change: siblings that others take the place of: `old` becomes `new`, both perhaps nothing.
 
     They stand in `parent`; if that holds several, from number `at` on. Several new ones make a chain of the `operator`.
     With `before`, what is put in belongs to what follows it, else to what is before it.
@@ -41,11 +41,11 @@ class Step(Record):
 
 
 class Unplaced(Exception):
-    """What a form needs can't be taken out of it. The text says what."""
+    """The error that what a form needs can't be taken out of it. The text says what."""
 
 
 class Syntax:
-    """Of one mission that can be read. Included missions are no part of it."""
+    """The syntax of one mission that can be read. Included missions are no part of it."""
 
     def __init__(self, mission: ast.Program, vocabulary: Lexicon) -> None:
         self.mission = mission
@@ -62,18 +62,19 @@ class Syntax:
                     self.slots[id(part)] = Slot(node, field, None)
 
     def lowered(self) -> tuple[Tree, list[ast.Ast | None]]:
-        """The tree, and of each of its nodes, in the order of `Tree.walk`, the syntax that says it, None for what is
-        said elsewhere."""
+        """Return the tree, and of each of its nodes, in the order of `Tree.walk`, the syntax that says it, None for
+        what is said elsewhere.
+        """
         origins: Origins = {}
         tree = run_passes(Compilation(self.vocabulary, self.mission, origins=origins), LOWERING).tree
         return tree, self.sources(tree, origins)
 
     def sources(self, tree: Tree, origins: Origins) -> list[ast.Ast | None]:
-        """As `lowered`, of a tree that was made with `origins`."""
+        """Return what `lowered` does, of a tree that was made with `origins`."""
         return [node if id(node) in self.slots else None for node in _sources(tree, origins)]
 
     def is_condition(self, node: ast.Ast) -> bool:
-        """Whether it is one, and no command."""
+        """Return whether it is one, and no command."""
         while isinstance(node, ast.Name):
             name = node.name
             node = next(each.body for each in ast.all_definitions(self.mission) if each.name == name)
@@ -86,7 +87,7 @@ class Syntax:
         return isinstance(node, ast.Not | ast.AtLeast | ast.Compared)
 
     def holder(self, node: ast.Ast) -> ast.Ast:
-        """What a node stands in."""
+        """Return what a node stands in."""
         return self.slots[id(node)].parent
 
     def steps(
@@ -97,7 +98,7 @@ class Syntax:
         operator: str = "sequence",
         before: bool = False,
     ) -> list[Step]:
-        """What changes if some siblings become others, innermost first; the last step is one in the program.
+        """Return what changes if some siblings become others, innermost first; the last step is one in the program.
 
         `new` may be empty. For an insertion into a chain `old` has the chain alone, and `at` is the place among its
         items, `before` as for a Step. Where no chain is, several new ones make one of the `operator`. Raises Unplaced.
@@ -119,7 +120,7 @@ class Syntax:
             step = Step(slot.parent, slot.field, slot.at, (step.parent,), _held(step), operator)
 
     def changed(self, last: Step) -> ast.Program:
-        """The mission after the last of some steps. Raises Unplaced."""
+        """Return the mission after the last of some steps. Raises Unplaced."""
         if last.field == "definitions":
             held = _put(self.mission.definitions, last)
             return self.mission.replace(definitions=held)  # type: ignore[no-any-return]
@@ -128,17 +129,17 @@ class Syntax:
 
 
 def are_equal(one: Tree, other: Tree) -> bool:
-    """Whether two trees are, in whatever order their subtrees were defined."""
+    """Return whether two trees are, in whatever order their subtrees were defined."""
     return (one.root, one.name) == (other.root, other.name) and dict(one.subtrees) == dict(other.subtrees)
 
 
 def joined(items: Sequence[ast.Ast], operator: str, bracketed: bool = False) -> ast.Ast:
-    """Some siblings as one node."""
+    """Join some siblings as one node."""
     return items[0] if len(items) == 1 else ast.Chain(operator, tuple(items), bracketed, items[0].span)
 
 
 def _sources(tree: Tree, origins: Origins) -> list[ast.Ast | None]:
-    """A node that no syntax was lowered to belongs to the one around it."""
+    """Return the syntax of each node: one that no syntax was lowered to belongs to the one around it."""
     found: list[ast.Ast | None] = []
     for root in (tree.root, *(node for _, node in tree.subtrees)):
         stack: list[tuple[Node, ast.Ast | None]] = [(root, None)]
@@ -156,7 +157,7 @@ def _put(items: tuple[ast.Ast, ...], step: Step) -> tuple[ast.Ast, ...]:
 
 
 def _held(step: Step) -> tuple[ast.Ast, ...]:
-    """What takes the place of the parent of a step."""
+    """Return what takes the place of the parent of a step."""
     parent = step.parent
     if isinstance(parent, ast.Chain):
         items: list[ast.Ast] = []

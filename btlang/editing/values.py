@@ -7,13 +7,13 @@ from functools import partial
 
 from btlang.editing.syntax import Unplaced
 from btlang.printer.phrase import value_of
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.tree import ast
 from btlang.vocabulary.lexicon import Lexicon
 
 
 class Place(Record):
-    """A value of a node: its type, its port text, and the node with another one."""
+    """A place for a value of a node: its type, its port text, and the node with another one."""
 
     kind: str
     text: str
@@ -32,7 +32,7 @@ _COUNTED = frozenset(("num_cycles", "num_attempts", "rounds", "attempts"))  # th
 
 
 def places_of(node: ast.Ast) -> dict[str, Place]:
-    """The values that a node says or may say, by the names of ports and fields."""
+    """Return the values that a node says or may say, by the names of ports and fields."""
     if isinstance(node, ast.Assign):
         return {node.key: Place(node.kind, node.text, partial(_with_field, node, "text"))}
     if isinstance(node, ast.Compared):
@@ -62,7 +62,7 @@ def _with_argument(node: ast.Phrase | ast.Compared, order: Sequence[str], name: 
 
 
 def valued(node: ast.Ast, port: str) -> Place:
-    """Where a node has the value of a port, which in the tree may have another name. Raises Unplaced."""
+    """Return where a node has the value of a port, which in the tree may have another name. Raises Unplaced."""
     places = places_of(node)
     if port in places:
         return places[port]
@@ -73,7 +73,10 @@ def valued(node: ast.Ast, port: str) -> Place:
 
 
 def values_of(node: ast.Ast, vocabulary: Lexicon) -> list[tuple[str, str, str]]:
-    """The values that a node says: name, type, and the words of each. Those that the mission computes are left out."""
+    """Return the values that a node says: name, type, and the words of each.
+
+    Those that the mission computes are left out.
+    """
     return [
         (name, place.kind, value_of(place.text, vocabulary.types[place.kind], vocabulary))
         for name, place in places_of(node).items()
@@ -82,7 +85,7 @@ def values_of(node: ast.Ast, vocabulary: Lexicon) -> list[tuple[str, str, str]]:
 
 
 def abilities(node: ast.Ast, is_condition: bool, is_whole: bool) -> list[str]:
-    """What may be done with a node; one `is_whole` if it is all of a mission's commands."""
+    """Return what may be done with a node; one `is_whole` if it is all of a mission's commands."""
     found = ["insert"]
     body = getattr(node, "body", None)
     if isinstance(node, ast.Chain) or (isinstance(body, ast.Ast) and not isinstance(node, ast.Definition)):

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from btlang.api import Mission, parse_tree
 from btlang.diagnostics.errors import MissionError
-from btlang.mission_vocabulary import mission_vocabulary, world_vocabulary
+from btlang.robots.mission_vocabulary import mission_vocabulary, world_vocabulary
 from btlang.text.escaping import one_line
 from btlang.text.source import Source
 from btlang.vocabulary.lexicon import Lexicon
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Words:
-    """Where the words of a robot are: keyword files, world and language. The world is a file, or the text of one.
+    """The words of a robot: keyword files, world and language. The world is a file, or the text of one.
 
     `file` is the path that texts belong to, if the user named one: what they name is looked for beside it.
     """
@@ -34,26 +34,29 @@ class Words:
         self.world = Source(world_text, "world", roots=()) if world_text else world
 
     def in_world(self, name: str, text: str) -> Words:
-        """These words with the places of a world in a text; `name` is what messages show."""
+        """Return these words with the places of a world in a text; `name` is what messages show."""
         other = Words(self.keywords, language=self.language, file=self.file)
         other.world = Source(text, one_line(name), roots=())
         return other
 
     def source(self, text: str) -> Source:
-        """A text that somebody writes; of no file, it can't include any."""
+        """Return a text that somebody writes; of no file, it can't include any."""
         return Source(text, self.file, may_load=True) if self.file else Source(text, "mission", roots=())
 
     def mission(
         self, source: Source, origins: Origins | None = None, main: str = "", world: str | None = None
     ) -> Mission:
-        """A text compiled with them, or with another world; the others as for `parse_tree`. Raises MissionError."""
+        """Return a text compiled with them, or with another world; the others as for `parse_tree`.
+
+        Raises MissionError.
+        """
         return parse_tree(
             source, keywords=self.keywords, world=self.world if world is None else world, language=self.language,
             origins=origins, main=main,
         )  # fmt: skip
 
     def vocabulary(self, source: Source) -> Lexicon:
-        """Those that a text is read with; files that it names and that can't be used are left out.
+        """Return the vocabulary that a text is read with; files that it names and that can't be used are left out.
 
         Raises MissionError for words that can't be used themselves.
         """

@@ -38,8 +38,10 @@ NO_COMMENTS: Counter[str] = Counter()
 
 
 class Writer:
-    """Writes changes of one text, in which `syntax` was read. `given` are nodes of no text with the words to say them,
-    `copies` new nodes by their identities with the old ones whose words they have.
+    """A writer of changes of one text, in which `syntax` was read.
+
+    `given` are nodes of no text with the words to say them, `copies` new nodes by their identities with the old ones
+    whose words they have.
     """
 
     def __init__(
@@ -63,7 +65,7 @@ class Writer:
         gone: Counter[str] = NO_COMMENTS,
         first: Iterable[Change] = (),
     ) -> Change:
-        """The change of the text.
+        """Return the change of the text.
 
         A new definition comes before the statement `near`. The comments `gone` stand elsewhere by now. The changes of
         `first` are tried before all others. Raises Unplaced if no way to write it is read as the mission that is
@@ -82,8 +84,8 @@ class Writer:
         raise Unplaced("no English says it there")
 
     def values(self, node: ast.Ast, kind: str, text: str, words: str) -> Iterator[Change]:
-        """Other words for a value: those of a node that are read as its port text may be the place, fewest first, or
-        most where an article has to go, too.
+        """Yield other words for a value: those of a node that are read as its port text may be the place, fewest first,
+        or most where an article has to go, too.
         """
         vocabulary = self._syntax.vocabulary
         found = split(self._source, vocabulary.orthography)
@@ -100,7 +102,7 @@ class Writer:
                     yield Change(each, end, words)
 
     def words(self, node: ast.Ast, role: str, other: str) -> list[Change]:
-        """The words of another role in the place of those of one."""
+        """Return the words of another role in the place of those of one."""
         vocabulary, text = self._syntax.vocabulary, node.span.text
         phrases = "|".join(re.escape(phrase) for phrase in vocabulary.roles[role])
         found = re.finditer(rf"\b(?:{phrases})\b", text, re.IGNORECASE)
@@ -110,8 +112,9 @@ class Writer:
         ]
 
     def comments_of(self, nodes: Iterable[ast.Ast], before: str) -> Counter[str]:
-        """The comments on the lines of statements and right above them that stand elsewhere, too: they do so since the
-        text was as `before`."""
+        """Return the comments on the lines of statements and right above them that stand elsewhere, too: they do so
+        since the text was as `before`.
+        """
         found: Counter[str] = Counter()
         for node in nodes:
             owned = self._lines.own(node, self._syntax.holder(node))
@@ -147,7 +150,7 @@ class Writer:
                 yield from self._in_line(step, printer)
 
     def _printer(self, step: Step, wanted: ast.Program, way: str) -> Printer:
-        """Says what stands in the text, and what is given, in the words that it has there."""
+        """Say what stands in the text, and what is given, in the words that it has there."""
         printer = printer_of(wanted, self._syntax.vocabulary)
         for root in step.new:
             for node in reversed(ast.parents_first(root)):
@@ -189,7 +192,7 @@ class Writer:
         printer.keep(node, said.replace(in_lines=is_block or said.in_lines), lines)
 
     def _stands_alone(self, node: ast.Ast, around: ast.Ast) -> bool:
-        """Whether the words of a node are its own, and mean the same without those before them."""
+        """Return whether the words of a node are its own, and mean the same without those before them."""
         if not isinstance(node, ast.Phrase):
             return True
         if isinstance(around, ast.Chain) and any(node.span == each.span for each in around.items if each is not node):
@@ -210,7 +213,7 @@ class Writer:
         return self._alone[id(node)]
 
     def _as_lines(self, step: Step, printer: Printer, near: ast.Ast | None, gone: Counter[str]) -> Iterator[Change]:
-        """Statements that have lines of their own, as lines."""
+        """Write statements that have lines of their own, as lines."""
         yield from self._in_their_places(step, printer)
         place = self._line_place(step, near, bool(gone))
         if place is None:
@@ -233,7 +236,9 @@ class Writer:
             yield Change(start, end, text if ends else text.removesuffix("\n"))
 
     def _between(self, step: Step) -> str:
-        """The lines of definitions and the like between old statements, for in front of what takes their place."""
+        """Return the lines of definitions and the like between old statements, for in front of what takes their
+        place.
+        """
         lines = self._lines
         owned = [each for each in (lines.own(node, step.parent) for node in step.old) if each is not None]
         gaps = [range(one.stop, lines.with_comments(other).start) for one, other in pairwise(owned)]
@@ -241,7 +246,7 @@ class Writer:
         return "".join(self._source.text[start:end] for start, end in map(self._lines.offsets, said))
 
     def _in_their_places(self, step: Step, printer: Printer) -> Iterator[Change]:
-        """As many statements as there were, each in the lines of one of these: what stands between them stays."""
+        """Write as many statements as there were, each in the lines of one of these: what stands between them stays."""
         owned = [self._lines.own(node, step.parent) for node in step.old]
         if len(owned) < 2 or len(owned) != len(step.new):
             return
@@ -263,7 +268,7 @@ class Writer:
         return id(node) in self._given or id(node) in self._copies or id(node) in self._syntax.slots
 
     def _line_place(self, step: Step, near: ast.Ast | None, moved: bool) -> tuple[int, int, str] | None:
-        """Where the lines of a step begin and end in the text, and their margin."""
+        """Return where the lines of a step begin and end in the text, and their margin."""
         lines, around = self._lines, step.parent
         if step.old:
             owned = [lines.own(node, around) for node in step.old]
@@ -290,7 +295,7 @@ class Writer:
         return *lines.offsets(range(line, line)), lines.margin(behind.start)
 
     def _in_line(self, step: Step, printer: Printer) -> Iterator[Change]:
-        """Parts of a line, within it."""
+        """Write parts of a line, within it."""
         items = step.parent.items if isinstance(step.parent, ast.Chain) else ()
         if any(node.span.source is not self._source for node in (*step.old, *items)):
             return
@@ -326,7 +331,7 @@ class Writer:
             yield printer.text(bracketed(said).pieces)
 
     def _joints(self, places: Sequence[tuple[int, int]], operator: str, printer: Printer) -> Iterator[str]:
-        """What stands between the items of a chain, the usual word last."""
+        """Return what stands between the items of a chain, the usual word last."""
         between = [self._source.text[end:start] for (_, end), (start, _) in pairwise(places) if end <= start]
         yield from dict.fromkeys(each for each in reversed(between) if "\n" not in each and "#" not in each)
         yield f" {printer.word(CHAINS[operator][1]).text} "

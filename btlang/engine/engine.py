@@ -15,8 +15,8 @@ from btlang.engine.saving import restore_nodes, save_nodes
 from btlang.engine.script.values import as_text
 from btlang.engine.status import FAILURE, IDLE
 from btlang.engine.status_trace import Changes, StatusTrace
-from btlang.gc_pause import gc_paused
-from btlang.record import Record
+from btlang.support.gc_pause import gc_paused
+from btlang.support.record import Record
 from btlang.text.source import Span
 from btlang.tree.node import Node, Tree
 

@@ -21,7 +21,7 @@ from btlang.engine.clock import Clock
 from btlang.engine.leaves.leaf import REFUSED, ActionFailed, LeafBinding, NotThere, Reason
 from btlang.engine.script.values import as_text
 from btlang.engine.status import FAILURE
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.node import Node
 

@@ -7,7 +7,7 @@ from importlib import import_module
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import Source, Span
 
 TYPE_CHECKING = False

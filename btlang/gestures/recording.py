@@ -12,12 +12,12 @@ from btlang.backends.files import write_file
 from btlang.devices.device_set import DeviceSet
 from btlang.devices.driver import SIMULATED, Device, DeviceError
 from btlang.devices.kinds import JointState, JointTarget
-from btlang.interrupts import interrupts_later
 from btlang.robots.bodies.body import Body
 from btlang.robots.bodies.body_file import unusable_robot
 from btlang.robots.bodies.gesture_file import GestureError, load_gestures
 from btlang.robots.files import as_mission_error
 from btlang.robots.robot import joint_of
+from btlang.support.interrupts import interrupts_later
 from btlang.text.output import show
 from btlang.text.source import Source
 from btlang.text.toml_writing import toml_key, toml_value

@@ -13,8 +13,8 @@ import numpy as np
 
 from btlang.diagnostics.reading import is_below, real_path, reason_of
 from btlang.maps.data_text import missing_package, number, numbers, shown
-from btlang.record import Record
 from btlang.robots.geometry import Point, Pose
+from btlang.support.record import Record
 from btlang.text.toml_table import Problem
 
 TYPE_CHECKING = False

@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from btlang.engine.instance import Compiled
 
 BEFORE, AFTER = 0, 1
-"""Where a hook is: before a node begins, or when it has ended."""
+"""The places of a hook: before a node begins, or when it has ended."""
 BREAK, REPLACE = 0, 1
-"""What it does: pauses until it is unlocked, or gives the node a status."""
+"""The actions of a hook: it pauses until it is unlocked, or gives the node a status."""
 
 
 class Hook:
@@ -30,7 +30,7 @@ class Hook:
     __slots__ = ("enabled", "index", "mode", "once", "position", "unlocked", "waiting", "wanted")
 
     def __init__(self, data: Mapping[str, Any]) -> None:
-        """Raises ValueError, KeyError or TypeError for what is no hook."""
+        """Raise ValueError, KeyError or TypeError for what is no hook."""
         self.waiting = self.unlocked = False
         self.index = _index(data)
         self.position, self.mode = int(data["position"]), int(data["mode"])
@@ -40,7 +40,7 @@ class Hook:
         self.wanted = NAMES[data["desired_status"]]
 
     def data(self) -> dict[str, Any]:
-        """As Groot2 writes it."""
+        """Return the hook as Groot2 writes it."""
         name = next(name for name, status in NAMES.items() if status is self.wanted or status == self.wanted)
         return {
             "enabled": self.enabled, "uid": self.index + 1, "mode": self.mode, "once": self.once,
@@ -67,7 +67,7 @@ class Breakpoints:
         self._are_on = True
 
     def wrap(self, index: int, compiled: Compiled) -> Compiled:
-        """The same node, which its hooks are asked for when it begins and when it has ended."""
+        """Return the same node, which its hooks are asked for when it begins and when it has ended."""
         tick, halt = compiled
         hooks, running = self._hooks, False
 
@@ -92,7 +92,7 @@ class Breakpoints:
         return hooked, hooked_halt
 
     def _ask(self, index: int, position: int, status: int) -> int:
-        """The status that a hook gives, RUNNING while it is to be unlocked, SKIPPED for the node's own."""
+        """Return the status that a hook gives, RUNNING while it is to be unlocked, SKIPPED for the node's own."""
         with self._lock:
             hook = self._hooks.get((index, position))
             if hook is None or not hook.enabled or not self._are_on:
@@ -113,7 +113,7 @@ class Breakpoints:
             return hook.wanted if hook.wanted in (SUCCESS, FAILURE) else SKIPPED
 
     def insert(self, data: Mapping[str, Any], size: int) -> None:
-        """Sets a hook, or changes the one in its place. Raises ValueError, KeyError or TypeError."""
+        """Set a hook, or changes the one in its place. Raises ValueError, KeyError or TypeError."""
         hook = Hook(data)
         if not 0 <= hook.index < size:
             raise ValueError("Node ID not found")
@@ -124,7 +124,7 @@ class Breakpoints:
             self._resume()
 
     def unlock(self, data: Mapping[str, Any]) -> None:
-        """Goes on at a breakpoint, with a status for the node or not. Raises ValueError, KeyError or TypeError."""
+        """Go on at a breakpoint, with a status for the node or not. Raises ValueError, KeyError or TypeError."""
         status = NAMES[data["desired_status"]]
         with self._lock:
             hook = self._hooks.get((_index(data), int(data["position"])))
@@ -135,7 +135,7 @@ class Breakpoints:
         self._resume()
 
     def remove(self, data: Mapping[str, Any]) -> None:
-        """Raises ValueError, KeyError or TypeError."""
+        """Raise ValueError, KeyError or TypeError."""
         with self._lock:
             hook = self._hooks.pop((_index(data), int(data["position"])), None)
         if hook is None:
@@ -144,7 +144,7 @@ class Breakpoints:
             self._resume()
 
     def remove_all(self) -> None:
-        """What waits goes on."""
+        """Remove all, and let what waits go on."""
         with self._lock:
             waiting = any(hook.waiting for hook in self._hooks.values())
             self._hooks.clear()
@@ -152,7 +152,7 @@ class Breakpoints:
             self._resume()
 
     def enable(self, are_on: bool) -> None:
-        """Nothing stops at a breakpoint while nobody is there to go on."""
+        """Turn breakpoints on or off: nothing stops at one while nobody is there to go on."""
         with self._lock:
             goes_on = self._are_on and not are_on and any(hook.waiting for hook in self._hooks.values())
             self._are_on = are_on
@@ -162,7 +162,7 @@ class Breakpoints:
             self._resume()
 
     def disable_all(self) -> None:
-        """Each is off until it is set again."""
+        """Turn each off until it is set again."""
         with self._lock:
             waiting = any(hook.waiting for hook in self._hooks.values())
             for hook in self._hooks.values():
@@ -171,6 +171,6 @@ class Breakpoints:
             self._resume()
 
     def data(self) -> list[dict[str, Any]]:
-        """All hooks, as Groot2 writes them."""
+        """Return all hooks, as Groot2 writes them."""
         with self._lock:
             return [hook.data() for hook in self._hooks.values()]

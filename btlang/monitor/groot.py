@@ -7,23 +7,29 @@ import os
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from functools import partial
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.engine.status import IDLE, RUNNING
 from btlang.monitor import groot_protocol as protocol
 from btlang.monitor.breakpoints import Breakpoints
-from btlang.monitor.groot_tree import GrootTree
+from btlang.monitor.groot_protocol import GrootTree, models_of
 from btlang.run.bus import INLINE
 from btlang.run.controls import Controls
-from btlang.run.events import Event, StatusesChanged
-from btlang.run.snapshot import HALTED, Follower
+from btlang.run.events import Event, Sampled, StatusesChanged
+from btlang.run.snapshot import HALTED, RunFollower
 from btlang.text.source import NOWHERE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
+
+    from btlang.api import Mission
+    from btlang.run.snapshot import RunState, WatchedNodes
+    from btlang.session import Run
 
 
 _HEARTBEAT = 5.0  # seconds without a question after which breakpoints are off
@@ -62,11 +68,11 @@ class GrootServer:
                 reason = os.strerror(error.errno or 0).lower()
                 raise MissionError([diagnostic("BT086", NOWHERE, port=str(at), reason=reason)]) from None
         self.breakpoints = Breakpoints(controls.pause, controls.resume, self._reached)
-        """For the engine of the run; see btlang.engine.engine.Engine."""
+        """The hooks of the engine of the run; see btlang.engine.engine.Engine."""
         self._tree_id = os.urandom(16)
         self._tree: GrootTree | None = None
         self._make: Callable[[], GrootTree] | None = None
-        self._follower: Follower | None = None
+        self._follower: RunFollower | None = None
         self._values: Callable[[int], Mapping[str, Any]] = lambda index: {}
         self._reached_nodes: deque[int] = deque()
         self._recording = False
@@ -78,26 +84,26 @@ class GrootServer:
         self._thread.start()
 
     def watch(
-        self, follower: Follower, tree: Callable[[], GrootTree], values: Callable[[int], Mapping[str, Any]]
+        self, follower: RunFollower, tree: Callable[[], GrootTree], values: Callable[[int], Mapping[str, Any]]
     ) -> None:
-        """A run begins; `follower` knows its statuses."""
+        """Answer about a run that begins; `follower` knows its statuses."""
         self._follower, self._make, self._values = follower, tree, values
 
     def __call__(self, event: Event) -> None:
-        """In the thread of the run: keeps what a client that records will ask for."""
+        """Keep what a client that records will ask for. In the thread of the run."""
         if self._recording and isinstance(event, StatusesChanged):
             for index, status, _, _ in event.changes:
                 self._changes.append((event.wall, index, status))
 
     def close(self) -> None:
-        """Ends the server. May be called twice."""
+        """End the server. May be called twice."""
         self._over = True
         self._thread.join(2.0)
         if not self._context.closed:
             self._context.destroy(linger=0)
 
     def _reached(self, index: int) -> None:
-        """In the thread of the run, which uses no socket."""
+        """Note that a breakpoint was reached. In the thread of the run, which uses no socket."""
         self._reached_nodes.append(index)
 
     def _serve(self) -> None:
@@ -118,7 +124,7 @@ class GrootServer:
             self._server.send_multipart(reply)
 
     def _answer(self, frames: list[bytes]) -> list[bytes]:
-        """Raises ValueError and its like for what is no question."""
+        """Raise ValueError and its like for what is no question."""
         request = protocol.read_request(frames[0])
         answer = _ANSWERS.get(request.letter)
         if answer is None:
@@ -210,11 +216,11 @@ _CODES = {
     code: protocol.CODES.get(code, protocol.CODES[RUNNING] + protocol.RESET if code >= HALTED else protocol.CODES[IDLE])
     for code in range(HALTED + 2)
 }
-"""The codes of Groot2 for those of btlang.run.snapshot.State."""
+"""The codes of Groot2 for those of btlang.run.snapshot.RunState."""
 
 
 def _plain(values: Mapping[str, Any]) -> dict[str, Any]:
-    """What msgpack can hold; whole numbers of more than 64 bits and all else become texts."""
+    """Return what msgpack can hold; whole numbers of more than 64 bits and all else become texts."""
     return {key: value if _fits(value) else str(value) for key, value in values.items()}
 
 
@@ -225,10 +231,67 @@ def _fits(value: Any) -> bool:
 
 
 def _hooks(content: bytes) -> Any:
-    """JSON that isn't deep: an engine of deep trees lets Python recurse further than a thread's stack reaches."""
+    """Read hooks from JSON that isn't deep: an engine of deep trees lets Python recurse further than a thread's stack
+    reaches.
+    """
     depth = 0
     for byte in content:
         depth += (byte in b"[{") - (byte in b"]}")
         if depth > _MOST_DEEP:
             raise ValueError("too many brackets")
     return json.loads(content)
+
+
+class GrootMonitor:
+    """A monitor that shows a run to Groot2; see btlang.run.terminal.run_mission."""
+
+    def __init__(self, server: GrootServer) -> None:
+        self.server = server
+        self.hooks = server.breakpoints
+
+    def watch_run(self, run: Run, mission: Mission) -> None:
+        """Answer about this run from now on."""
+        nodes = run.nodes
+        self.server.watch(run.follower, partial(groot_tree, nodes, mission), nodes.values)
+        run.bus.add(self.server)
+
+
+@contextmanager
+def groot_monitor(port: int, controls: Controls) -> Iterator[GrootMonitor]:
+    """Show runs to Groot2 until the end of the block. Raises MissionError (BT085, BT086)."""
+    server = GrootServer(port, controls)
+    try:
+        yield GrootMonitor(server)
+    finally:
+        server.close()
+
+
+class ReplayMonitor:
+    """A sink that shows a recorded run to Groot2 while it is played."""
+
+    def __init__(self, server: GrootServer, nodes: WatchedNodes, mission: Mission) -> None:
+        self._server = server
+        self._values: dict[str, Any] = {}
+        self._follower = RunFollower(nodes)
+        server.watch(self._follower, partial(groot_tree, nodes, mission), self._values_of)
+
+    def __call__(self, event: Event) -> None:
+        """Take an event of the recording."""
+        if isinstance(event, Sampled):
+            self._values = {**self._values, **event.values}
+            return
+        self._follower(event)
+        self._server(event)
+
+    def jump(self, state: RunState) -> None:
+        """Go on from another place of the recording."""
+        self._follower.jump(state)
+
+    def _values_of(self, index: int) -> dict[str, Any]:
+        """Return the values of the whole mission: no others are recorded."""
+        return self._values if index == 0 else {}
+
+
+def groot_tree(nodes: WatchedNodes, mission: Mission) -> GrootTree:
+    """Make the tree of a run of a mission."""
+    return GrootTree(nodes, nodes.parent, mission.label, models_of(lambda: str(mission.to("xml"))))

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.passes.order import used_first
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.tree.ast import Ast, Definition, Program, parents_first
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import children_first

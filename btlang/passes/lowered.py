@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import Span
 from btlang.tree.node import Node
 

@@ -8,14 +8,10 @@ from math import ceil
 
 from btlang.pictures import letters
 from btlang.pictures.canvas import Canvas
-from btlang.pictures.people import PERSON, WALKED, draw_standing, place_of, sighting_at
-from btlang.pictures.placing import Area, Placer, along
-from btlang.pictures.run_legend import outcome
-from btlang.pictures.run_record import Mark, RunRecord, Sample
-from btlang.pictures.style import BUBBLES, INK, SMALL, SOFT, TITLE
-from btlang.pictures.track import END, draw_body, way
-from btlang.pictures.world_details import DOOR_COLOUR, draw_door, draw_route
-from btlang.pictures.world_map import OBJECT, WorldMap
+from btlang.pictures.run_record import PathSample, PictureMark, RunRecord, outcome
+from btlang.pictures.surface import BUBBLES, INK, SMALL, SOFT, TITLE
+from btlang.pictures.track import END, PERSON, WALKED, draw_body, draw_standing, place_of, sighting_at, way
+from btlang.pictures.world_map import DOOR_COLOUR, OBJECT, Area, Placer, WorldMap, along, draw_door, draw_route
 from btlang.robots.geometry import Point, Pose, wrap
 from btlang.robots.worlds.world import PERSON_RADIUS, World
 
@@ -36,8 +32,8 @@ _BLUE = "#2a6fb0"
 _SPOKEN = 10  # frames that a text is shown, at least
 
 
-def animated(world: World, record: RunRecord, title: str) -> bytes:
-    """The bytes of a GIF of at most 140 frames that runs for ever."""
+def animate(world: World, record: RunRecord, title: str) -> bytes:
+    """Return the bytes of a GIF of at most 140 frames that runs for ever."""
     from PIL.Image import Dither
 
     frames = _Film(world, record, title).frames()
@@ -50,7 +46,7 @@ def animated(world: World, record: RunRecord, title: str) -> bytes:
 
 
 def _palette(frames: list[Image]) -> Image:
-    """Colours of the whole film, from some of its frames one below the other."""
+    """Return colours of the whole film, from some of its frames one below the other."""
     from PIL import Image
 
     chosen = [*frames[:: max(1, len(frames) // 8)], frames[-1]]
@@ -64,7 +60,10 @@ def _palette(frames: list[Image]) -> Image:
 
 
 class _Film:
-    """What stands still is drawn once; onto it the way grows; robot, things and text are redrawn on each frame."""
+    """A film of a run.
+
+    What stands still is drawn once; onto it the way grows; robot, things and text are redrawn on each frame.
+    """
 
     def __init__(self, world: World, record: RunRecord, title: str) -> None:
         self._record = record
@@ -84,7 +83,7 @@ class _Film:
         self._map = WorldMap(still, _ROOM, extent)
         area = self._map.area
         self._canvas = Canvas(max(area.width, 300.0) + 2 * _MARGIN, area.y + area.height + _MARGIN, title)
-        text = letters.clipped(title, self._canvas.width - 2 * _MARGIN - 4, SMALL)
+        text = letters.clip_text(title, self._canvas.width - 2 * _MARGIN - 4, SMALL)
         self._canvas.text(_MARGIN + 2, 12, text, size=SMALL, colour=SOFT)
         self._map.draw(self._canvas)
         for person in world.people:
@@ -96,7 +95,7 @@ class _Film:
         self._canvas.begin_film(_DPI)
 
     def frames(self) -> list[Image]:
-        """All frames, the last one with the outcome."""
+        """Yield all frames, the last one with the outcome."""
         end = self._times[-1]
         number = min(FRAMES - 1, max(1, ceil(end / _LEAST)))
         film = [self._frame(end * (i - 1) / number, end * i / number) for i in range(number + 1)]
@@ -119,7 +118,7 @@ class _Film:
         return Image.frombytes("RGBA", size, pixels).convert("RGB")
 
     def _grow(self, before: float, now: float) -> None:
-        """The way since the last frame, which stays for all frames to come."""
+        """Draw the way since the last frame, which stays for all frames to come."""
         first, last = bisect_right(self._times, before), bisect_right(self._times, now)
         poses = [self._sample(before).pose, *(s.pose for s in self._record.track[first:last]), self._sample(now).pose]
         points = [self._map.at(pose.x, pose.y) for pose in poses]
@@ -137,7 +136,7 @@ class _Film:
         self._canvas.keep()
 
     def _things_at(self, now: float, pose: Pose) -> None:
-        """Objects that move: where they lie, or in front of the robot that carries them."""
+        """Draw objects that move: where they lie, or in front of the robot that carries them."""
         places: dict[str, Point | None] = {name: (thing.x, thing.y) for name, thing in self._things.items()}
         places |= {name: place for t, name, place in self._record.moves if t <= now}
         for name, place in places.items():
@@ -147,11 +146,11 @@ class _Film:
             radius = max(self._things[name].radius * self._map.scale, 2.6)
             self._canvas.circle(x, y, radius, fill=OBJECT, edge="white", line=0.6, z=7)
             if place is not None:
-                text = letters.clipped(letters.shown(name), 100, SMALL)
+                text = letters.clip_text(letters.make_printable(name), 100, SMALL)
                 self._canvas.text(x + radius + 2, y, text, size=SMALL, colour=OBJECT, halo=True, z=5)
 
     def _surroundings_at(self, now: float) -> None:
-        """People and unknown things where they are, and doors as they are."""
+        """Draw people and unknown things where they are, and doors as they are."""
         for name, sightings in self._record.sightings.items():
             if name not in self._record.moved:
                 draw_standing(self._canvas, self._map, self._world, name, sighting_at(sightings, now))
@@ -159,30 +158,30 @@ class _Film:
             is_open = {name: opened for t, name, opened in self._record.doors if t <= now}.get(door.name, door.open)
             draw_door(self._canvas, door.replace(open=is_open), self._map.at, self._map.area.middle)
             x, y = self._map.at(*door.middle)
-            text = letters.clipped(letters.shown(door.name), 100, SMALL)
+            text = letters.clip_text(letters.make_printable(door.name), 100, SMALL)
             self._canvas.text(x + 5, y, text, size=SMALL, colour=DOOR_COLOUR, halo=True, z=3)
 
     def _speech(self, now: float, pose: Pose, least: float) -> None:
-        """What the robot says, above it; what it last said stays for some frames."""
+        """Draw what the robot says, above it; what it last said stays for some frames."""
         mark = self._latest(("say", "print", "ask", "call"), now, least)
         if mark is not None:
             self._bubble(mark, (pose.x, pose.y), self._record.radius)
 
     def _answers(self, now: float, pose: Pose, least: float) -> None:
-        """What the robot hears, at whoever says it."""
+        """Draw what the robot hears, at whoever says it."""
         mark = self._latest(("hear",), now, least)
         if mark is not None:
             speaker = place_of(self._world, self._record, mark.who, now)
             self._bubble(mark, speaker or (pose.x, pose.y), -self._record.radius if speaker is None else PERSON_RADIUS)
 
-    def _latest(self, kinds: tuple[str, ...], now: float, least: float) -> Mark | None:
-        """What was said last, as long as it is shown."""
+    def _latest(self, kinds: tuple[str, ...], now: float, least: float) -> PictureMark | None:
+        """Return what was said last, as long as it is shown."""
         said = [mark for mark in self._record.marks if mark.kind in kinds and mark.text and mark.t <= now]
         return said[-1] if said and now <= said[-1].t + max(least, 0.35 + 0.06 * len(said[-1].text)) else None
 
-    def _bubble(self, mark: Mark, place: Point, radius: float) -> None:
-        """Above a place, or below it where there is no room, or for a negative radius."""
-        text = letters.clipped(letters.shown(mark.text), 180, SMALL)
+    def _bubble(self, mark: PictureMark, place: Point, radius: float) -> None:
+        """Draw a bubble above a place, or below it where there is no room, or for a negative radius."""
+        text = letters.clip_text(letters.make_printable(mark.text), 180, SMALL)
         fill, edge = BUBBLES.get(mark.kind, BUBBLES["say"])
         width = letters.width(text, SMALL) + 12
         x, y = self._map.at(*place)
@@ -195,7 +194,7 @@ class _Film:
         self._canvas.box(left, top, width, 15, round=5, fill=fill, edge=edge, line=0.8, z=8)
         self._canvas.text(left + 6, top + 7.5, text, size=SMALL, z=8)
 
-    def _headline(self, before: float, now: float, sample: Sample, last: bool) -> None:
+    def _headline(self, before: float, now: float, sample: PathSample, last: bool) -> None:
         right = self._canvas.width - _MARGIN
         clock = f"{now:.1f} s   ·   battery {sample.battery:.0f} %"
         self._canvas.text(right, _LINE, clock, size=SMALL, colour=SOFT, align="right", z=9)
@@ -204,15 +203,15 @@ class _Film:
         if last:
             look, words = outcome(self._record)
             colour, title = look.strong, f"{look.sign} {words}"
-        title = letters.clipped(letters.shown(title), room, TITLE, True)
+        title = letters.clip_text(letters.make_printable(title), room, TITLE, True)
         self._canvas.text(_MARGIN + 2, _LINE, title, size=TITLE, bold=True, colour=colour, z=9)
 
     def _title(self, before: float, now: float) -> str:
         under_way = [c.text for c in self._record.commands if c.start.t <= now and (c.end > now or c.start.t > before)]
         return "  and  ".join(dict.fromkeys(under_way))
 
-    def _sample(self, t: float) -> Sample:
-        """Where the robot was, between two samples too."""
+    def _sample(self, t: float) -> PathSample:
+        """Return where the robot was, between two samples too."""
         track = self._record.track
         after = bisect_right(self._times, t)
         if after == 0 or after == len(track):
@@ -222,4 +221,4 @@ class _Film:
         p, q = a.pose, b.pose
         heading = p.heading + wrap(q.heading - p.heading) * share
         pose = Pose(p.x + (q.x - p.x) * share, p.y + (q.y - p.y) * share, heading)
-        return Sample(t, pose, a.battery + (b.battery - a.battery) * share)
+        return PathSample(t, pose, a.battery + (b.battery - a.battery) * share)

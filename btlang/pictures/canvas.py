@@ -10,9 +10,9 @@ from functools import cache
 from itertools import pairwise
 from math import sqrt
 
-from btlang.pictures.files import missing
+from btlang.pictures.files import matplotlib_error
 from btlang.pictures.letters import CAP_HEIGHT, FAMILY, UNKNOWN, width
-from btlang.pictures.style import INK, PAPER, TEXT
+from btlang.pictures.surface import INK, PAPER, TEXT
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ def _known() -> frozenset[str]:
 
 @contextmanager
 def with_matplotlib(path: str) -> Iterator[None]:
-    """Matplotlib with its own defaults, whatever the user's settings, and without its messages.
+    """Give matplotlib with its own defaults, whatever the user's settings, and without its messages.
 
     Raises MissionError (BT081) where it cannot be imported.
     """
@@ -55,7 +55,7 @@ def with_matplotlib(path: str) -> Iterator[None]:
         try:
             from matplotlib import font_manager, style
         except ImportError:
-            raise missing(path) from None
+            raise matplotlib_error(path) from None
         assert font_manager.fontManager
         with style.context({"path.simplify": False}, after_reset=True):
             yield
@@ -64,7 +64,7 @@ def with_matplotlib(path: str) -> Iterator[None]:
 
 
 class Canvas:
-    """What is drawn later lies above, unless `z` says otherwise."""
+    """A surface of matplotlib. What is drawn later lies above, unless `z` says otherwise."""
 
     def __init__(self, width: float, height: float, title: str) -> None:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -81,7 +81,7 @@ class Canvas:
         self._new: list[Artist] = []
 
     def add(self, artist: Artist, z: float = 0) -> Artist:
-        """Adds something of matplotlib's."""
+        """Add something of matplotlib's."""
         self._count += 1
         artist.set_zorder(z + self._count * 1e-6)
         self._new.append(artist)
@@ -91,7 +91,7 @@ class Canvas:
         self, x: float, y: float, text: str, *, size: float = TEXT,
         colour: str = INK, bold: bool = False, align: str = "left", z: float = 0, halo: bool = False,
     ) -> Artist:  # fmt: skip
-        """One line whose capitals are centred on `y`. A halo keeps it legible above lines."""
+        """Draw one line whose capitals are centred on `y`. A halo keeps it legible above lines."""
         from matplotlib.patheffects import withStroke
         from matplotlib.text import Text
 
@@ -108,7 +108,7 @@ class Canvas:
         self, x: float, y: float, width: float, height: float, *,
         round: float = 0, fill: str = "none", edge: str = "none", line: float = 1, dashed: bool = False, z: float = 0,
     ) -> Artist:  # fmt: skip
-        """A rectangle with corners rounded to a radius."""
+        """Draw a rectangle with corners rounded to a radius."""
         from matplotlib.patches import FancyBboxPatch
 
         style = f"round,pad=0,rounding_size={round}" if round else "square,pad=0"
@@ -119,7 +119,7 @@ class Canvas:
     def polygon(
         self, points: Points, *, fill: str = "none", edge: str = "none", line: float = 1, z: float = 0
     ) -> Artist:
-        """A closed shape."""
+        """Draw a closed shape."""
         from matplotlib.patches import Polygon
 
         return self.add(Polygon(points, closed=True, fc=fill, ec=edge, lw=line, joinstyle="round"), z)
@@ -128,7 +128,7 @@ class Canvas:
         self, x: float, y: float, radius: float, *,
         fill: str = "none", edge: str = "none", line: float = 1, dashed: bool = False, z: float = 0,
     ) -> Artist:  # fmt: skip
-        """A disc or a ring."""
+        """Draw a disc or a ring."""
         from matplotlib.patches import Circle
 
         return self.add(Circle((x, y), radius, fc=fill, ec=edge, lw=line, ls=(0, (2, 1.5)) if dashed else "solid"), z)
@@ -137,7 +137,7 @@ class Canvas:
         self, points: Points, *,
         colour: str = INK, line: float = 1, dashed: bool = False, round: bool = True, z: float = 0,
     ) -> Artist:  # fmt: skip
-        """A line through the points."""
+        """Draw a line through the points."""
         from matplotlib.lines import Line2D
 
         xs, ys = [x for x, _ in points], [y for _, y in points]
@@ -146,45 +146,45 @@ class Canvas:
         artist.set_linestyle((0, (2, 2)) if dashed else "solid")
         return self.add(artist, z)
 
-    def shaded(self, points: Points, colours: Sequence[str], *, line: float = 1, z: float = 0) -> Artist:
-        """A line through the points whose pieces have a colour each."""
+    def draw_shaded(self, points: Points, colours: Sequence[str], *, line: float = 1, z: float = 0) -> Artist:
+        """Draw a line through the points whose pieces have a colour each."""
         from matplotlib.collections import LineCollection
 
         pieces = [list(piece) for piece in pairwise(points)]
         return self.add(LineCollection(pieces, colors=list(colours), linewidths=line, capstyle="round"), z)
 
     def group(self, title: str) -> AbstractContextManager[object]:
-        """Shapes have no names here."""
+        """Do nothing: shapes have no names here."""
         return nullcontext()
 
     def begin_film(self, dpi: float) -> None:
-        """Draws all that is there; what is added from now on is drawn by `lay`."""
+        """Draw all that is there; what is added from now on is drawn by `lay`."""
         self.figure.set_dpi(dpi)
         self._agg.draw()
         self._new.clear()
         self.keep()
 
     def lay(self) -> None:
-        """Draws what was added since the last time over the pixels, and takes it off the canvas."""
+        """Draw what was added since the last time over the pixels, and take it off the canvas."""
         for artist in sorted(self._new, key=lambda new: new.get_zorder()):
             self.axes.draw_artist(artist)
             artist.remove()
         self._new.clear()
 
     def keep(self) -> None:
-        """What is there now is what `restore` brings back."""
+        """Keep what is there now: `restore` brings it back."""
         self._kept = self._agg.copy_from_bbox(self.figure.bbox)
 
     def restore(self) -> None:
-        """The pixels of the last `keep`."""
+        """Bring back the pixels of the last `keep`."""
         self._agg.restore_region(self._kept)
 
     def pixels(self) -> tuple[tuple[int, int], bytes]:
-        """Width and height, and the pixels row by row as red, green, blue and opacity."""
+        """Return width and height, and the pixels row by row as red, green, blue and opacity."""
         return self._agg.get_width_height(), bytes(self._agg.buffer_rgba())
 
-    def encoded(self, kind: str) -> bytes:
-        """The bytes of a file, `kind` is ".png"; the same picture gives the same bytes."""
+    def encode(self, kind: str) -> bytes:
+        """Return the bytes of a file, `kind` is ".png"; the same picture gives the same bytes."""
         out = io.BytesIO()
         about = {"Title": self._title, "Software": "btlang"}
         self.figure.savefig(out, format=kind[1:], metadata=about, dpi=self._dpi())

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from btlang.pictures.canvas import Canvas
-from btlang.pictures.drawing import drawing
+from btlang.pictures.drawing import open_drawing
 from btlang.robots.bodies.body import Body
 from btlang.robots.bodies.gesture import Gesture
 from btlang.robots.bodies.joint_tables import BASE
@@ -30,8 +30,8 @@ _PAUSE = 0.8  # seconds that its last one stays
 
 
 def draw_gesture(body: Body, gesture: Gesture, rehearsal: Rehearsal, path: str, kind: str) -> bytes:
-    """The bytes of a file of a kind, ".svg", ".png" or ".gif". Raises MissionError (BT081)."""
-    with drawing(path, kind) as sheet:
+    """Return the bytes of a file of a kind, ".svg", ".png" or ".gif". Raises MissionError (BT081)."""
+    with open_drawing(path, kind) as sheet:
         if kind == ".gif":
             return _film(body, gesture, rehearsal)
         times = _moments(gesture, rehearsal)
@@ -45,11 +45,11 @@ def draw_gesture(body: Body, gesture: Gesture, rehearsal: Rehearsal, path: str, 
             top = _MARGIN + row * (_HIGH * _SCALE + 26)
             canvas.text(left + _WIDE * _SCALE, top + 8, says, align="center")
             _draw(canvas, body, rehearsal.angles[_index(rehearsal, seconds)], left, top + 16)
-        return canvas.encoded(kind)
+        return canvas.encode(kind)
 
 
 def _moments(gesture: Gesture, rehearsal: Rehearsal) -> list[tuple[float, str]]:
-    """The seconds of its key frames and of its stroke, with what stands above each."""
+    """Return the seconds of its key frames and of its stroke, with what stands above each."""
     longer = rehearsal.seconds / gesture.seconds
     found = {0.0: "0 s"} | {frame.at: f"{frame.at:g} s" for frame in gesture.frames}
     found[gesture.stroke] = f"{gesture.stroke:g} s: stroke"
@@ -61,7 +61,7 @@ def _index(rehearsal: Rehearsal, seconds: float) -> int:
 
 
 def _draw(canvas: Surface, body: Body, angles: Mapping[str, float], left: float, top: float) -> None:
-    """The side that it turns its right arm to, and the front."""
+    """Draw the side that it turns its right arm to, and the front."""
     rows = np.array([[angles[joint.name] for joint in body.joints]])
     frames = Kinematics(body).frames(rows)
     floor = top + _HIGH * _SCALE - 6

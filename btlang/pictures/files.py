@@ -15,8 +15,8 @@ STILL = (".svg", ".png")
 MOVING = (".gif",)
 
 
-def ending(path: str, allowed: tuple[str, ...]) -> str:
-    """The ending of a file in small letters. Raises ValueError where it is not one of those allowed."""
+def picture_ending(path: str, allowed: tuple[str, ...]) -> str:
+    """Return the ending of a file in small letters. Raises ValueError where it is not one of those allowed."""
     found = os.path.splitext(path)[1].lower()
     if found not in allowed:
         raise ValueError(f"expected a file that ends in {joined(allowed, 'or')}, not '{path}'")
@@ -24,9 +24,9 @@ def ending(path: str, allowed: tuple[str, ...]) -> str:
 
 
 def check_picture(path: str) -> None:
-    """Raises MissionError where the picture cannot be drawn (BT081) or the file cannot be written (BT009)."""
-    if ending(path, STILL + MOVING) != ".svg" and find_spec("matplotlib") is None:
-        raise missing(path)
+    """Raise MissionError where the picture cannot be drawn (BT081) or the file cannot be written (BT009)."""
+    if picture_ending(path, STILL + MOVING) != ".svg" and find_spec("matplotlib") is None:
+        raise matplotlib_error(path)
     is_new = not os.path.lexists(path)
     try:
         open(path, "ab").close()
@@ -36,6 +36,6 @@ def check_picture(path: str) -> None:
         raise MissionError([unwritable(path, error)]) from None
 
 
-def missing(path: str) -> MissionError:
-    """What to raise where matplotlib is not there."""
+def matplotlib_error(path: str) -> MissionError:
+    """Make the error BT081: matplotlib is not there."""
     return MissionError([diagnostic("BT081", Span(Source("", path), 0, 0))])

@@ -30,18 +30,20 @@ _BOLD = {
     0x410: "77 76 76 64 89 68 122 71 84 84 82 83 100 84 85 84 73 73 68 77 99 77 93 81 124 133 94 104 76 73 117 77 67 "
     "70 63 52 81 68 100 58 70 70 68 73 82 69 69 69 72 59 58 65 99 65 74 69 106 111 75 90 63 59 97 64",
 }
-"""Advances of the family in hundredths of the size, for each of the characters from a first one on."""
+"""The advances of the family in hundredths of the size, for each of the characters from a first one on."""
 _BY_CATEGORY = {"Mn": 0, "Me": 0, "Cf": 0, "Ll": 70, "Lu": 80, "So": 130}  # of other characters; "So" has emoji
 _FULL_WIDTH = 103  # of the rest: a Chinese character, or the mark for one that a font does not have
 
 
-def shown(text: str) -> str:
-    """The text in one line, with a mark for each character that cannot be printed."""
+def make_printable(text: str) -> str:
+    """Return the text in one line, with a mark for each character that cannot be printed."""
     return "".join(c if c.isprintable() or c in _JOINERS else UNKNOWN for c in " ".join(text[:_LONGEST].split()))
 
 
 def width(text: str, size: float, bold: bool = False) -> float:
-    """Points, of a text that `shown` made: exact for English, Greek and Russian, elsewhere rather too much."""
+    """Return the width in points of a text that `make_printable` made: exact for English, Greek and Russian, elsewhere
+    rather too much.
+    """
     return sum(_advance(c, bold) for c in text) * size / 100
 
 
@@ -55,24 +57,24 @@ def _advance(character: str, bold: bool) -> int:
     return _BY_CATEGORY.get(category(plain), _FULL_WIDTH)
 
 
-def wrapped(text: str, room: float, most: int, size: float, bold: bool) -> list[str]:
-    """At most so many lines, none wider than `room`; what does not fit ends in an ellipsis."""
+def wrap_text(text: str, room: float, most: int, size: float, bold: bool) -> list[str]:
+    """Return at most so many lines, none wider than `room`; what does not fit ends in an ellipsis."""
     lines: list[str] = []
     words = text[:_BROKEN].split()
     while words:
         line, words = _first_line(words, room, size, bold)
         lines.append(line)
         if len(lines) == most and words:
-            lines[-1] = clipped(f"{line} {' '.join(words)}", room, size, bold)
+            lines[-1] = clip_text(f"{line} {' '.join(words)}", room, size, bold)
             break
     return lines or [""]
 
 
-def clipped(text: str, room: float, size: float, bold: bool = False) -> str:
-    """The text, or as much of it as fits with an ellipsis."""
+def clip_text(text: str, room: float, size: float, bold: bool = False) -> str:
+    """Return the text, or as much of it as fits with an ellipsis."""
     if width(text, size, bold) <= room:
         return text
-    count = _fitting(text, room - width("…", size, bold), size, bold)
+    count = _fit(text, room - width("…", size, bold), size, bold)
     return text[:count].rstrip() + "…"
 
 
@@ -82,12 +84,12 @@ def _first_line(words: list[str], room: float, size: float, bold: bool) -> tuple
         count += 1
     if count:
         return " ".join(words[:count]), words[count:]
-    cut = max(1, _fitting(words[0], room, size, bold))  # a word that is wider than a line
+    cut = max(1, _fit(words[0], room, size, bold))  # a word that is wider than a line
     return words[0][:cut], [words[0][cut:], *words[1:]]
 
 
-def _fitting(text: str, room: float, size: float, bold: bool) -> int:
-    """How many characters from the start fit."""
+def _fit(text: str, room: float, size: float, bold: bool) -> int:
+    """Return how many characters from the start fit."""
     used = 0
     for count, character in enumerate(text):
         used += _advance(character, bold)

@@ -7,15 +7,24 @@ from collections.abc import Callable
 from btlang.backends.files import write_file
 from btlang.engine.status import FAILURE
 from btlang.pictures import letters
-from btlang.pictures.drawing import drawing
-from btlang.pictures.files import MOVING, STILL, ending
-from btlang.pictures.people import WALKED, draw_walks, name_walks, place_of, ways
-from btlang.pictures.placing import Area, Placer, along
-from btlang.pictures.run_legend import WIDTH, Legend, listed
-from btlang.pictures.run_record import Command, Mark, RunRecord
-from btlang.pictures.style import BUBBLES, HEADING, INK, LOOKS, SMALL, SOFT, TITLE
-from btlang.pictures.track import END, START, draw_body, draw_track, shade, way
-from btlang.pictures.world_map import WorldMap
+from btlang.pictures.drawing import open_drawing
+from btlang.pictures.files import MOVING, STILL, picture_ending
+from btlang.pictures.run_record import WIDTH, Legend, PictureMark, RecordedCommand, RunRecord, select_commands
+from btlang.pictures.surface import BUBBLES, HEADING, INK, LOOKS, SMALL, SOFT, TITLE
+from btlang.pictures.track import (
+    END,
+    START,
+    WALKED,
+    draw_body,
+    draw_track,
+    draw_walks,
+    name_walks,
+    place_of,
+    shade,
+    way,
+    ways,
+)
+from btlang.pictures.world_map import Area, Placer, WorldMap, along
 from btlang.robots.geometry import Point
 from btlang.robots.worlds.world import World
 from btlang.run.bus import INLINE
@@ -57,20 +66,20 @@ class RunPicture:
         self.record(event)  # type: ignore[arg-type]
 
     def save(self, path: str) -> None:
-        """Draws what happened so far to a file that ends in .svg, .png or .gif; nothing where no run began.
+        """Draw what happened so far to a file that ends in .svg, .png or .gif; nothing where no run began.
 
         Raises ValueError for another ending, MissionError (BT009, BT081).
         """
-        kind = ending(path, STILL + MOVING)
+        kind = picture_ending(path, STILL + MOVING)
         if not self.record.begun:
             return
-        with drawing(path, kind) as sheet:
+        with open_drawing(path, kind) as sheet:
             if kind == ".gif":
-                from btlang.pictures.animation import animated
+                from btlang.pictures.animation import animate
 
-                data = animated(self._world, self.record, self._title)
+                data = animate(self._world, self.record, self._title)
             else:
-                data = _Still(sheet, self._world, self.record, self._title).canvas.encoded(kind)
+                data = _Still(sheet, self._world, self.record, self._title).canvas.encode(kind)
         write_file(path, data)
 
 
@@ -86,7 +95,7 @@ class _Still:
         wide = max(area.width, _LEAST_WIDE)
         height = max(area.height + _STRIP, legend.height)
         self.canvas = sheet(_MARGIN + wide + _GUTTER + WIDTH + _MARGIN, _TOP + height + _MARGIN, title)
-        text = letters.clipped(title, wide + _GUTTER + WIDTH, TITLE, True)
+        text = letters.clip_text(title, wide + _GUTTER + WIDTH, TITLE, True)
         self.canvas.text(_MARGIN, _MARGIN + 4, text, size=TITLE, bold=True)
         self._placer = Placer(area)
         self._map.draw(self.canvas, [name for name in record.sightings if ways(record.sightings[name])])
@@ -95,7 +104,7 @@ class _Still:
         self._placer.avoid(self._map.lines())
         draw_walks(self.canvas, self._map, record, world, self._placer)
         self._bodies()
-        groups = _groups(listed(record.commands), self._map)
+        groups = _groups(select_commands(record.commands), self._map)
         self._placer.taken += [Area(x - 2, y - 2, 4, 4) for (x, y), _ in groups]
         marks = self._marks()
         self._map.draw_names(self.canvas, self._placer, record.moved)
@@ -112,10 +121,10 @@ class _Still:
             (x, y), size = self._map.at(pose.x, pose.y), radius * self._map.scale
             self._placer.taken.append(Area(x - size, y - size, 2 * size, 2 * size))
 
-    def _marks(self) -> list[Mark]:
-        """Draws signs, each once at a place; returns what was said."""
+    def _marks(self) -> list[PictureMark]:
+        """Draw signs, each once at a place; return what was said."""
         drawn: list[tuple[str, float, float]] = []
-        said: list[Mark] = []
+        said: list[PictureMark] = []
         for mark in self._record.marks:
             if mark.kind not in _SIGNS:
                 said.append(mark)
@@ -130,7 +139,7 @@ class _Still:
             self._placer.taken.append(Area(x - 4, y - 4, 8, 8))
         return said
 
-    def _numbers(self, groups: list[tuple[tuple[float, float], list[Command]]]) -> None:
+    def _numbers(self, groups: list[tuple[tuple[float, float], list[RecordedCommand]]]) -> None:
         shown = {command.number for _, group in groups for command in group}
         for command in self._record.commands:
             if command.number not in shown:
@@ -149,14 +158,14 @@ class _Still:
             self.canvas.box(area.x, area.y, width, height, round=6.4, fill=colour, edge="white", line=0.8, z=6)
             self.canvas.text(*middle, text, size=SMALL, bold=True, colour="white", align="center", z=6)
 
-    def _bubbles(self, said: list[Mark]) -> None:
-        """What the robot and others said, each text once, as long as there is room for it."""
-        texts: dict[str, Mark] = {}
+    def _bubbles(self, said: list[PictureMark]) -> None:
+        """Draw what the robot and others said, each text once, as long as there is room for it."""
+        texts: dict[str, PictureMark] = {}
         for mark in said:
             if mark.text:
                 texts.setdefault(mark.text, mark)
         for mark in list(texts.values())[:_BUBBLES]:
-            text = letters.clipped(letters.shown(mark.text), _WIDEST_BUBBLE, SMALL)
+            text = letters.clip_text(letters.make_printable(mark.text), _WIDEST_BUBBLE, SMALL)
             speaker = place_of(self._world, self._record, mark.who, mark.t) if mark.kind == "hear" else None
             x, y = self._map.at(*(speaker or (mark.pose.x, mark.pose.y)))
             fill, edge = BUBBLES.get(mark.kind, BUBBLES["say"])
@@ -177,7 +186,7 @@ class _Still:
         return [_SIGNS[kind] for kind in _SIGNS if kind in kinds]
 
     def _strip(self, y: float, wide: float) -> None:
-        """The scale and what the signs mean, below the map."""
+        """Draw the scale and what the signs mean, below the map."""
         canvas, x = self.canvas, _MARGIN + 2
         x += self._map.draw_scale(canvas, x, y + 2) + 20
         for look, word in ((START, "start"), (END, "end")):
@@ -205,7 +214,7 @@ class _Still:
 
 
 def _in_the_end(world: World, record: RunRecord) -> World:
-    """The world with its doors as they were at last."""
+    """Return the world with its doors as they were at last."""
     is_open = {name: opened for _, name, opened in record.doors}
     changed: World = world.replace(
         doors=tuple(door.replace(open=is_open.get(door.name, door.open)) for door in world.doors)
@@ -214,13 +223,13 @@ def _in_the_end(world: World, record: RunRecord) -> World:
 
 
 def _walked(record: RunRecord, world: World) -> list[Point]:
-    """All points of the ways of people."""
+    """Return all points of the ways of people."""
     names = [name for name in record.sightings if name not in world.names.objects]
     return [point for name in names for way in ways(record.sightings[name]) for point in way]
 
 
 def numbers(values: list[int]) -> str:
-    """`1`, `3-5`, `1, 3-5`: numbers in order with runs joined; of many, the first and `…`."""
+    """Write `1`, `3-5`, `1, 3-5`: numbers in order with runs joined; of many, the first and `…`."""
     runs: list[list[int]] = []
     for value in sorted(values):
         if runs and value == runs[-1][-1] + 1:
@@ -231,9 +240,9 @@ def numbers(values: list[int]) -> str:
     return ", ".join(parts if len(parts) <= 4 else [*parts[:3], "…"])
 
 
-def _groups(commands: list[Command], map: WorldMap) -> list[tuple[tuple[float, float], list[Command]]]:
-    """Commands that began at nearly the same place, with the place of the first of them."""
-    groups: list[tuple[tuple[float, float], list[Command]]] = []
+def _groups(commands: list[RecordedCommand], map: WorldMap) -> list[tuple[tuple[float, float], list[RecordedCommand]]]:
+    """Return groups of commands that began at nearly the same place, with the place of the first of them."""
+    groups: list[tuple[tuple[float, float], list[RecordedCommand]]] = []
     for command in commands:
         x, y = map.at(command.start.pose.x, command.start.pose.y)
         for (gx, gy), group in groups:

@@ -32,11 +32,11 @@ _ROUND = 0.3  # metres around everything
 _STEP = 0.05  # metres between points of the way that are kept
 _ROBOT, _PERSON, _PLACE, _THING, _WALL, _WAY = "bold cyan", "bold magenta", "bold", "yellow", "dim", "green"
 LEAST_WIDTH, LEAST_HEIGHT = 16, 5
-"""Cells in which a map is of use."""
+"""The cells in which a map is of use."""
 
 
 class TerminalMap:
-    """Draws one world. `note` takes where the robot is at each time."""
+    """A map of one world for a terminal. `note` takes where the robot is at each time."""
 
     def __init__(self, world: World, unicode: bool) -> None:
         self._world, self._unicode = world, unicode
@@ -52,7 +52,7 @@ class TerminalMap:
         self._drawn = 0  # points of the way
 
     def note(self, robot: RobotState | None) -> None:
-        """Keeps the way that the robot comes."""
+        """Keep the way that the robot comes."""
         if robot is None or robot.pose is None:
             return
         here = robot.pose.x, robot.pose.y
@@ -60,14 +60,14 @@ class TerminalMap:
             self._way.append(here)
 
     def size(self, width: int, height: int) -> tuple[int, int]:
-        """The columns and rows that it takes of those that there are; (0, 0) where these are too few."""
+        """Return the columns and rows that it takes of those that there are; (0, 0) where these are too few."""
         if width < LEAST_WIDTH or height < LEAST_HEIGHT:
             return 0, 0
         dots = self._scale(width, height)
         return min(ceil(self._width * dots / _ACROSS), width), min(ceil(self._height * dots / _DOWN), height)
 
     def lines(self, robot: RobotState | None, width: int, height: int) -> list[Line]:
-        """The map in so many cells, which `size` has given."""
+        """Return the map in so many cells, which `size` has given."""
         scale = self._scale(width, height)
 
         def at(x: float, y: float) -> tuple[float, float]:
@@ -106,11 +106,11 @@ class TerminalMap:
         return Text("\n").join(drawn) if drawn else None
 
     def _scale(self, width: int, height: int) -> float:
-        """Dots a metre."""
+        """Return the dots a metre."""
         return min(width * _ACROSS / self._width, height * _DOWN / self._height)
 
     def _line(self, dots: _Dots, letters: _Letters, row: int) -> Line:
-        """A row, its neighbours of one style together."""
+        """Return a row, its neighbours of one style together."""
         cells = (letters.cells.get((row, column)) or self._cell(dots, row, column) for column in range(dots.size[0]))
         groups = groupby(cells, key=itemgetter(1))
         return tuple(("".join(text for text, _ in group), style) for style, group in groups)
@@ -124,7 +124,7 @@ class TerminalMap:
 
 
 class _Dots:
-    """Cells with dots, and which of them the way is in."""
+    """The cells with dots, and which of them the way is in."""
 
     def __init__(self, width: int, height: int) -> None:
         self.size = width, height
@@ -146,14 +146,14 @@ class _Dots:
 
 
 class _Letters:
-    """Cells with letters. Where a name would touch another one, only its first letter stands at its point."""
+    """The cells with letters. Where a name would touch another one, only its first letter stands at its point."""
 
     def __init__(self, width: int, height: int) -> None:
         self._width, self._height = width, height
         self.cells: dict[tuple[int, int], tuple[str, str]] = {}
 
     def name(self, x: float, y: float, text: str, style: str) -> None:
-        """A name whose middle is at a point."""
+        """Write a name whose middle is at a point."""
         said = one_line(text)
         row, first = int(y) // _DOWN, int(x) // _ACROSS - len(said) // 2
         first = max(min(first, self._width - len(said)), 0)

@@ -1,24 +1,40 @@
-"""The picture of a tree, with the statuses of a run in colour."""
+"""The picture of a tree, with the statuses of a run in colour; also as a target of `btc compile`."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from math import sqrt
 
 from btlang.backends.files import write_file
 from btlang.pictures import letters
-from btlang.pictures.drawing import drawing
-from btlang.pictures.files import STILL, ending
-from btlang.pictures.style import HEADING, INK, LINE, LOOKS, NEVER, PAPER, SMALL, SOFT, TEXT, TITLE, Look
-from btlang.pictures.tree_block import FRAME_TITLE, LINE_HEIGHT, SIGN, SYMBOL, side
-from btlang.pictures.tree_boxes import Maker, Sheet, title_of
-from btlang.pictures.tree_layout import Layout, Link, Spot, laid_out
+from btlang.pictures.drawing import open_drawing
+from btlang.pictures.files import STILL, picture_ending
+from btlang.pictures.letters import make_printable
+from btlang.pictures.surface import HEADING, INK, LINE, LOOKS, NEVER, PAPER, SMALL, SOFT, TEXT, TITLE, Look
+from btlang.pictures.tree_layout import (
+    FRAME_TITLE,
+    LINE_HEIGHT,
+    SIGN,
+    SYMBOL,
+    BoxLink,
+    Maker,
+    Sheet,
+    Spot,
+    TreeLayout,
+    lay_out,
+    side,
+    title_of,
+)
+from btlang.printer.phrase import phrase_of
 from btlang.tree.node import Node, Tree
+from btlang.vocabulary.lexicon import Lexicon
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.pictures.statuses import LastStatuses
+    from btlang.pictures.run_record import LastStatuses
     from btlang.pictures.surface import Surface
+
 
 _MARGIN = 16.0
 _LEGEND = 26.0
@@ -52,24 +68,27 @@ def draw_tree(
     run: LastStatuses | None = None,
     title: str = "",
 ) -> None:
-    """Draws a tree to a file that ends in .svg or .png.
+    """Draw a tree to a file that ends in .svg or .png.
 
-    Named subtrees are framed in place; `apart` draws each once, below the main tree, and so does a tree that would
-    have more than 500 nodes. Of more than 2,000 nodes, or 60 levels, the rest is counted only. `run` was a sink of a
-    run, whose statuses and values are drawn. `label` and `is_action` are those of a Mission; the `title` is by default
-    the name of its file. An .svg file needs no matplotlib.
-    Raises ValueError for another ending, MissionError (BT009, BT081).
+    Named subtrees are framed in place; `apart` draws each once, below the main tree, and so does a tree that would have
+    more than 500 nodes. Of more than 2,000 nodes, or 60 levels, the rest is counted only. `run` was a sink of a run,
+    whose statuses and values are drawn. `label` and `is_action` are those of a Mission; the `title` is by default the
+    name of its file. An .svg file needs no matplotlib. Raises ValueError for another ending, MissionError (BT009,
+    BT081).
     """
-    kind = ending(path, STILL)
+    kind = picture_ending(path, STILL)
     sheets = Maker(tree, label, is_action, run).sheets(apart)
-    title = letters.shown(title) or title_of(tree)
+    title = letters.make_printable(title) or title_of(tree)
     write_file(path, picture_of(sheets, title, kind, path, has_run=run is not None))
 
 
 def picture_of(sheets: list[Sheet], title: str, kind: str, path: str = "", *, has_run: bool = False) -> bytes:
-    """The content of a file of the `kind` ".svg" or ".png"; errors name its `path`. After a run, nodes have signs."""
-    with drawing(path, kind) as sheet:
-        return _TreePicture(sheets, title, has_run, sheet).surface.encoded(kind)
+    """Return the content of a file of the `kind` ".svg" or ".png"; errors name its `path`.
+
+    After a run, nodes have signs.
+    """
+    with open_drawing(path, kind) as sheet:
+        return _TreePicture(sheets, title, has_run, sheet).surface.encode(kind)
 
 
 class _TreePicture:
@@ -77,8 +96,8 @@ class _TreePicture:
         self, sheets: list[Sheet], title: str, has_run: bool, make_surface: Callable[[float, float, str], Surface]
     ) -> None:
         self._signs = has_run
-        layouts = [laid_out(sheet.boxes, has_run) for sheet in sheets]
-        pieces = list(zip(sheets, layouts, _arranged(layouts), strict=True))
+        layouts = [lay_out(sheet.boxes, has_run) for sheet in sheets]
+        pieces = list(zip(sheets, layouts, _arrange(layouts), strict=True))
         width = max(x + layout.width for _, layout, (x, _) in pieces) + _MARGIN
         width = max(width, min(letters.width(title, TITLE, True), _LEAST_WIDE) + 2 * _MARGIN)
         height = max(y + layout.height for _, layout, (_, y) in pieces) + _MARGIN
@@ -88,7 +107,7 @@ class _TreePicture:
             width = max(width, self._legend_width(looks))
             height += _LEGEND + (10 if len(pieces) > 1 else 0)
         self.surface = make_surface(width, height, title)
-        title = letters.clipped(title, width - 2 * _MARGIN, TITLE, True)
+        title = letters.clip_text(title, width - 2 * _MARGIN, TITLE, True)
         self.surface.text(_MARGIN, _MARGIN + 4, title, size=TITLE, bold=True)
         for sheet, layout, (x, y) in pieces:
             if sheet.name:
@@ -97,17 +116,17 @@ class _TreePicture:
         if has_run:
             self._draw_legend(looks, height - _MARGIN - 6)
 
-    def _frame_of(self, name: str, x: float, y: float, layout: Layout) -> None:
-        """A titled box around a subtree that is drawn apart."""
+    def _frame_of(self, name: str, x: float, y: float, layout: TreeLayout) -> None:
+        """Draw a titled box around a subtree that is drawn apart."""
         pad = 10.0
-        title = letters.clipped(letters.shown(name), max(layout.width, 60.0), TEXT, True)
+        title = letters.clip_text(letters.make_printable(name), max(layout.width, 60.0), TEXT, True)
         self.surface.box(
             x - pad, y - _TITLE, layout.width + 2 * pad, layout.height + _TITLE + pad, round=6, fill="#f8faf8",
             edge=_EDGES["subtree"], line=0.9,
         )  # fmt: skip
         self.surface.text(x, y - _TITLE / 2, title, bold=True, colour=_EDGES["subtree"])
 
-    def _draw(self, layout: Layout, dx: float, dy: float) -> None:
+    def _draw(self, layout: TreeLayout, dx: float, dy: float) -> None:
         for spot in layout.spots:
             if spot.box.shape == "frame":
                 with self.surface.group(spot.box.text):
@@ -134,7 +153,7 @@ class _TreePicture:
             self.surface.text(x + 9, y + FRAME_TITLE / 2 + 1, look.sign, colour=edge, bold=True)
         self.surface.text(x + 9 + (SIGN if look else 0), y + FRAME_TITLE / 2 + 1, spot.lines[0], colour=edge, bold=True)
 
-    def _link(self, link: Link, dx: float, dy: float) -> None:
+    def _link(self, link: BoxLink, dx: float, dy: float) -> None:
         points = [(x + dx, y + dy) for x, y in link.points]
         self.surface.line(points, colour=LINE)
         if link.role:
@@ -185,8 +204,8 @@ class _TreePicture:
             x += letters.width(look.word, TEXT) + 40
 
 
-def _arranged(layouts: list[Layout]) -> list[tuple[float, float]]:
-    """Upper left corners: the main tree, and below it the subtrees in rows."""
+def _arrange(layouts: list[TreeLayout]) -> list[tuple[float, float]]:
+    """Return upper left corners: the main tree, and below it the subtrees in rows."""
     corners = [(_MARGIN, _MARGIN + HEADING)]
     area = sum((layout.width + 36) * (layout.height + 30 + _TITLE) for layout in layouts)
     room = max(_WIDTH, layouts[0].width, sqrt(area * 1.3))
@@ -198,3 +217,27 @@ def _arranged(layouts: list[Layout]) -> list[tuple[float, float]]:
         x += max(layout.width, 60.0) + 36
         low = max(low, y + layout.height)
     return corners
+
+
+def to_svg(tree: Tree, vocabulary: Lexicon, *, title: str = "") -> str:
+    """Return the text of an SVG file, whose `title` is by default the name of the tree's file."""
+    return _drawn(tree, vocabulary, ".svg", title).decode()
+
+
+def to_png(tree: Tree, vocabulary: Lexicon) -> bytes:
+    """Return the content of a PNG file. Raises MissionError (BT081)."""
+    return _drawn(tree, vocabulary, ".png")
+
+
+def _drawn(tree: Tree, vocabulary: Lexicon, kind: str, title: str = "") -> bytes:
+    sheets = Maker(tree, partial(_label, vocabulary), partial(_is_action, vocabulary)).sheets()
+    return picture_of(sheets, make_printable(title) or title_of(tree), kind)
+
+
+def _label(vocabulary: Lexicon, node: Node) -> str:
+    return node.name or phrase_of(node, vocabulary)
+
+
+def _is_action(vocabulary: Lexicon, node: Node) -> bool:
+    entry = vocabulary.entry(node.id)
+    return entry is not None and entry.sort == "action"

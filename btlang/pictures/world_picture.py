@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from btlang.backends.files import write_file
 from btlang.pictures import letters
-from btlang.pictures.drawing import drawing
-from btlang.pictures.files import STILL, ending
-from btlang.pictures.placing import Area, Placer
-from btlang.pictures.style import HEADING, TITLE
+from btlang.pictures.drawing import open_drawing
+from btlang.pictures.files import STILL, picture_ending
+from btlang.pictures.surface import HEADING, TITLE
 from btlang.pictures.track import START, draw_body
-from btlang.pictures.world_map import WorldMap
+from btlang.pictures.world_map import Area, Placer, WorldMap
 from btlang.robots.bodies.body_file import standard_body
 from btlang.robots.worlds.world import World
 
@@ -26,22 +25,22 @@ _LEAST_WIDE = 260.0  # for the title
 
 
 def draw_world(world: World, path: str, title: str) -> None:
-    """Draws a world with the robot at its start to a file that ends in .svg or .png.
+    """Draw a world with the robot at its start to a file that ends in .svg or .png.
 
     Raises ValueError for another ending, MissionError (BT009, BT081).
     """
-    kind = ending(path, STILL)
-    with drawing(path, kind) as sheet:
-        data = _drawn(sheet, world, title).encoded(kind)
+    kind = picture_ending(path, STILL)
+    with open_drawing(path, kind) as sheet:
+        data = _draw(sheet, world, title).encode(kind)
     write_file(path, data)
 
 
-def _drawn(sheet: Callable[[float, float, str], Surface], world: World, title: str) -> Surface:
+def _draw(sheet: Callable[[float, float, str], Surface], world: World, title: str) -> Surface:
     drawn = WorldMap(world, _ROOM)
     area = drawn.area
     wide = max(area.width, _LEAST_WIDE)
     canvas = sheet(wide + 2 * _MARGIN, _TOP + area.height + _STRIP + _MARGIN, title)
-    canvas.text(_MARGIN, _MARGIN + 4, letters.clipped(title, wide, TITLE, True), size=TITLE, bold=True)
+    canvas.text(_MARGIN, _MARGIN + 4, letters.clip_text(title, wide, TITLE, True), size=TITLE, bold=True)
     placer = Placer(area)
     drawn.draw(canvas)
     placer.avoid(drawn.lines())

@@ -11,7 +11,7 @@ import re
 from bisect import bisect_left
 from collections.abc import Iterator
 
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import Source
 from btlang.text.words import Line, Orthography, Words, split
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import accumulate
 
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import Source
 from btlang.text.words import Words, split
 from btlang.vocabulary.lexicon import Lexicon

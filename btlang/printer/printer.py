@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Set
 
 from btlang.printer.phrase import holds_definer, leaf_words, value_of
 from btlang.printer.pieces import CLOSE, LEAF, OPEN, WORD, Piece, Pieces, flat, last_of, mark, reads_on, text_of
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.tree import ast
 from btlang.tree.conjunctions import Conjunctions
 from btlang.tree.visit import fold

@@ -16,17 +16,16 @@ from btlang.passes.compilation import Compilation
 from btlang.passes.lint.allow import not_allowed
 from btlang.projects.cpp_ports import CppSources
 from btlang.projects.entries import conflicting_types, entries_of, unset_entries, unset_enums
-from btlang.projects.port_values import enum_names
 from btlang.projects.ports import (
     DescribedUses,
     constant_outputs,
+    enum_names,
     misspelt_ports,
     port_problems,
     several_alone,
     subtree_problems,
 )
-from btlang.projects.unknown import unknown_nodes
-from btlang.projects.unused import keys_read, unread_subtree_ports, unread_values, unused_trees
+from btlang.projects.unused import keys_read, unknown_nodes, unread_subtree_ports, unread_values, unused_trees
 from btlang.text.source import NOWHERE, Span
 from btlang.tree.catalogue import BEHAVIOR_TREE_CPP, CATALOGUE, SEQUENCE, SUBTREE
 from btlang.tree.model import NodeModel, PortModel
@@ -38,7 +37,7 @@ _OF_A_VALUE = re.compile(r"\w+ must be ")
 
 
 def project_problems(project: XmlProject, vocabulary: Lexicon, sources: CppSources) -> list[Diagnostic]:
-    """Errors and warnings of all files, in order, without those that comments allow.
+    """Find errors and warnings of all files, in order, without those that comments allow.
 
     The C++ sources are asked about nodes that models describe badly, or not at all.
     """
@@ -53,7 +52,7 @@ def project_problems(project: XmlProject, vocabulary: Lexicon, sources: CppSourc
 
 
 def _follows(problem: Diagnostic, wrong: set[str]) -> bool:
-    """Whether the engine refuses a node only because of what other errors at its place say."""
+    """Return whether the engine refuses a node only because of what other errors at its place say."""
     if problem.code != "BT132" or not wrong:
         return False
     return wrong != {"BT014"} or _OF_A_VALUE.match(dict(problem.arguments)["reason"]) is not None
@@ -81,7 +80,7 @@ class _Check:
             self._described.update(sources.models)
 
     def problems(self) -> Iterator[Diagnostic]:
-        """Of the trees; only those of single nodes where trees contain themselves."""
+        """Find the problems of the trees; only those of single nodes where trees contain themselves."""
         yield from unknown_nodes(self._nodes, self._described, self._words, self._project.dialects)
         yield from self._wrong_ports()
         yield from unused_trees(self._project)
@@ -97,7 +96,9 @@ class _Check:
                 yield from one.run(compilation)
 
     def _ids_from_elsewhere(self, vocabulary: Lexicon) -> set[str]:
-        """The ids of leaves that aren't the vocabulary's: their models differ, or their files have others, too."""
+        """Return the ids of leaves that aren't the vocabulary's: their models differ, or their files have others,
+        too.
+        """
         own = {id for id in vocabulary.entries if self._fits(id, vocabulary)}
         by_file: dict[str, set[str]] = {}
         for node in self._nodes:
@@ -106,7 +107,7 @@ class _Check:
         return {id for ids in by_file.values() if not ids <= own for id in ids}
 
     def _fits(self, node_id: str, vocabulary: Lexicon) -> bool:
-        """Whether a model, if there is one, describes the entry of this id."""
+        """Return whether a model, if there is one, describes the entry of this id."""
         model = self._project.models.get(node_id)
         slots = {slot.name for entry in vocabulary.entries[node_id] for slot in entry.slots}
         return model is None or all(port.name in slots for port in model.ports)
@@ -146,7 +147,7 @@ class _Check:
         yield from conflicting_types(entries)
 
     def _ports(self, node: Node) -> Mapping[str, PortModel]:
-        """The ports of a node by name, as far as they are known."""
+        """Return the ports of a node by name, as far as they are known."""
         model = self._model(node)
         if model is None:
             return {}
@@ -156,7 +157,7 @@ class _Check:
         return ports
 
     def _outputs(self, node: Node) -> frozenset[str]:
-        """The outputs of a node that a model of the project describes."""
+        """Return the outputs of a node that a model of the project describes."""
         model = self._project.model(node) if node.id not in CATALOGUE else None
         if model is None:
             return frozenset()
@@ -170,20 +171,20 @@ class _Check:
         return self._project.model(node) or self._known(node.id)
 
     def _known(self, node_id: str) -> NodeModel | None:
-        """What is known of a node that no model of the project describes."""
+        """Return what is known of a node that no model of the project describes."""
         known = self._nav2.get(node_id)
         if known is None and node_id in self._described:
             known, _ = self._sources.models[node_id]
         return known
 
     def _with_others(self, uses: DescribedUses) -> DescribedUses:
-        """With the place of the model, and the other models of the same nodes."""
+        """Return a problem with the place of the model, and the other models of the same nodes."""
         models = self._project.described[uses.model.id]
         place = next(place for each, place in models if each is uses.model)
         return uses.replace(place=place, others=tuple(other for other in models if other[0] is not uses.model))  # type: ignore[no-any-return]
 
     def _with_sources(self, uses: DescribedUses) -> DescribedUses:
-        """With what C++ says of the nodes, too."""
+        """Return the models with what C++ says of the nodes, too."""
         found = self._sources.models.get(uses.model.id)
         return uses if found is None else uses.replace(others=(*uses.others, found))
 
@@ -191,7 +192,7 @@ class _Check:
         return self._project.dialects.get(node.span.source.name, 4) if node.span is not None else 4
 
     def _faults(self) -> Iterator[Diagnostic]:
-        """What the engine would refuse, but for trees that are elsewhere, and nodes that aren't ours."""
+        """Yield what the engine would refuse, but for trees that are elsewhere, and nodes that aren't ours."""
         described = {id for id, model in self._project.models.items() if model.kind == SUBTREE} | self._project.unread
         replaced: dict[tuple[str, int], Node] = {}
         own = {name: fold(root, _children, lambda node, inner: self._stand_in(node, inner, replaced))
@@ -211,13 +212,13 @@ class _Check:
             yield from misnamed(self._whole(self._project.trees), self._vocabulary)
 
     def _is_older(self, span: Span, node_id: str) -> bool:
-        """Whether a node of version 3 only has the name of one that format 4 brought."""
+        """Return whether a node of version 3 only has the name of one that format 4 brought."""
         kind = CATALOGUE.get(node_id)
         is_new = kind is not None and kind.origin == BEHAVIOR_TREE_CPP and not kind.tags_3
         return is_new and self._project.dialects.get(span.source.name) == 3
 
     def _stand_in(self, node: Node, inner: list[Node], replaced: dict[tuple[str, int], Node]) -> Node:
-        """A node of the engine for one that isn't, around the same children."""
+        """Return a node of the engine for one that isn't, around the same children."""
         if not inner:
             return node
         own: Node = node.replace(children=tuple(inner))
@@ -232,7 +233,7 @@ class _Check:
         return bound(self._vocabulary, node_id) or LeafBinding(anything)
 
     def _whole(self, trees: Mapping[str, Node]) -> Tree:
-        """One tree that uses them all."""
+        """Return one tree that uses them all."""
         uses = tuple(Node(SUBTREE, ports=(("ID", name),)) for name in trees)
         return Tree(Node(SEQUENCE, uses, span=next(iter(trees.values())).span), tuple(trees.items()))
 

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 
 from btlang.diagnostics.reading import read_bytes
-from btlang.projects.files import files_below
+from btlang.projects.files import find_files_below
 from btlang.text.source import Source, Span
 from btlang.tree.model import NodeModel, PortModel
 
@@ -46,7 +46,9 @@ _ENUMS = re.compile(r"registerScriptingEnums\b|registerScriptingEnum\s*\(\s*[^\s
 
 
 class _Class:
-    """What all parts of a class say: `spared` are ports without which it goes on, `needed` others that it reads."""
+    """A class of C++, with what all its parts say: `spared` are ports without which it goes on, `needed` others that it
+    reads.
+    """
 
     def __init__(self, place: Span) -> None:
         self.place = place
@@ -56,7 +58,7 @@ class _Class:
         self.needed: set[str] = set()
 
     def read(self, text: str, start: int, end: int, place: Span) -> None:
-        """Adds what a part of the class says, which begins at a place."""
+        """Add what a part of the class says, which begins at a place."""
         for port in _PORT.finditer(text, start, end):
             direction = next((word for word in _DIRECTIONS if text.endswith(word, start, port.start())), "")
             if not direction:
@@ -83,7 +85,9 @@ class CppSources:
 
     @cached_property
     def enums(self) -> tuple[frozenset[str], bool]:
-        """The names of enums that scripts may use, and whether these are all: a type may be registered as a whole."""
+        """Return the names of enums that scripts may use, and whether these are all: a type may be registered as a
+        whole.
+        """
         names: set[str] = set()
         is_complete = bool(self.models)
         for text in self._registering_enums:
@@ -93,17 +97,20 @@ class CppSources:
 
     @cached_property
     def models(self) -> Mapping[str, tuple[NodeModel, Span]]:
-        """By the ids of nodes, their ports, and where their classes are. A port that may be left out has a default."""
+        """Return, by the ids of nodes, their ports, and where their classes are.
+
+        A port that may be left out has a default.
+        """
         classes: dict[str, _Class] = {}
         registered: dict[str, tuple[str, Span]] = {}
         for source in self._sources():
             text = _COMMENT.sub(lambda match: match[0] if match[0][0] == '"' else " " * len(match[0]), source.text)
             if _REGISTERING in text:
                 self._registering_enums.append(text)
-            for match in _found(_REGISTERED, text):
+            for match in _find(_REGISTERED, text):
                 place = Span(source, match.start(), match.end())
                 registered[match["id"]] = (match["class"].rpartition(":")[2], place)
-            heads = sorted(_found((*_CLASSES, _MEMBER), text), key=lambda head: head.start())
+            heads = sorted(_find((*_CLASSES, _MEMBER), text), key=lambda head: head.start())
             ends = [head.start() for head in heads[1:]] + [len(text)]
             for head, end in zip(heads, ends, strict=False):
                 place = Span(source, head.start(), head.end())
@@ -121,7 +128,7 @@ class CppSources:
 
     def _sources(self) -> Iterator[Source]:
         for folder in self._folders:
-            for path in files_below(folder, _ENDINGS):
+            for path in find_files_below(folder, _ENDINGS):
                 try:
                     data = read_bytes(path)
                 except OSError:
@@ -130,12 +137,12 @@ class CppSources:
                     yield Source(data.decode(errors="replace"), path)
 
 
-def _found(patterns: Iterable[re.Pattern[str]], text: str) -> Iterator[re.Match[str]]:
+def _find(patterns: Iterable[re.Pattern[str]], text: str) -> Iterator[re.Match[str]]:
     return (match for pattern in patterns for match in pattern.finditer(text))
 
 
 def _ports(name: str, classes: Mapping[str, _Class]) -> Iterator[PortModel]:
-    """The ports of a class and its bases, without those that a nearer class has."""
+    """Yield the ports of a class and its bases, without those that a nearer class has."""
     line: list[_Class] = []
     while name in classes and classes[name] not in line:
         line.append(classes[name])
@@ -147,7 +154,7 @@ def _ports(name: str, classes: Mapping[str, _Class]) -> Iterator[PortModel]:
 
 
 def _arguments(text: str, start: int, end: int) -> Iterator[str]:
-    """The further arguments of a call, behind the first one."""
+    """Yield the further arguments of a call, behind the first one."""
     depth, begin, at = 0, -1, start
     while at < end:
         letter = text[at]

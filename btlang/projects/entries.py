@@ -10,8 +10,8 @@ from btlang.engine.instance import blackboard_key
 from btlang.engine.script.names import READS, SETS, uses_in_script
 from btlang.engine.script.tokens import ScriptError
 from btlang.frontends.btcpp.spelling import AUTOREMAP, TRUE
-from btlang.projects.places import attribute_value, place_of
-from btlang.record import Record
+from btlang.projects.ports import attribute_value, place_of
+from btlang.support.record import Record
 from btlang.text.source import Span
 from btlang.text.spelling import misspelt
 from btlang.tree.catalogue import CATALOGUE, SCRIPT, SUBTREE, held
@@ -45,7 +45,7 @@ class EntryUse(Record):
 
     @property
     def may_be_enum(self) -> bool:
-        """Whether a script reads what may be the name of an enum, such as RED."""
+        """Return whether a script reads what may be the name of an enum, such as RED."""
         may_be = self.key.isupper() and not self.sets and _ENUM.fullmatch(self.key) is not None
         return may_be and held(self.node.id, self.port) == SCRIPT
 
@@ -63,12 +63,12 @@ class TreeEntries(Record):
 
     @property
     def shares(self) -> bool:
-        """Whether another tree sees its entries by their own names."""
+        """Return whether another tree sees its entries by their own names."""
         return any(node.port(AUTOREMAP) in TRUE for node in self.subtrees)
 
 
 def entries_of(root: Node, ports_of: PortsOf, is_older: bool) -> TreeEntries:
-    """What a tree says of its blackboard; a port of which nothing is known may read and set an entry."""
+    """Return what a tree says of its blackboard; a port of which nothing is known may read and set an entry."""
     uses: list[EntryUse] = []
     subtrees: list[Node] = []
     named: set[str] = set()
@@ -98,7 +98,10 @@ def entries_of(root: Node, ports_of: PortsOf, is_older: bool) -> TreeEntries:
 
 
 def _script_uses(node: Node, port: str, code: str) -> list[EntryUse]:
-    """Nothing of what is no script, which is reported elsewhere, or is in an entry itself."""
+    """Yield the uses of a script.
+
+    Nothing of what is no script, which is reported elsewhere, or is in an entry itself.
+    """
     try:
         uses = {} if blackboard_key(port, code) is not None else uses_in_script(code)
     except ScriptError:
@@ -118,7 +121,7 @@ def _port_use(node: Node, port: str, key: str, described: PortModel | None) -> E
 
 
 def unset_entries(entries: Mapping[str, TreeEntries], mains: Collection[str]) -> Iterator[Diagnostic]:
-    """BT241 for what a tree with a blackboard of its own reads, if neither it nor a SubTree node sets that."""
+    """Report BT241 for what a tree with a blackboard of its own reads, if neither it nor a SubTree node sets that."""
     users: dict[str, list[Node]] = {}
     for each in entries.values():
         for node in each.subtrees:
@@ -143,7 +146,7 @@ def _unset(entries: TreeEntries, users: Iterable[Node]) -> Iterator[Diagnostic]:
 
 
 def unset_enums(entries: Mapping[str, TreeEntries], enums: Collection[str], are_all: bool) -> Iterator[Diagnostic]:
-    """BT241 for names such as RED in scripts, unless an entry has that name or it is one of `enums`.
+    """Report BT241 for names such as RED in scripts, unless an entry has that name or it is one of `enums`.
 
     If these may not be all, only for misspelt ones.
     """
@@ -165,7 +168,7 @@ def _nothing_sets(use: EntryUse, help: str, notes: tuple[tuple[Span, str], ...] 
 
 
 def conflicting_types(entries: Mapping[str, TreeEntries]) -> Iterator[Diagnostic]:
-    """BT132 for ports whose entry has another type since an earlier port, as BehaviorTree.CPP 4 refuses them.
+    """Report BT132 for ports whose entry has another type since an earlier port, as BehaviorTree.CPP 4 refuses them.
 
     Entries that another tree may see are left out, as they may have their type from there; so is version 3.
     """
@@ -193,7 +196,7 @@ def conflicting_types(entries: Mapping[str, TreeEntries]) -> Iterator[Diagnostic
 
 
 def _differ(first: str, later: str) -> bool:
-    """Whether two types surely differ, the first of which isn't a text, from which everything can be read."""
+    """Return whether two types surely differ, the first of which isn't a text, from which everything can be read."""
     first, later = _SAME.get(first, first), _SAME.get(later, later)
     if first == later or not (first in _SCALARS or _MESSAGE.fullmatch(first)):
         return False

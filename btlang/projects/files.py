@@ -15,21 +15,24 @@ from btlang.text.source import Source, Span
 _ROOT = re.compile(r"\s*(?:<\?.*?\?>\s*|<!--.*?-->\s*|<!DOCTYPE[^>]*>\s*)*<root[\s/>]", re.DOTALL)
 
 
-def tree_files(folder: str) -> list[str]:
-    """The files of trees and models in a folder and below it, without hidden ones. Raises MissionError (BT001)."""
-    found = [path for path in files_below(folder, XML_ENDINGS) if _may_have_trees(path)]
+def find_tree_files(folder: str) -> list[str]:
+    """Return the files of trees and models in a folder and below it, without hidden ones.
+
+    Raises MissionError (BT001).
+    """
+    found = [path for path in find_files_below(folder, XML_ENDINGS) if _may_have_trees(path)]
     if not found:
-        raise nothing_in(folder, "there are no trees in XML in this folder")
+        raise empty_folder_error(folder, "there are no trees in XML in this folder")
     return found
 
 
-def nothing_in(folder: str, reason: str) -> MissionError:
-    """For a folder in which nothing of what is wanted is (BT001)."""
+def empty_folder_error(folder: str, reason: str) -> MissionError:
+    """Make the error BT001 for a folder in which nothing of what is wanted is."""
     return MissionError([diagnostic("BT001", Span(Source("", folder), 0, 0), file=folder, reason=reason)])
 
 
-def named_files(paths: Sequence[str], inside: Callable[[str], Iterable[str]] = tree_files) -> Iterator[str]:
-    """The files, each once, with those inside folders in their place. Raises what `inside` raises."""
+def find_named_files(paths: Sequence[str], inside: Callable[[str], Iterable[str]] = find_tree_files) -> Iterator[str]:
+    """Yield the files, each once, with those inside folders in their place. Raises what `inside` raises."""
     done: set[str] = set()
     for path in paths:
         for file in inside(path) if os.path.isdir(path) else [path]:
@@ -39,8 +42,8 @@ def named_files(paths: Sequence[str], inside: Callable[[str], Iterable[str]] = t
                 yield file
 
 
-def files_below(folder: str, endings: tuple[str, ...]) -> Iterator[str]:
-    """The files with these endings in a folder and below it, without hidden ones."""
+def find_files_below(folder: str, endings: tuple[str, ...]) -> Iterator[str]:
+    """Yield the files with these endings in a folder and below it, without hidden ones."""
     for inside, folders, files in os.walk(folder):
         folders[:] = sorted(name for name in folders if name[:1] != ".")
         for name in sorted(files):
@@ -49,12 +52,12 @@ def files_below(folder: str, endings: tuple[str, ...]) -> Iterator[str]:
 
 
 def begins_as_tree(source: Source) -> bool:
-    """Whether the outermost tag is that of BehaviorTree.CPP."""
+    """Return whether the outermost tag is that of BehaviorTree.CPP."""
     return _ROOT.match(source.text) is not None
 
 
 def _may_have_trees(path: str) -> bool:
-    """Whether a file begins as a tree; what can't be read is reported later."""
+    """Return whether a file begins as a tree; what can't be read is reported later."""
     try:
         return begins_as_tree(read_source(path))
     except MissionError:

@@ -1,20 +1,99 @@
-"""The ports of nodes by their models: unknown and missing ones, values of another type, and outdated models."""
+"""The ports of nodes by their models: unknown and missing ones, values of another type, and outdated names."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.engine.instance import blackboard_key
 from btlang.frontends.btcpp.spelling import AUTOREMAP, TRUE
-from btlang.projects.places import attribute_name, attribute_value, place_of
-from btlang.projects.port_values import wanted
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import NOWHERE, Span
 from btlang.text.spelling import is_misspelling, nearest
 from btlang.tree.catalogue import CATALOGUE, SUBTREE
 from btlang.tree.model import NodeModel, PortModel
 from btlang.tree.node import Node
+
+_ATTRIBUTE = re.compile(r"""([^\s"'=<>/]+)\s*=\s*("[^"]*"|'[^']*')""")
+
+
+def place_of(node: Node) -> Span:
+    """Return the start tag of a node."""
+    return node.span or NOWHERE
+
+
+def attribute_name(node: Node, port: str) -> Span:
+    """Return the name of an attribute; the start tag where it has no such attribute."""
+    return _find(node, port, 1)
+
+
+def attribute_value(node: Node, port: str) -> Span:
+    """Return the text of an attribute, without its quotes; the start tag where it has no such attribute."""
+    return _find(node, port, 2)
+
+
+def id_place(node: Node) -> Span:
+    """Return what names its id: the tag, or the attribute ID behind a tag of its kind."""
+    span = place_of(node)
+    tag = re.match(r"<([^\s/>]+)", span.text)
+    if tag is not None and tag[1] == node.id:
+        return Span(span.source, span.start + 1, span.start + 1 + len(node.id))
+    return attribute_value(node, "ID")
+
+
+def _find(node: Node, port: str, group: int) -> Span:
+    span = place_of(node)
+    for match in _ATTRIBUTE.finditer(span.text):
+        if match[1] == port:
+            inner = group - 1  # the quotes
+            return Span(span.source, span.start + match.start(group) + inner, span.start + match.end(group) - inner)
+    return span
+
+
+_INTEGER = re.compile(r"(?:std::)?(?P<unsigned>u|unsigned )?(?:int|long|short|long long|int(?P<bits>8|16|32|64)_t)")
+_ALONE = {"unsigned": (0, 2**32 - 1), "size_t": (0, 2**64 - 1), "std::size_t": (0, 2**64 - 1)}
+_BITS = {"short": 16, "long": 64, "long long": 64}
+_DECIMAL = ("double", "float")
+_NUMBER = re.compile(r"[+-]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|inf|nan)", re.IGNORECASE)
+_BOOL = frozenset(("0", "1", "true", "True", "TRUE", "false", "False", "FALSE"))
+_ENUM = re.compile(r"(?:enum\b[\w ]*)?[({\[]?\s*(\w+(?:\s*[|,;]\s*\w+)+)\s*[)}\]]?")
+
+
+def describe_type(text: str, type: str) -> str:
+    """Say what a value of the type is, where the text is none; "" where it is one, or nothing is known of the type."""
+    if text[:5] == "json:":
+        return ""
+    bounds = _bounds(type)
+    if bounds is not None:
+        least, most = bounds
+        is_whole = re.fullmatch(r"[+-]?\d{1,30}", text) is not None
+        return "" if is_whole and least <= int(text) <= most else f"a whole number from {least:,} to {most:,}"
+    if type in _DECIMAL:
+        return "" if _NUMBER.fullmatch(text) else "a number"
+    if type == "bool":
+        return "" if text in _BOOL else "true or false"
+    names = enum_names(type)
+    return "" if not names or text in names or text.isdecimal() else f"one of {', '.join(names)}"
+
+
+def enum_names(type: str) -> list[str]:
+    """Return the names of an enum whose type lists them, such as `LEFT|RIGHT`; none for any other type."""
+    listed = _ENUM.fullmatch(type.strip())
+    return re.split(r"\s*[|,;]\s*", listed[1]) if listed else []
+
+
+def _bounds(type: str) -> tuple[int, int] | None:
+    """Return the least and the greatest value of a type of whole numbers."""
+    if type in _ALONE:
+        return _ALONE[type]
+    match = _INTEGER.fullmatch(type)
+    if match is None:
+        return None
+    name = type.removeprefix("unsigned ")
+    bits = int(match["bits"] or 0) or _BITS.get(name, 32)
+    return (0, 2**bits - 1) if match["unsigned"] else (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1)
+
 
 _SEVERAL = 2
 
@@ -29,7 +108,7 @@ class DescribedUses(Record):
 
 
 def port_problems(uses: DescribedUses) -> Iterator[Diagnostic]:
-    """BT232 for ports that the model doesn't have, BT233 for values of another type, BT234 for missing ports.
+    """Report BT232 for ports that the model doesn't have, BT233 for values of another type, BT234 for missing ports.
 
     BT239 where the model is wrong, and not the nodes.
     """
@@ -37,7 +116,7 @@ def port_problems(uses: DescribedUses) -> Iterator[Diagnostic]:
     ports = {port.name: port for port in model.ports}
     others = [port for other, _ in uses.others for port in other.ports]
     given = [dict(node.ports) for node in uses.nodes]
-    lacking = _lacking(uses, others)
+    lacking = _find_lacking(uses, others)
     optional = {port.name for port in model.ports if _may_be_left_out(port, others, given)}
     for node in uses.nodes:
         own = dict(node.ports)
@@ -46,7 +125,7 @@ def port_problems(uses: DescribedUses) -> Iterator[Diagnostic]:
             if name in ports or name in lacking or _is_no_port(name):
                 continue
             near = _near(name, own, ports)
-            fix = respelling(attribute_name(node, name), near)
+            fix = suggest_name(attribute_name(node, name), near)
             missing = [port for port in missing if fix is None or port != fix[1]]
             help = f"Similar: {', '.join(near)}" if near else f"It has {', '.join(ports) or 'none'}."
             yield diagnostic("BT232", attribute_name(node, name), (), fix, port=name, id=node.id, help=help)
@@ -58,7 +137,7 @@ def port_problems(uses: DescribedUses) -> Iterator[Diagnostic]:
 
 
 def misspelt_ports(uses: DescribedUses) -> Iterator[Diagnostic]:
-    """BT232 for ports that are surely misspelt, where the model may not list all ports."""
+    """Report BT232 for ports that are surely misspelt, where the model may not list all ports."""
     for problem in port_problems(uses):
         if problem.code == "BT232" and problem.fix is not None:
             yield problem
@@ -72,9 +151,9 @@ def _near(name: str, given: Iterable[str], ports: Iterable[str]) -> list[str]:
     return nearest(name.lower(), [port for port in ports if port not in given])
 
 
-def _lacking(uses: DescribedUses, others: Iterable[PortModel]) -> dict[str, list[Node]]:
-    """The ports that nodes have and the model lacks, with these nodes: another model has them, or several nodes do and
-    they aren't misspelt.
+def _find_lacking(uses: DescribedUses, others: Iterable[PortModel]) -> dict[str, list[Node]]:
+    """Return the ports that nodes have and the model lacks, with these nodes: another model has them, or several nodes
+    do and they aren't misspelt.
     """
     ports, elsewhere = {port.name for port in uses.model.ports}, {port.name for port in others}
     found: dict[str, list[Node]] = {}
@@ -91,7 +170,9 @@ def _lacking(uses: DescribedUses, others: Iterable[PortModel]) -> dict[str, list
 
 
 def _may_be_left_out(port: PortModel, others: Iterable[PortModel], given: Sequence[dict[str, str]]) -> bool:
-    """Whether a port needn't be given: it is an output or has a default, or half of several nodes leave it out."""
+    """Return whether a port needn't be given: it is an output or has a default, or half of several nodes leave it
+    out.
+    """
     if port.direction == "output" or port.default is not None:
         return True
     if any(other.name == port.name and other.default is not None for other in others):
@@ -101,17 +182,17 @@ def _may_be_left_out(port: PortModel, others: Iterable[PortModel], given: Sequen
 
 
 def _wrong_values(node: Node, ports: Sequence[PortModel]) -> Iterator[Diagnostic]:
-    """BT233 where no model takes a value."""
+    """Report BT233 where no model takes a value."""
     for name, text in node.ports:
         described = [port for port in ports if port.name == name]
         if not described or not text.strip() or "{" in text or described[0].direction == "output":
             continue
-        if all(expected := [wanted(text.strip(), port.type) for port in described]):
+        if all(expected := [describe_type(text.strip(), port.type) for port in described]):
             yield diagnostic("BT233", attribute_value(node, name), text=text, port=name, id=node.id, wanted=expected[0])
 
 
 def _stale(uses: DescribedUses, lacking: dict[str, list[Node]]) -> Diagnostic:
-    """BT239 at the model, with the first node of each port that it lacks, and the models that have them."""
+    """Report BT239 at the model, with the first node of each port that it lacks, and the models that have them."""
     notes = [(attribute_name(nodes[0], name), f"'{name}' is given here{_more(nodes)}")
              for name, nodes in lacking.items()]  # fmt: skip
     for model, place in uses.others:
@@ -125,14 +206,14 @@ def _more(nodes: Sequence[Node]) -> str:
     return f", and {len(nodes) - 1} more times" if len(nodes) > _SEVERAL else " and once more" if len(nodes) > 1 else ""
 
 
-def respelling(span: Span, near: list[str]) -> tuple[Span, str] | None:
-    """The change of a misspelt name to the one name that is near; None where that isn't certain."""
+def suggest_name(span: Span, near: list[str]) -> tuple[Span, str] | None:
+    """Return the change of a misspelt name to the one name that is near; None where that isn't certain."""
     certain = len(near) == 1 and is_misspelling(span.text, near[0], ())
     return (span, near[0]) if certain else None
 
 
 def subtree_problems(node: Node, model: NodeModel) -> Iterator[Diagnostic]:
-    """BT132 for ports that the model of a tree requires, as BehaviorTree.CPP 4 does."""
+    """Report BT132 for ports that the model of a tree requires, as BehaviorTree.CPP 4 does."""
     if node.port(AUTOREMAP) in TRUE:
         return
     for port in model.ports:
@@ -142,7 +223,9 @@ def subtree_problems(node: Node, model: NodeModel) -> Iterator[Diagnostic]:
 
 
 def constant_outputs(node: Node, model: NodeModel) -> Iterator[Diagnostic]:
-    """BT233 for outputs that name no entry: BehaviorTree.CPP 4 writes them nowhere, but version 3 needs no braces."""
+    """Report BT233 for outputs that name no entry: BehaviorTree.CPP 4 writes them nowhere, but version 3 needs no
+    braces.
+    """
     outputs = {port.name for port in model.ports if port.direction == "output"}
     for name, text in node.ports:
         if name in outputs and text.strip() not in ("", "=") and blackboard_key(name, text) is None:
@@ -152,7 +235,7 @@ def constant_outputs(node: Node, model: NodeModel) -> Iterator[Diagnostic]:
 
 
 def several_alone(node: Node) -> Iterator[Diagnostic]:
-    """BT132 for a second child of a kind of which BehaviorTree.CPP 4.10 takes only one there."""
+    """Report BT132 for a second child of a kind of which BehaviorTree.CPP 4.10 takes only one there."""
     alone = [child for child in node.children if child.id in CATALOGUE and CATALOGUE[child.id].alone_in == node.id]
     if len(alone) > 1:
         notes = tuple((place_of(child), f"{child.id} is asynchronous") for child in alone)

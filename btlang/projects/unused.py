@@ -1,16 +1,18 @@
-"""BT235 and BT236: what nothing in a project reads or uses."""
+"""Nodes that neither a model nor btlang knows (BT231), and what nothing reads or uses (BT235, BT236)."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Container, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Container, Iterable, Iterator, Mapping
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.engine.instance import blackboard_key
 from btlang.engine.script.names import READS, SETS, uses_of_names
+from btlang.frontends.btcpp.dialect import ONLY_IN_3
 from btlang.frontends.btcpp.project import XmlProject
 from btlang.frontends.btcpp.spelling import AUTOREMAP, TRUE
-from btlang.projects.places import attribute_value
+from btlang.projects.ports import attribute_value, id_place, suggest_name
+from btlang.text.spelling import misspelt
 from btlang.tree.catalogue import KEY, SCRIPT, SUBTREE, held
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import subtree_names, used_subtrees
@@ -21,11 +23,14 @@ if TYPE_CHECKING:
 
     OutputsOf: TypeAlias = Callable[[Node], Container[str]]
 
+
 _WORD = re.compile(r"[^\W\d]\w*")
 
 
 def keys_read(nodes: Iterable[Node], outputs_of: OutputsOf) -> frozenset[str]:
-    """Every key that a port, a script or a SubTree may read, in whatever tree: a key has other names in other trees."""
+    """Return every key that a port, a script or a SubTree may read, in whatever tree: a key has other names in other
+    trees.
+    """
     read: set[str] = set()
     for node in nodes:
         outputs = outputs_of(node)
@@ -41,7 +46,7 @@ def keys_read(nodes: Iterable[Node], outputs_of: OutputsOf) -> frozenset[str]:
 
 
 def unread_values(nodes: Iterable[Node], outputs_of: OutputsOf, read: frozenset[str]) -> Iterator[Diagnostic]:
-    """BT235 for the keys that only output ports name, and that scripts only assign to."""
+    """Report BT235 for the keys that only output ports name, and that scripts only assign to."""
     for node in nodes:
         outputs = outputs_of(node)
         for name, text in node.ports:
@@ -59,21 +64,21 @@ def _keys_set(node_id: str, port: str, text: str, outputs: Container[str]) -> It
 
 
 def unread_subtree_ports(nodes: Iterable[Node], trees: Mapping[str, Node]) -> Iterator[Diagnostic]:
-    """BT235 for values that a tree is given and doesn't name anywhere."""
+    """Report BT235 for values that a tree is given and doesn't name anywhere."""
     named: dict[str, set[str]] = {}
     for node in nodes:
         used = node.port("ID")
         if node.id != SUBTREE or used not in trees:
             continue
         if used not in named:
-            named[used] = _named(trees[used], trees)
+            named[used] = _find_names(trees[used], trees)
         for name, _ in node.ports:
             if name != "ID" and name[:1] != "_" and _WORD.fullmatch(name) and name not in named[used]:
                 yield diagnostic("BT235", attribute_value(node, name), key=name, port=name, id=used)
 
 
-def _named(root: Node, trees: Mapping[str, Node]) -> set[str]:
-    """All words of a tree that may be keys, and of those that see its keys by their own names."""
+def _find_names(root: Node, trees: Mapping[str, Node]) -> set[str]:
+    """Return all words of a tree that may be keys, and of those that see its keys by their own names."""
     words: set[str] = set()
     waiting, done = [root], set[str]()
     while waiting:
@@ -88,7 +93,9 @@ def _named(root: Node, trees: Mapping[str, Node]) -> set[str]:
 
 
 def unused_trees(project: XmlProject) -> Iterator[Diagnostic]:
-    """BT236 for trees that no main tree reaches, where a main tree uses others, in the files of what it reaches."""
+    """Report BT236 for trees that no main tree reaches, where a main tree uses others, in the files of what it
+    reaches.
+    """
     trees = project.trees
     mains = [trees[name] for name in project.mains]
     if not any(name in trees for root in mains for name in subtree_names(root)):
@@ -98,3 +105,27 @@ def unused_trees(project: XmlProject) -> Iterator[Diagnostic]:
     for name, head in project.heads.items():
         if name in trees and name not in reached and head.span.source.name in files:
             yield diagnostic("BT236", head.span, name=head.written or name)
+
+
+def unknown_nodes(
+    nodes: Iterable[Node], described: Collection[str], words: Collection[str], dialects: Mapping[str, int]
+) -> Iterator[Diagnostic]:
+    """Report BT231 at the first node of each unknown id, with how often it is used.
+
+    `described` are the ids that the project can mean, `words` those of btlang's leaves; `dialects` are those of files.
+    """
+    uses: dict[str, list[Node]] = {}
+    for node in nodes:
+        if node.id and node.id not in described and node.id not in words and node.span is not None:
+            uses.setdefault(node.id, []).append(node)
+    for node_id, found in uses.items():
+        first = found[0]
+        place = id_place(first)
+        if node_id in ONLY_IN_3 and dialects.get(place.source.name) == 3:
+            continue
+        near, words_near = misspelt(node_id, described), misspelt(node_id, words)
+        # a tag with an end tag can't be changed alone
+        fix = None if first.children and place.text == node_id else suggest_name(place, near)
+        times = {1: "once", 2: "twice"}.get(len(found), f"{len(found)} times")
+        help = f"Similar: {', '.join(near or words_near)}" if near or words_near else ""
+        yield diagnostic("BT231", place, (), fix, id=node_id, times=times, help=help)

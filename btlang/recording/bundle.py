@@ -20,7 +20,9 @@ _ENDINGS = (".txt", ".toml", ".xml", ".json")
 
 
 def files_of(mission: Mission, keywords: Sequence[str], robot: str = "") -> dict[str, bytes]:
-    """The tree, the text of the mission with what it includes, its world, keyword and robot files, by their names."""
+    """Return the tree, the text of the mission with what it includes, its world, keyword and robot files, by their
+    names.
+    """
     files = {TREE: str(mission.to("json")).encode()}
     if mission.syntax is not None:
         files[MISSION] = mission.syntax.span.source.text.encode()
@@ -38,10 +40,11 @@ def files_of(mission: Mission, keywords: Sequence[str], robot: str = "") -> dict
 
 
 @contextmanager
-def recorded_mission(
+def open_mission(
     files: Mapping[str, bytes], name: str, language: str, keywords: Sequence[str] | None = None
 ) -> Iterator[Mission]:
-    """The mission that a recording keeps, in a folder of its own for as long as it is used; `name` is that in messages.
+    """Give the mission that a recording keeps, in a folder of its own for as long as it is used; `name` is that in
+    messages.
 
     Where its text can no longer be read as the tree that ran, it is that tree. It is read with the recorded keyword
     files unless there are `keywords`: to run it takes files that the user has named, since these name code to run.

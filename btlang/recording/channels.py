@@ -7,7 +7,6 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 
 from btlang.engine.status import FAILURE, NAMES
-from btlang.record import Record
 from btlang.run.events import (
     LOGGED,
     Ended,
@@ -21,8 +20,9 @@ from btlang.run.events import (
     Troubled,
     Warned,
 )
-from btlang.run.json_log import as_json, described
+from btlang.run.logs import as_json, describe_event
 from btlang.run.robot_state import Movements
+from btlang.support.record import Record
 from btlang.text.json_text import shallow
 from btlang.tree.node import Node
 
@@ -36,7 +36,7 @@ ROBOT_FRAME = "base_link"
 _INFO, _WARNING, _ERROR = 2, 3, 4  # levels of foxglove.Log
 
 
-class Channel(Record):
+class RecordingChannel(Record):
     """A topic, and the name and JSON schema of its messages."""
 
     topic: str
@@ -54,30 +54,33 @@ _TIME = _object(sec=_WHOLE, nsec=_WHOLE)
 _AXES = {"x": _NUMBER, "y": _NUMBER, "z": _NUMBER}
 _POSE = _object(position=_object(**_AXES), orientation=_object(**_AXES, w=_NUMBER))
 
-STATUSES = Channel("/btlang/statuses", "btlang.StatusesChanged", _object(
+STATUSES = RecordingChannel("/btlang/statuses", "btlang.StatusesChanged", _object(
     **_COMMON, indices={"type": "array", "items": _WHOLE}, codes={"type": "array", "items": _WHOLE},
     reasons={"type": "object", "additionalProperties": _TEXT}, values={"type": "object"},
 ))  # fmt: skip
 """The changes of a tick: numbers of nodes in preorder, `before * 8 + status` of each, and the reasons by position."""
-STATE = Channel("/robot/state", "btlang.RobotState", _object(
+STATE = RecordingChannel("/robot/state", "btlang.RobotState", _object(
     **_COMMON, ticks=_WHOLE, overruns=_WHOLE, battery={"type": ["number", "null"]},
     left={"type": ["string", "null"]}, right={"type": ["string", "null"]}, pose={"type": ["array", "null"]},
 ))  # fmt: skip
-THINGS = Channel("/robot/things", "btlang.Things", _object(
+THINGS = RecordingChannel("/robot/things", "btlang.Things", _object(
     **_COMMON, things={"type": "array", "items": {"type": "array"}},
 ))  # fmt: skip
-"""People and objects that moved, or that the robot begins or ceases to see: see btlang.run.robot_state.Whereabouts."""
-VALUES = Channel("/btlang/values", "btlang.Values", _object(**_COMMON, values={"type": "object"}))
-POSE = Channel("/robot/pose", "foxglove.PoseInFrame", _object(timestamp=_TIME, frame_id=_TEXT, pose=_POSE))
-SCAN = Channel("/robot/scan", "foxglove.LaserScan", _object(
+"""The people and objects that moved, or that the robot begins or ceases to see: see btlang.run.robot_state.Whereabouts.
+"""
+VALUES = RecordingChannel("/btlang/values", "btlang.Values", _object(**_COMMON, values={"type": "object"}))
+POSE = RecordingChannel("/robot/pose", "foxglove.PoseInFrame", _object(timestamp=_TIME, frame_id=_TEXT, pose=_POSE))
+SCAN = RecordingChannel("/robot/scan", "foxglove.LaserScan", _object(
     timestamp=_TIME, frame_id=_TEXT, pose=_POSE, start_angle=_NUMBER, end_angle=_NUMBER,
     ranges={"type": "array", "items": _NUMBER}, intensities={"type": "array", "items": _NUMBER},
 ))  # fmt: skip
-LOG = Channel("/log", "foxglove.Log", _object(
+LOG = RecordingChannel("/log", "foxglove.Log", _object(
     timestamp=_TIME, level=_WHOLE, message=_TEXT, name=_TEXT, file=_TEXT, line=_WHOLE,
 ))  # fmt: skip
 EVENTS = {
-    kind: Channel(f"/btlang/{kind.tag}", f"btlang.{kind.__name__}", described(kind)) for kind in LOGGED if kind.tag
+    kind: RecordingChannel(f"/btlang/{kind.tag}", f"btlang.{kind.__name__}", describe_event(kind))
+    for kind in LOGGED
+    if kind.tag
 }
 """A channel for each other class of events."""
 CLASSES = {channel.topic: kind for kind, channel in EVENTS.items()}
@@ -85,8 +88,11 @@ CLASSES = {channel.topic: kind for kind, channel in EVENTS.items()}
 
 def messages(
     event: Event, nanoseconds: int, label: Callable[[Node], str], movements: Movements
-) -> Iterator[tuple[Channel, dict[str, Any] | str]]:
-    """What is written of an event, at a time since 1970; a text is JSON already. `movements` are those of the file."""
+) -> Iterator[tuple[RecordingChannel, dict[str, Any] | str]]:
+    """Yield what is written of an event, at a time since 1970; a text is JSON already.
+
+    `movements` are those of the file.
+    """
     if isinstance(event, StatusesChanged):
         yield STATUSES, _statuses(event)
     elif isinstance(event, PeriodPassed):
@@ -122,8 +128,8 @@ def _statuses(event: StatusesChanged) -> dict[str, Any]:
     return written
 
 
-def _period(event: PeriodPassed, nanoseconds: int) -> Iterator[tuple[Channel, str]]:
-    """Written by hand, since there are so many of them: an encoder takes three times as long."""
+def _period(event: PeriodPassed, nanoseconds: int) -> Iterator[tuple[RecordingChannel, str]]:
+    """Write a period by hand, since there are so many of them: an encoder takes three times as long."""
     state = event.state
     pose = None if state is None else state.pose
     head = f'{{"t":{event.t!r},"number":{event.number},"wall":{event.wall!r},"ticks":{event.ticks}'
@@ -167,7 +173,7 @@ def _time(nanoseconds: int) -> dict[str, int]:
 
 
 def _text(event: Event) -> tuple[int, str] | None:
-    """The level and the text of an event that is for people."""
+    """Return the level and the text of an event that is for people."""
     if isinstance(event, Said | Printed):
         return _INFO, event.text
     if isinstance(event, Notice):

@@ -1,30 +1,41 @@
-"""A run as data that a page can play, from its beginning to its end: of a recording, or of a trial."""
+"""Runs as data that a page can play: of a recording, of two side by side, or of a trial in the simulated world."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from contextlib import ExitStack
 
 from btlang.api import Mission
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.diagnostics.errors import MissionError
 from btlang.engine.compile import outline
 from btlang.engine.status import NAMES
 from btlang.passes.scripts import is_prepared
-from btlang.recording.reader import RecordedNodes
+from btlang.recording.diff import compare_endings, describe_step, first_pair, mission_differences, run_differences
+from btlang.recording.reader import RecordedNodes, open_recording
 from btlang.recording.story import Story
 from btlang.robots.worlds.world_file import read_world
 from btlang.run.bus import BLOCK
 from btlang.run.events import LOGGED, Event, PeriodPassed, Sampled, StatusesChanged
-from btlang.run.json_log import as_json
-from btlang.run.known_nodes import KnownNodes, text_and_places
-from btlang.run.robot_state import Movements, rounded_scan
-from btlang.run.shape import Shape
-from btlang.run.snapshot import State
+from btlang.run.logs import as_json
+from btlang.run.robot_state import Movements, round_scan
+from btlang.run.snapshot import KnownNodes, RunState, Shape, text_and_places
+from btlang.session import Session
+from btlang.text.source import NOWHERE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from typing import Any
 
+    from btlang.run.events import Sink
+    from btlang.run.outcome import Outcome
+    from btlang.tree.node import Node, Tree
+    from btlang.vocabulary.lexicon import Lexicon
+
+
 MOST_CHANGES = 200_000
-"""Of statuses in a film; a longer run ends there."""
+"""The limit of changes of statuses in a film; a longer run ends there."""
 _MOST_EVENTS = 20_000
 _MOST_STATES = 50_000
 _MOST_PLACES = 200_000  # of people and objects
@@ -41,7 +52,9 @@ class Film:
         self._nodes = RecordedNodes(*outline(mission.tree))
         self._story = Story(mission, self._nodes, self._about)
         indices = range(self._nodes.size)
-        self._state = State(Shape([self._nodes.parent(at) for at in indices]), [self._nodes.node(at) for at in indices])
+        self._state = RunState(
+            Shape([self._nodes.parent(at) for at in indices]), [self._nodes.node(at) for at in indices]
+        )
         self._known = KnownNodes(self._nodes.size)
         self._statuses: list[list[float | int]] = []
         self._words: list[list[Any]] = []
@@ -57,13 +70,13 @@ class Film:
         """Whether more happened than it keeps."""
 
     def take(self, events: Iterable[Event]) -> Film:
-        """All that happened."""
+        """Take in all that happened."""
         for event in events:
             self(event)
         return self
 
     def __call__(self, event: Event) -> None:
-        """Keeps an event."""
+        """Keep an event."""
         if self.is_cut:
             return
         self._story.take((event,))
@@ -83,7 +96,7 @@ class Film:
                 self._take_things(event)
             self._latest = event
         elif isinstance(event, Sampled) and event.scan:
-            self._scans.append([round(event.t, 3), rounded_scan(event.scan)])
+            self._scans.append([round(event.t, 3), round_scan(event.scan)])
         elif isinstance(event, LOGGED):
             self._events.append(as_json(event, self._mission.label))
             doing = [*self._state.doing.as_dict().values()]
@@ -105,17 +118,17 @@ class Film:
             self._things += [[round(event.t, 3), *each] for each in self._movements.changed(event.state.things)]
 
     def data(self) -> dict[str, Any]:
-        """As JSON has it.
+        """Return the film as JSON has it.
 
         - `text`: the mission, "" where it had none; `nodes`: in preorder, with the number of the parent (-1: the root)
-          and the characters of the text that say it (None for none); `prepared` are those whose children but the
-          last only compute values for that one; `names`: those of statuses;
+        and the characters of the text that say it (None for none); `prepared` are those whose children but the
+        last only compute values for that one; `names`: those of statuses;
         - `words`: time, node and what it says with the values of its keys, where these are new;
         - `statuses`: a time in seconds, then node and status (a number of `names`) in turn, as a live view has them;
         - `doing`: time, task (0), where it is going, what it said and heard last, where one of these is new;
         - `robot`: time, x, y (metres), heading (degrees), battery (percent), what the left and the right hand hold;
         - `things`: time, name, x, y (metres, None where it isn't there) and whether the robot sees it, where one of
-          these is new; of people who walk and of what the robot doesn't know by its world;
+        these is new; of people who walk and of what the robot doesn't know by its world;
         - `scans`: time and metres, counter-clockwise from straight ahead; `events`: see btlang/run/events.schema.json;
         - `story`: time, node (-1: none) and words; `why`: how it ended; `failed`: the node that failed, or -1;
         - `seconds`: how long it is; `is_cut`: whether more happened than is kept; `map`: see World.as_map.
@@ -152,3 +165,101 @@ class Film:
             "is_cut": self.is_cut,
             "map": read_world(mission.world).as_map(),
         }
+
+
+def side_by_side(one: str, other: str) -> dict[str, Any]:
+    """Return two recordings, by their paths, as JSON has it; runs nothing. Raises MissionError for what can't be read.
+
+    - `films`: see Film.data; `stories`: what only one of the runs did, as `btc diff` writes it;
+    - `missions`: what differs between their trees, as `btc diff` writes it; nodes are compared only where nothing does:
+    - `first`: of each run the time, node and words of the first change of status that the other one doesn't have, with
+    None and -1 for a run that has no more; None if there is none. Times don't count;
+    - `ended`: the numbers of the nodes whose last status isn't the same.
+    """
+    with ExitStack() as stack:
+        sides = [stack.enter_context(open_recording(path, ())) for path in (one, other)]
+        films = [Film(mission, dict(recording.about)) for recording, mission, _ in sides]
+        events = [list(recording.events(nodes)) for recording, _, nodes in sides]
+        stories = [
+            Story(mission, nodes, {}).take(happened)
+            for (_, mission, nodes), happened in zip(sides, events, strict=True)
+        ]
+        missions = list(mission_differences(sides[0][1], sides[1][1]))
+        pair = None if missions else first_pair(*events)
+        first = pair and [
+            {
+                "t": None if step is None else step[0], "node": -1 if step is None else step[1],
+                "words": describe_step(step, nodes.node, mission.label),
+            }
+            for step, (_, mission, nodes) in zip(pair, sides, strict=True)
+        ]  # fmt: skip
+        return {
+            "films": [film.take(happened).data() for film, happened in zip(films, events, strict=True)],
+            "stories": list(run_differences(*(story.body() for story in stories))),
+            "missions": missions,
+            "first": first,
+            "ended": [] if missions else compare_endings(*events),
+        }
+
+
+MOST_SECONDS = 3600.0
+"""The limit of the mission's time."""
+_MOST_TICKS = 72_000
+_RATE = 20.0
+_ENDING = 2.0  # seconds that a stopped run may take at least to end
+OURS = "btlang.actions."
+"""The prefix of modules whose functions do nothing but command the robot that they are given."""
+
+
+def simulate(
+    mission: Mission,
+    sink: Sink,
+    seconds: float,
+    patience: float,
+    ticks: int = _MOST_TICKS,
+    seed: int | None = None,
+) -> tuple[Outcome | None, str]:
+    """Run a mission on the simulated robot, as fast as possible, for at most so many seconds of the mission and ticks.
+
+    The outcome, None for a mission with a command that never returns, and what stopped it: "" if it ended by itself. It
+    is stopped after `patience` seconds of real time. Raises MissionError for a mission that can't be run.
+    """
+    mission.check()
+    limit = min(max(seconds, 0.0), MOST_SECONDS, min(max(ticks, 1), _MOST_TICKS) / _RATE)
+    options = {} if seed is None else {"seed": seed}
+    session = Session("simulated", world=mission.world)
+    run = session.start(mission, speed="max", rate=_RATE, time_limit=limit, sinks=(sink,), **options)
+    outcome = run.wait(patience)
+    if outcome is not None:
+        session.close()
+        return outcome, outcome.stopped
+    run.stop()
+    outcome = run.wait(max(patience, _ENDING))
+    if outcome is not None:  # closing the session would wait for the command
+        session.close()
+    return outcome, "it took too long to simulate"
+
+
+def check_words(tree: Tree, vocabulary: Lexicon, label: Callable[[Node], str], further: str = OURS) -> None:
+    """Raise MissionError (BT221) for a tree with words that are no words of btlang: what they do might move a real
+    robot. `further` is where the names of functions of other words that are allowed begin.
+    """
+    for node in tree.walk():
+        entry = vocabulary.entry(node.id)
+        if entry is not None and not str(entry.call).startswith((OURS, further)):
+            raise MissionError([diagnostic("BT221", node.span or NOWHERE, words=label(node), file=entry.file)])
+
+
+def try_mission(
+    mission: Mission, seconds: float = 600.0, patience: float = 6.0, seed: int | None = None
+) -> dict[str, Any]:
+    """Return the film of a run (see Film.data) of at most so many seconds of the mission and `patience` seconds of real
+    time, and what `stopped` it: "" if it ended by itself.
+
+    Raises MissionError for a mission that can't be run, and BT221 for one with words that are no words of btlang: what
+    they do might move a real robot.
+    """
+    check_words(mission.tree, mission.vocabulary, mission.label)
+    film = Film(mission)
+    _, stopped = simulate(mission, film, seconds, patience, seed=seed)
+    return {**film.data(), "stopped": stopped}

@@ -1,23 +1,27 @@
-"""Reads recordings, also those that end in the middle of a record."""
+"""The reader of recordings, also of those that end in the middle of a record, and their missions."""
 
 from __future__ import annotations
 
 import json
 import struct
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from functools import cached_property
 
+from btlang.api import Mission
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import reason_of
+from btlang.engine.compile import outline
 from btlang.engine.status import NAMES
 from btlang.engine.status_trace import Changes
-from btlang.record import Record
+from btlang.recording.bundle import open_mission
 from btlang.recording.channels import CLASSES, LOG, POSE, SCAN, STATE, STATUSES, THINGS, VALUES
 from btlang.recording.recorder import ABOUT
 from btlang.robots.geometry import Pose
 from btlang.run.events import Event, PeriodPassed, Sampled, StatusesChanged
 from btlang.run.robot_state import RobotState, Whereabouts
+from btlang.support.record import Record
 from btlang.text.source import NOWHERE, Span
 from btlang.tree.node import Node
 
@@ -27,8 +31,9 @@ if TYPE_CHECKING:
 
     from btlang.engine.instance import Fault, NodeInstance
 
+
 MOST_BYTES = 64_000_000
-"""Of one record: a broken length would fill the memory."""
+"""The limit of one record: a broken length would fill the memory."""
 _STATUSES = range(len(NAMES))
 _FOR_OTHERS = frozenset((POSE.topic, SCAN.topic, LOG.topic))  # which say again what our own messages do
 
@@ -47,7 +52,7 @@ class RecordedNodes:
 
     @cached_property
     def _places(self) -> list[int]:
-        """Which child of its parent each node is."""
+        """Return which child of its parent each node is."""
         counts = [0] * len(self._nodes)
         places = []
         for parent in self._parents:
@@ -57,7 +62,7 @@ class RecordedNodes:
         return places
 
     def path(self, index: int) -> str:
-        """As that of an engine: `/0/1` is the second child of the root's first one."""
+        """Return the path of a node as that of an engine: `/0/1` is the second child of the root's first one."""
         steps: list[str] = []
         while self._parents[index] >= 0:
             steps.append(str(self._places[index]))
@@ -65,38 +70,41 @@ class RecordedNodes:
         return "/" + "/".join(reversed(steps))
 
     def node(self, index: int) -> Node:
-        """The node with a number."""
+        """Return the node with a number."""
         return self._nodes[index]
 
     def parent(self, index: int) -> int:
-        """The number of the node above, -1 for the root."""
+        """Return the number of the node above, -1 for the root."""
         return self._parents[index]
 
     def span(self, index: int) -> Span | None:
-        """The sentence of a node, or of the nearest one above it that has one."""
+        """Return the sentence of a node, or of the nearest one above it that has one."""
         span = None
         while span is None and index >= 0:
             span, index = self._nodes[index].span, self._parents[index]
         return span
 
     def filled(self, index: int) -> Node:
-        """The same: what its ports held is with the changes."""
+        """Return the same: what its ports held is with the changes."""
         return self._nodes[index]
 
     def reason(self, index: int, fault: Fault | NodeInstance | None) -> str:
-        """Why a node failed, as it was written."""
+        """Return why a node failed, as it was written."""
         return fault if isinstance(fault, str) else ""
 
 
 class Recording(Record):
-    """`about` and `files` are those of the Recorder, `entries` the messages that are ours: topic and JSON."""
+    """A recording.
+
+    `about` and `files` are those of the Recorder, `entries` the messages that are ours: topic and JSON.
+    """
 
     about: Mapping[str, str]
     files: Mapping[str, bytes]
     entries: tuple[tuple[str, bytes], ...]
 
     def events(self, nodes: RecordedNodes) -> Iterator[Event]:
-        """What happened, as the classes of events, up to the first that is broken."""
+        """Yield what happened, as the classes of events, up to the first that is broken."""
         run = self.about.get("run", "")
         things: dict[str, Whereabouts] = {}
         for topic, data in self.entries:
@@ -109,7 +117,7 @@ class Recording(Record):
 
 
 def read_recording(path: str) -> Recording:
-    """Raises MissionError if it isn't a recording of btlang (BT084), or can't be read (BT001)."""
+    """Raise MissionError if it isn't a recording of btlang (BT084), or can't be read (BT001)."""
     from mcap.exceptions import McapError
     from mcap.records import Attachment, Channel, Message, Metadata
     from mcap.stream_reader import StreamReader
@@ -142,7 +150,7 @@ def read_recording(path: str) -> Recording:
 
 
 def read_about(path: str) -> dict[str, str]:
-    """What a recording says of itself, from its beginning; nothing if it can't be read."""
+    """Return what a recording says of itself, from its beginning; nothing if it can't be read."""
     from mcap.exceptions import McapError
     from mcap.records import Metadata
     from mcap.stream_reader import StreamReader
@@ -160,7 +168,7 @@ def read_about(path: str) -> dict[str, str]:
 def _event(
     topic: str, data: Mapping[str, Any], run: str, nodes: RecordedNodes, things: dict[str, Whereabouts]
 ) -> Event | None:
-    """`things` are those that were written so far."""
+    """Make an event of a message. `things` are those that were written so far."""
     if topic == STATUSES.topic:
         common = data["t"], run, data["number"], data["wall"]
         valued = {int(index): _with_ports(nodes, int(index), ports) for index, ports in data.get("values", {}).items()}
@@ -206,3 +214,29 @@ def _changes(data: Mapping[str, Any], size: int) -> Changes:
 def _with_ports(nodes: RecordedNodes, index: int, ports: Mapping[str, str]) -> Node:
     node: Node = nodes.node(index).replace(ports=tuple(ports.items()))
     return node
+
+
+_MAGIC = b"\x89MCAP0\r\n"
+
+
+def is_recording(path: str) -> bool:
+    """Return whether the file begins as a recording does."""
+    try:
+        with open(path, "rb") as file:
+            return file.read(len(_MAGIC)) == _MAGIC
+    except OSError:
+        return False
+
+
+@contextmanager
+def open_recording(
+    path: str, keywords: Sequence[str] | None = None
+) -> Iterator[tuple[Recording, Mission, RecordedNodes]]:
+    """Give a recording, its mission and the nodes of that; with `keywords` the mission may be run.
+
+    Raises MissionError.
+    """
+    recording = read_recording(path)
+    name, language = recording.about.get("mission", "a mission"), recording.about.get("language", "en")
+    with open_mission(recording.files, name, language, keywords) as mission:
+        yield recording, mission, RecordedNodes(*outline(mission.tree))

@@ -13,7 +13,7 @@ from btlang.api import Mission
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import unwritable
 from btlang.recording.bundle import files_of
-from btlang.recording.channels import Channel, messages
+from btlang.recording.channels import RecordingChannel, messages
 from btlang.run.bus import BLOCK
 from btlang.run.events import Ended, Event, PeriodPassed
 from btlang.run.robot_state import Movements
@@ -58,7 +58,7 @@ class Recorder:
         self._open()
 
     def __call__(self, event: Event) -> None:
-        """Writes an event. Raises OSError if that isn't possible."""
+        """Write an event. Raises OSError if that isn't possible."""
         try:
             self._write(event)
         except OSError as error:
@@ -94,7 +94,7 @@ class Recorder:
             self._open()
 
     def close(self) -> None:
-        """Ends the file. May be called twice, and after the disk was full."""
+        """End the file. May be called twice, and after the disk was full."""
         with suppress(OSError, ValueError):
             if not self._file.closed:
                 self._writer.finish()  # type: ignore[no-untyped-call]
@@ -119,14 +119,14 @@ class Recorder:
             self._writer.add_attachment(now, now, name, _media_type(name), data)
         self._file.flush()
 
-    def _new_id(self, channel: Channel) -> int:
+    def _new_id(self, channel: RecordingChannel) -> int:
         schema = self._writer.register_schema(channel.schema, "jsonschema", _schema(channel).encode())
         number: int = self._writer.register_channel(channel.topic, "json", schema)
         self._channels[channel.topic] = number
         return number
 
 
-def _schema(channel: Channel) -> str:
+def _schema(channel: RecordingChannel) -> str:
     fields: dict[str, Any] = {"title": channel.schema, **channel.described, "type": "object"}
     return json.dumps(fields)
 
@@ -138,7 +138,10 @@ def _media_type(name: str) -> str:
 def recorder_in(
     folder: str, mission: Mission, keywords: Sequence[str], about: Mapping[str, str], most_bytes: int | None = None
 ) -> Recorder:
-    """A recorder for a run of a mission, in a file of a folder that is named after the time. Raises MissionError."""
+    """Return a recorder for a run of a mission, in a file of a folder that is named after the time.
+
+    Raises MissionError.
+    """
     import btlang
 
     path = os.path.join(folder, time.strftime("%Y-%m-%d-%H%M%S-") + os.urandom(2).hex() + ".mcap")

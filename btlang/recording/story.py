@@ -10,9 +10,8 @@ from btlang.engine.engine import Failure
 from btlang.engine.status import FAILURE, IDLE, NAMES, RUNNING, SKIPPED
 from btlang.recording.reader import RecordedNodes
 from btlang.run.events import Chosen, Ended, Event, FaultInjected, InTheWorld, Notice, PartChanged, StatusesChanged
-from btlang.run.failure_history import FailureHistory
-from btlang.run.lines import is_asked_wait
-from btlang.run.report import failure_report
+from btlang.run.failure_history import FailureHistory, failure_report
+from btlang.run.logs import is_asked_wait
 from btlang.text.escaping import one_line
 from btlang.tree.node import Node
 
@@ -20,19 +19,19 @@ _ENDINGS = {FAILURE: "failed", IDLE: "was halted", SKIPPED: "was skipped"}
 
 
 class Story:
-    """Follows the events of a run; `lines` describes it."""
+    """A story of a run: it follows the events, and `lines` describes it."""
 
     def __init__(self, mission: Mission, nodes: RecordedNodes, about: Mapping[str, str]) -> None:
         self._mission, self._nodes, self._about = mission, nodes, about
         self._history = FailureHistory(nodes)  # type: ignore[arg-type]  # which asks for nodes and parents only
         self._began: dict[int, tuple[float, Node]] = {}
         self.notes: list[tuple[float, int, str]] = []
-        """What was done: when it began, the number of the node (-1: none), and the words."""
+        """The things that were done: when each began, the number of the node (-1: none), and the words."""
         self._ended: Ended | None = None
         self._latest = 0.0
 
     def take(self, events: Iterable[Event]) -> Story:
-        """All that happened."""
+        """Take in all that happened."""
         for event in events:
             self._latest = max(self._latest, event.t)
             self._history(event)
@@ -40,7 +39,7 @@ class Story:
                 for change in event:
                     node = event.valued.get(change.index, change.node)
                     if self._is_said(node) or is_asked_wait(change.node):
-                        self._changed(change.index, change.status, change.t, node, change.reason)
+                        self._take_change(change.index, change.status, change.t, node, change.reason)
             elif isinstance(event, Chosen):
                 self._note(event.t, -1, f"It chooses {event.name}, the {event.how} {event.type}.")
             elif isinstance(event, FaultInjected | Notice | PartChanged) and event.text:
@@ -52,7 +51,7 @@ class Story:
         return self
 
     def lines(self) -> Iterator[str]:
-        """The story, from the beginning."""
+        """Yield the story, from the beginning."""
         about = self._about
         when = time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(float(about.get("wall", 0))))
         yield one_line(
@@ -61,14 +60,14 @@ class Story:
         yield from self.body()
 
     def body(self) -> Iterator[str]:
-        """The story without its first line."""
+        """Yield the story without its first line."""
         yield from (self._line(t, text) for t, _, text in self.notes)
         for began, node in self._began.values():
             yield self._line(began, f"{self._mission.label(node)}: not over when the recording ended")
         yield from self.ending()
 
     def ending(self) -> Iterator[str]:
-        """How it ended, and why."""
+        """Yield how it ended, and why."""
         ended = self._ended
         if ended is None:
             yield f"The recording ends after {self._latest:.1f} s, before the mission did."
@@ -96,11 +95,11 @@ class Story:
         return Failure(index, self._nodes.node(index), ended.path, ended.reason, None, self._nodes.span(index))
 
     def _is_said(self, node: Node) -> bool:
-        """Whether it is a command that somebody has said."""
+        """Return whether it is a command that somebody has said."""
         entry = self._mission.vocabulary.entry(node.id)
         return entry is not None and entry.sort == "action" and bool(entry.phrases)
 
-    def _changed(self, index: int, status: int, t: float, node: Node, reason: str) -> None:
+    def _take_change(self, index: int, status: int, t: float, node: Node, reason: str) -> None:
         if status == RUNNING:
             self._began[index] = t, node
             return

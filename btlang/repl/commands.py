@@ -11,11 +11,11 @@ from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source, unwritable
 from btlang.frontends.mission.symbols.definitions import find_definitions
 from btlang.frontends.mission.symbols.phrases import Phrases
-from btlang.record import Record
-from btlang.repl.draft import Entry, MissionDraft
-from btlang.repl.store import Store
+from btlang.repl.draft import DraftEntry, MissionDraft
+from btlang.repl.store import DraftStore
 from btlang.robots.robot import Robot, RobotError
 from btlang.robots.worlds.world import said
+from btlang.support.record import Record
 from btlang.text.output import can_draw, listing_width
 from btlang.text.source import Source
 from btlang.text.table import Table
@@ -53,7 +53,7 @@ class Leave(Exception):
     """The user wants to leave the REPL."""
 
 
-class Command(Record):
+class ReplCommand(Record):
     """One word of the REPL; `topic`, `arguments` and `help` are for people, `aliases` mean the same."""
 
     topic: str
@@ -64,29 +64,29 @@ class Command(Record):
 
 
 COMMANDS = (
-    Command("mission", "show", "[NAME|tree]", "shows the mission, one definition, or the tree of all"),
-    Command("mission", "names", "", "lists what is defined"),
-    Command("mission", "run", "", "runs the whole mission from where the robot is; `reset` first for a new world"),
-    Command("mission", "undo", "", "takes back the last line"),
-    Command("mission", "redo", "", "takes back an undo"),
-    Command("mission", "new", "", "starts an empty mission; `undo` brings the current one back"),
-    Command("files", "save", "[over] FILE", "writes the mission to a file; `over` replaces another file"),
-    Command("files", "load", "FILE", "continues with the mission in a file; `undo` brings the current one back"),
-    Command("files", "restore", "", "brings back the last session"),
-    Command("robot", "world", "[FILE]", "shows the world and the robot in it, or changes the world"),
-    Command("robot", "reset", "", "resets the world"),
-    Command("robot", "speed", "[real|max|FACTOR]", "how fast time passes when the robot moves"),
-    Command("prompt", "help", "[PHRASE]", "explains a phrase or word, or the prompt itself"),
-    Command("prompt", "words", "[TOPIC|WORD|--all]", "lists what you can say: the topics, one topic, or a word"),
-    Command("prompt", "clear", "", "clears the screen; the mission stays"),
-    Command("prompt", "quit", "", "leaves, like Ctrl-D twice", ("exit", "bye")),
+    ReplCommand("mission", "show", "[NAME|tree]", "shows the mission, one definition, or the tree of all"),
+    ReplCommand("mission", "names", "", "lists what is defined"),
+    ReplCommand("mission", "run", "", "runs the whole mission from where the robot is; `reset` first for a new world"),
+    ReplCommand("mission", "undo", "", "takes back the last line"),
+    ReplCommand("mission", "redo", "", "takes back an undo"),
+    ReplCommand("mission", "new", "", "starts an empty mission; `undo` brings the current one back"),
+    ReplCommand("files", "save", "[over] FILE", "writes the mission to a file; `over` replaces another file"),
+    ReplCommand("files", "load", "FILE", "continues with the mission in a file; `undo` brings the current one back"),
+    ReplCommand("files", "restore", "", "brings back the last session"),
+    ReplCommand("robot", "world", "[FILE]", "shows the world and the robot in it, or changes the world"),
+    ReplCommand("robot", "reset", "", "resets the world"),
+    ReplCommand("robot", "speed", "[real|max|FACTOR]", "how fast time passes when the robot moves"),
+    ReplCommand("prompt", "help", "[PHRASE]", "explains a phrase or word, or the prompt itself"),
+    ReplCommand("prompt", "words", "[TOPIC|WORD|--all]", "lists what you can say: the topics, one topic, or a word"),
+    ReplCommand("prompt", "clear", "", "clears the screen; the mission stays"),
+    ReplCommand("prompt", "quit", "", "leaves, like Ctrl-D twice", ("exit", "bye")),
 )
 _NAMES = {name: command for command in COMMANDS for name in (command.name, *command.aliases)}
 _TOPICS = tuple(dict.fromkeys(command.topic for command in COMMANDS))
 
 
 def command_of(text: str, draft: MissionDraft) -> tuple[str, str] | None:
-    """The word of the REPL that a line begins with, and the rest; None where the line belongs to the mission.
+    """Return the word of the REPL that a line begins with, and the rest; None where the line belongs to the mission.
 
     A word that the mission knows, as a phrase or as a name that is defined or being defined, is the mission's; but
     `show tree` shows the tree, although the robot could print it.
@@ -108,28 +108,32 @@ def command_of(text: str, draft: MissionDraft) -> tuple[str, str] | None:
 
 
 def _own(word: str) -> str:
-    """The command that a word means; the word itself if there's none."""
+    """Return the command that a word means; the word itself if there's none."""
     name = word.lower()
     return _NAMES[name].name if name in _NAMES else name
 
 
 def near_command(text: str) -> str:
-    """The word of the REPL that a line may have misspelt, "" if there's none."""
+    """Return the word of the REPL that a line may have misspelt, "" if there's none."""
     from btlang.text.spelling import respellings
 
     return next((word for word in respellings(text.strip().lower(), _NAMES) if word in _NAMES), "")
 
 
 def is_begun(text: str) -> bool:
-    """Whether the text may become a word of the REPL."""
+    """Return whether the text may become a word of the REPL."""
     return any(name.startswith(text.lower()) for name in _NAMES)
 
 
-class Commands:
-    """Does what the words of the REPL say; `write` gets what `show` takes, `run` runs the whole mission."""
+class ReplCommands:
+    """The commands of the REPL. `write` gets what `show` takes, `run` runs the whole mission."""
 
     def __init__(
-        self, draft: MissionDraft, write: Callable[[Any], object], run: Callable[[], object], store: Store | None = None
+        self,
+        draft: MissionDraft,
+        write: Callable[[Any], object],
+        run: Callable[[], object],
+        store: DraftStore | None = None,
     ) -> None:
         self._draft = draft
         self._write = write
@@ -139,16 +143,16 @@ class Commands:
         self.saved = draft.text
         """The mission as some file has it."""
         self.draft = ""
-        """What the next line begins with."""
+        """The text that the next line begins with."""
         self.clear_screen: Callable[[], object] = lambda: None
 
     @property
     def is_saved(self) -> bool:
-        """Whether nothing would be lost."""
+        """Return whether nothing would be lost."""
         return self._draft.text in ("", self.saved)
 
     def do(self, name: str, rest: str) -> None:
-        """Raises MissionError where a file or text is wrong, Leave where the user wants to leave."""
+        """Raise MissionError where a file or text is wrong, Leave where the user wants to leave."""
         command = getattr(self, f"_{name}", None) if name in _NAMES else None
         if command is None:
             self._write(f"There's no '{name}' here; 'help' lists what there is.")
@@ -220,7 +224,7 @@ class Commands:
             return
         self._write_change(before, "")
 
-    def _write_change(self, before: tuple[Entry, ...], note: str) -> None:
+    def _write_change(self, before: tuple[DraftEntry, ...], note: str) -> None:
         now = self._draft.entries
         gone = [entry.text for entry in before if entry not in now]
         come = [entry.text for entry in now if entry not in before]
@@ -294,7 +298,7 @@ class Commands:
         self._write(robot_line(draft))
 
     def show_map(self) -> None:
-        """Draws the world and the robot in it, if the output is a terminal with room for it."""
+        """Draw the world and the robot in it, if the output is a terminal with room for it."""
         if not can_draw(sys.stdout):
             return
         from btlang.repl.welcome import world_map
@@ -335,7 +339,7 @@ class Commands:
 
 
 def robot_line(draft: MissionDraft) -> str:
-    """Where the robot is and how it is."""
+    """Return where the robot is and how it is."""
     try:
         return _robot_line(draft.session.robot)
     except RobotError as problem:  # a robot over ROS 2 that is silent
@@ -353,7 +357,7 @@ def _robot_line(robot: Robot) -> str:
     return ", ".join(parts)
 
 
-def _usage(command: Command) -> str:
+def _usage(command: ReplCommand) -> str:
     return f"{', '.join((command.name, *command.aliases))} {command.arguments}".rstrip()
 
 

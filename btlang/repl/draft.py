@@ -13,12 +13,12 @@ from btlang.diagnostics.errors import MissionError
 from btlang.engine.blackboard import Blackboard
 from btlang.frontends.mission.reader import DEFAULT_PARSER, lexed, read_mission
 from btlang.frontends.mission.tokens.lexer import Lexer
-from btlang.mission_vocabulary import mission_vocabulary
 from btlang.passes import compile_mission, errors_of, run_passes
 from btlang.passes.compilation import Compilation
-from btlang.record import Record
+from btlang.robots.mission_vocabulary import mission_vocabulary
 from btlang.robots.registry import runs_on
 from btlang.session import Session
+from btlang.support.record import Record
 from btlang.text.source import Source
 from btlang.tree.ast import Ast, Chain, Definition, Fact, Include, Program, all_facts, parts
 from btlang.tree.dump import Outline
@@ -28,10 +28,10 @@ from btlang.vocabulary.reading_context import Known
 from btlang.vocabulary.shipped import ENGLISH
 
 ENTRY = "prompt"
-"""What messages call the source of an entry."""
+"""The name of the source of an entry in messages."""
 
 
-class Entry(Record):
+class DraftEntry(Record):
     """One statement as it was typed, maybe of several lines, and the texts of the definitions in it by name."""
 
     text: str
@@ -42,17 +42,19 @@ class Entry(Record):
 class Compiled(Record):
     """An entry, and its mission with the subtrees that it defines and uses; without a command its tree does nothing."""
 
-    entry: Entry
+    entry: DraftEntry
     mission: Mission
 
     def outline(self) -> Outline:
-        """The tree as `btc tree` shows it; of definitions alone only their subtrees."""
+        """Return the tree as `btc tree` shows it; of definitions alone only their subtrees."""
         whole = self.mission.__rich__()
         return whole if self.entry.has_command else whole.replace(trees=whole.trees[1:])
 
 
 class MissionDraft:
-    """Entries, with undo and redo; the words; the robot and the values, which go on from entry to entry."""
+    """A draft of a mission: entries, with undo and redo; the words; the robot and the values, which go on from entry to
+    entry.
+    """
 
     def __init__(
         self,
@@ -64,7 +66,7 @@ class MissionDraft:
         over: str | None = None,
         language: str = ENGLISH,
     ) -> None:
-        """Raises MissionError where a keyword file, the world or the robot cannot be used."""
+        """Raise MissionError where a keyword file, the world or the robot cannot be used."""
         self._robot, self._over = robot, over
         self.is_simulated = runs_on(robot, over)[1] == "simulated"
         self._keywords = keywords
@@ -73,22 +75,22 @@ class MissionDraft:
         self.language = language
         self._include_root = include_root
         self._parser = parser
-        self._undone: list[tuple[Entry, ...]] = []
-        self._before: list[tuple[Entry, ...]] = []
-        self.entries: tuple[Entry, ...] = ()
+        self._undone: list[tuple[DraftEntry, ...]] = []
+        self._before: list[tuple[DraftEntry, ...]] = []
+        self.entries: tuple[DraftEntry, ...] = ()
         self._known_of: tuple[str, Mapping[str, Known]] = "", {}
         self._blackboard = Blackboard()
         self.use_world(world)
 
     def use_world(self, world: str | None) -> None:
-        """Puts the robot into a world of its own file, None for the one that ships. Raises MissionError."""
+        """Put the robot into a world of its own file, None for the one that ships. Raises MissionError."""
         vocabulary, world = mission_vocabulary(self._source(self.text), self._keywords, world, self.language)
         self.session = Session(self._robot, world=world, over=self._over)
         self.vocabulary = vocabulary
         self.world = world
 
     def load(self, source: Source) -> None:
-        """Changes to another mission, in its own world and with its own words if it names them. Raises MissionError.
+        """Change to another mission, in its own world and with its own words if it names them. Raises MissionError.
 
         A world that the user has chosen stays.
         """
@@ -106,13 +108,13 @@ class MissionDraft:
         self.change(entries)
 
     def reset(self) -> None:
-        """No values, and the simulated world as it was at the start; another robot stays where it is."""
+        """Forget the values, and set the simulated world as it was at the start; another robot stays where it is."""
         if self.is_simulated:
             self.session = Session(self._robot, world=self.world, over=self._over)
         self._blackboard = Blackboard()
 
     def close(self) -> None:
-        """Lets go of the robot."""
+        """Let go of the robot."""
         self.session.close()
 
     def _source(self, text: str, name: str = ENTRY) -> Source:
@@ -131,7 +133,7 @@ class MissionDraft:
         return "".join(f"{entry.text}\n" for entry in self.entries)
 
     def context(self, text: str = "") -> str:
-        """The definitions that a new entry sees: those whose names it doesn't redefine."""
+        """Return the definitions that a new entry sees: those whose names it doesn't redefine."""
         known = self.definitions
         if not known:
             return ""
@@ -140,7 +142,7 @@ class MissionDraft:
         return "".join(f"{definition}\n" for name, definition in known.items() if name not in redefined)
 
     def compile(self, text: str, suggest: bool = True) -> Compiled:
-        """Reads an entry together with the definitions above. Raises MissionError.
+        """Read an entry together with the definitions above. Raises MissionError.
 
         With `suggest` False no corrections of what is wrong are tried, which takes time. `Do that again` is the latest
         command once more.
@@ -161,13 +163,13 @@ class MissionDraft:
         own = [d for d in named if d.span.start < len(text)]
         compilation = Compilation(self.vocabulary, mission, needs_command=False, grows=True, warnings=reading.warnings)
         tree = run_passes(compilation).tree
-        entry = Entry(text, tuple((d.name, d.span.text) for d in own), reading.mission.body is not None)
+        entry = DraftEntry(text, tuple((d.name, d.span.text) for d in own), reading.mission.body is not None)
         shown = Tree(tree.root, used_subtrees(tree, [name for name, _ in entry.definitions]))
         own_warnings = [warning for warning in compilation.warnings if warning.span.start < len(text)]
         return Compiled(entry, self._mission(shown, mission, own_warnings))
 
     def _rounds_more(self, text: str) -> int:
-        """How often an entry such as `Again` or `Repeat that twice` repeats the command before it, else 0."""
+        """Return how often an entry such as `Again` or `Repeat that twice` repeats the command before it, else 0."""
         first = re.match(r"\s*(\w+)", text)
         if first is None or first[1].lower() not in self.vocabulary.continuing:
             return 0  # as nearly always, at each key
@@ -179,54 +181,54 @@ class MissionDraft:
         return int(count) if count.isdigit() else 0
 
     def values(self) -> Blackboard:
-        """What entries before have set, without what was computed on the way or belongs to another mission."""
+        """Return what entries before have set, without what was computed on the way or belongs to another mission."""
         known = self._known()
         for key in [key for key in self._blackboard.keys() if key not in known]:  # noqa: SIM118 - it is no dict
             self._blackboard.unset(key)
         return self._blackboard
 
     def _known(self) -> Mapping[str, Known]:
-        """The values that entries before have set."""
+        """Return the values that entries before have set."""
         if self._known_of[0] != self.text:
             self._known_of = self.text, lexed(self._source(self.text), self.vocabulary).names.known
         return self._known_of[1]
 
     def compile_all(self) -> Mission:
-        """The whole mission. Raises MissionError, also where it holds no command."""
+        """Return the whole mission. Raises MissionError, also where it holds no command."""
         source = self._source(self.text, self.file or "<session>")
         reading = read_mission(source, self.vocabulary, self._parser, errors_of=errors_of)
         tree = compile_mission(reading.mission, self.vocabulary)
         return self._mission(tree, reading.mission, reading.warnings)
 
-    def add(self, entry: Entry) -> None:
-        """A definition takes the place of an older one of the same name."""
+    def add(self, entry: DraftEntry) -> None:
+        """Add an entry. A definition takes the place of an older one of the same name."""
         names = {name for name, _ in entry.definitions}
         kept = [old for old in self.entries if old.has_command or not {name for name, _ in old.definitions} <= names]
         self.change((*(kept if names else self.entries), entry))
 
-    def change(self, entries: Sequence[Entry]) -> None:
-        """Other entries; `undo` brings the present ones back."""
+    def change(self, entries: Sequence[DraftEntry]) -> None:
+        """Set other entries; `undo` brings the present ones back."""
         self._before.append(self.entries)
         self._undone.clear()
         self.entries = tuple(entries)
 
     def undo(self) -> bool:
-        """Takes back the latest change; False if there is none."""
+        """Take back the latest change; False if there is none."""
         return self._swap(self._before, self._undone)
 
     def redo(self) -> bool:
-        """Takes back the latest undo; False if there is none."""
+        """Take back the latest undo; False if there is none."""
         return self._swap(self._undone, self._before)
 
-    def _swap(self, source: list[tuple[Entry, ...]], target: list[tuple[Entry, ...]]) -> bool:
+    def _swap(self, source: list[tuple[DraftEntry, ...]], target: list[tuple[DraftEntry, ...]]) -> bool:
         if not source:
             return False
         target.append(self.entries)
         self.entries = source.pop()
         return True
 
-    def entries_of(self, text: str, name: str = ENTRY) -> list[Entry]:
-        """The statements of a whole mission, each with the comments above it. Raises MissionError."""
+    def entries_of(self, text: str, name: str = ENTRY) -> list[DraftEntry]:
+        """Return the statements of a whole mission, each with the comments above it. Raises MissionError."""
         source = Source(text, name)
         mission = read_mission(source, self.vocabulary, self._parser, errors_of=errors_of).mission
         compile_mission(mission, self.vocabulary, needs_command=False)
@@ -252,7 +254,7 @@ class MissionDraft:
             below = source.position(group[-1].span.end)[0] + 1
             end = source.offset(below) if group is not groups[-1] else len(text)
             own = tuple((d.name, d.span.text) for d in group if isinstance(d, Definition | Fact | Include))
-            entries.append(Entry(text[begin:end].strip("\n"), own, len(own) < len(group)))
+            entries.append(DraftEntry(text[begin:end].strip("\n"), own, len(own) < len(group)))
             begin = end
         return entries
 

@@ -1,14 +1,19 @@
-"""The keys of the REPL, beside those that every line editor has."""
+"""The keys of the REPL, and where an entry ends."""
 
 from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
 
 from prompt_toolkit.buffer import Buffer
 from prompt_toolkit.filters import Condition, completion_is_selected
 from prompt_toolkit.key_binding import KeyBindings, KeyPressEvent
 
 from btlang.repl.commands import command_of
-from btlang.repl.entering import needs_more
 from btlang.repl.preview import preview
+from btlang.text.source import Source
+from btlang.text.words import split
+from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.trie import longest
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -16,8 +21,8 @@ if TYPE_CHECKING:
 
     from btlang.repl.draft import MissionDraft
 
-    class Editor(Protocol):
-        """What the keys act on; see screen.py."""
+    class LineEditor(Protocol):
+        """The editor that the keys act on; see screen.py."""
 
         buffer: Buffer
         draft: MissionDraft
@@ -38,11 +43,45 @@ if TYPE_CHECKING:
         def asks(self) -> bool: ...
 
 
+def needs_more(text: str) -> bool:
+    """Return whether an entry goes on in the next line: it has opened a block that no empty line has closed."""
+    lines = text.split("\n")
+    return _opens_block(lines[-1]) or (len(lines) > 1 and bool(lines[-1].strip()))
+
+
+def entries(lines: Iterable[str], vocabulary: Lexicon) -> Iterator[str]:
+    """Yield the entries of a text that nobody types: a block also ends where a line stands at the margin again."""
+    text = ""
+    for line in lines:
+        line = line.rstrip("\r\n")
+        if text and line.strip() and (line[0].isspace() or _goes_on(line, vocabulary)):
+            text += f"\n{line}"
+            continue
+        if text:
+            yield text
+        text = line
+        if text.strip() and not _opens_block(text):
+            yield text
+            text = ""
+    if text.strip():
+        yield text
+
+
+def _opens_block(line: str) -> bool:
+    return line.split("#")[0].rstrip().endswith(":")
+
+
+def _goes_on(line: str, vocabulary: Lexicon) -> bool:
+    """Return whether a line at the margin belongs to the statement above it."""
+    match = longest(vocabulary.trie, split(Source(line), vocabulary.orthography), 0, vocabulary.context)
+    return match is not None and match.meaning.role == "otherwise"
+
+
 _INDENT = "  "
 
 
-def key_bindings(screen: Editor) -> KeyBindings:
-    """Enter, Tab, Ctrl-F, 1 and 2 where there is a choice, Ctrl-C, Ctrl-D and Backspace."""
+def key_bindings(screen: LineEditor) -> KeyBindings:
+    """Bind Enter, Tab, Ctrl-F, 1 and 2 where there is a choice, Ctrl-C, Ctrl-D and Backspace."""
     keys = KeyBindings()
     buffer = screen.buffer
 
@@ -130,7 +169,7 @@ def key_bindings(screen: Editor) -> KeyBindings:
 
 
 def _select(buffer: Buffer) -> None:
-    """Selects the whole entry, so that what is typed next takes its place; an arrow key keeps it."""
+    """Select the whole entry, so that what is typed next takes its place; an arrow key keeps it."""
     buffer.append_to_history()
     buffer.cursor_position = 0
     buffer.start_selection()
@@ -140,7 +179,7 @@ def _select(buffer: Buffer) -> None:
 
 
 def _new_line(event: KeyPressEvent) -> None:
-    """The next line begins where this one does, or further in where this one opens a block."""
+    """Begin the next line where this one does, or further in where this one opens a block."""
     line = event.current_buffer.document.current_line
     indent = line[: len(line) - len(line.lstrip())]
     event.current_buffer.insert_text("\n" + indent + (_INDENT if line.rstrip().endswith(":") else ""))

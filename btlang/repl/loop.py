@@ -11,12 +11,12 @@ from btlang.api import Mission
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.render import render
 from btlang.frontends.mission.reader import DEFAULT_PARSER
-from btlang.repl.commands import Commands, Leave, command_of
+from btlang.repl.commands import Leave, ReplCommands, command_of
 from btlang.repl.draft import MissionDraft
-from btlang.repl.entering import entries
-from btlang.repl.store import Kept, Store, state_folder
+from btlang.repl.keys import entries
+from btlang.repl.store import DraftStore, SavedDraft, state_folder
 from btlang.repl.welcome import welcome
-from btlang.run.command import ENDING_SIGNALS, run_mission
+from btlang.run.terminal import ENDING_SIGNALS, run_mission
 from btlang.text.output import can_draw, has_colour, show
 from btlang.vocabulary.shipped import ENGLISH
 
@@ -38,15 +38,15 @@ def run_repl(
     over: str | None = None,
     language: str = ENGLISH,
 ) -> int:
-    """Runs until the user leaves or the input ends; returns the exit code. Raises MissionError for wrong files."""
+    """Run until the user leaves or the input ends; return the exit code. Raises MissionError for wrong files."""
     with closing(MissionDraft(keywords, world, parser, include_root, robot, over, language)) as draft:
         return _talk_or_read(draft, speed)
 
 
 def _talk_or_read(draft: MissionDraft, speed: float | str) -> int:
     if not can_draw(sys.stdout) or sys.stdin is None or not sys.stdin.isatty():
-        return Repl(draft, Store(None), speed).read(sys.stdin or ())
-    store = Store(state_folder())
+        return Repl(draft, DraftStore(None), speed).read(sys.stdin or ())
+    store = DraftStore(state_folder())
     before = [signal.signal(number, _terminate) for number in ENDING_SIGNALS]
     try:
         Repl(draft, store, speed).talk()
@@ -59,18 +59,18 @@ def _talk_or_read(draft: MissionDraft, speed: float | str) -> int:
 class Repl:
     """One draft, at the keyboard (`talk`) or from a file of lines (`read`)."""
 
-    def __init__(self, draft: MissionDraft, store: Store, speed: float | str) -> None:
+    def __init__(self, draft: MissionDraft, store: DraftStore, speed: float | str) -> None:
         self._draft = draft
         self._store = store
-        self._commands = Commands(draft, show, self._run_all, store)
+        self._commands = ReplCommands(draft, show, self._run_all, store)
         self._commands.speed = speed
         self._ahead: list[str] = []  # keys that were typed while a mission ran
 
     def talk(self) -> None:
-        """At the keyboard, until the user leaves."""
-        from btlang.repl.screen import CONTINUED, PROMPT, Screen
+        """Talk with the user at the keyboard, until they leave."""
+        from btlang.repl.screen import CONTINUED, PROMPT, ReplScreen
 
-        screen = Screen(self._draft, self._store)
+        screen = ReplScreen(self._draft, self._store)
         self._commands.clear_screen = screen.clear
         show("btlang: type what the robot should do.")
         self._commands.show_map()
@@ -102,7 +102,7 @@ class Repl:
             show("This session is saved: after the next start, 'restore' brings it back.")
 
     def read(self, lines: Iterable[str]) -> int:
-        """From lines; returns 0, or 1 where a command failed, or 2 where an entry was wrong."""
+        """Read from lines; return 0, or 1 where a command failed, or 2 where an entry was wrong."""
         worst = 0
         for text in entries(lines, self._draft.vocabulary):
             try:
@@ -112,7 +112,7 @@ class Repl:
         return worst
 
     def _do(self, text: str) -> int:
-        """Returns the exit code that `btc run` would have. Raises Leave."""
+        """Return the exit code that `btc run` would have. Raises Leave."""
         try:
             own = command_of(text, self._draft)
             if own is not None:
@@ -152,7 +152,7 @@ class Repl:
 
 @contextmanager
 def _type_ahead() -> Iterator[None]:
-    """What is typed while the robot moves isn't shown, and is in the next line, also where there is no live view."""
+    """Hide what is typed while the robot moves, and put it in the next line, also where there is no live view."""
     try:
         import termios
 
@@ -169,7 +169,7 @@ def _type_ahead() -> Iterator[None]:
         termios.tcsetattr(0, termios.TCSANOW, before)
 
 
-def _count(left: Kept) -> str:
+def _count(left: SavedDraft) -> str:
     lines = sum(len(text.splitlines()) for text in left.entries) + bool(left.draft.strip())
     return f"{lines} line{'' if lines == 1 else 's'}"
 

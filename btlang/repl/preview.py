@@ -1,14 +1,21 @@
-"""What is shown while an entry is being typed: its words, what is wrong with it, and its tree."""
+"""What is shown while an entry is being typed: its words, problems, tree, and the menu of what may follow."""
 
 from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from prompt_toolkit.completion import CompleteEvent, Completer, PathCompleter
+from prompt_toolkit.completion import Completion as MenuItem
+from prompt_toolkit.document import Document
 
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.frontends.mission.completion.completer import Completion, completions
 from btlang.frontends.mission.token import Token
 from btlang.frontends.mission.tokens.lexer import Lexer
-from btlang.record import Record
+from btlang.repl.commands import COMMANDS
 from btlang.repl.draft import MissionDraft
+from btlang.support.record import Record
 from btlang.text.source import Source
 from btlang.tree.dump import Outline
 from btlang.vocabulary.language_tables import CONNECTIVES
@@ -21,7 +28,7 @@ _ENDS_NOTHING = frozenset((
     "unless", "while", "until", "provided", "repeat", "try", "retry", "check", "wait_until",
     "whenever", "in_parallel", "in_order",
 ))  # fmt: skip
-"""Tokens that no sentence ends with."""
+"""The tokens that no sentence ends with."""
 _MOST_TRIES = 3
 _OPERANDS = frozenset(("command", "condition", "unknown", "define"))
 
@@ -47,7 +54,7 @@ class Preview(Record):
 
 
 def preview(draft: MissionDraft, text: str) -> Preview:
-    """Compiles the entry. Raises nothing."""
+    """Compile the entry. Raises nothing."""
     if not text.strip():
         return Preview()
     tokens = Lexer(Source(text), draft.vocabulary, explain=False).tokens
@@ -66,7 +73,7 @@ def preview(draft: MissionDraft, text: str) -> Preview:
 
 
 def continuations(draft: MissionDraft, text: str) -> list[Completion]:
-    """What may follow the text that stands before the cursor."""
+    """Return what may follow the text that stands before the cursor."""
     context = draft.context()
     found = completions(context + text, draft.vocabulary)
     return [option.replace(start=option.start - len(context)) for option in found]
@@ -77,7 +84,7 @@ def _own(error: MissionError, text: str) -> tuple[Diagnostic, ...]:
 
 
 def _with_corrections(draft: MissionDraft, text: str) -> tuple[Diagnostic, ...]:
-    """What is wrong with an entry that cannot be read."""
+    """Return what is wrong with an entry that cannot be read."""
     try:
         draft.compile(text)
     except MissionError as error:
@@ -86,21 +93,21 @@ def _with_corrections(draft: MissionDraft, text: str) -> tuple[Diagnostic, ...]:
 
 
 def _is_unfinished(problems: tuple[Diagnostic, ...], text: str, vocabulary: Lexicon) -> bool:
-    """Whether all that is wrong is at the end, or waits for it."""
+    """Return whether all that is wrong is at the end, or waits for it."""
     errors = [problem for problem in problems if problem.is_error]
     rests = (text[p.span.end :].lower().split() for p in errors if p.code not in _UNFINISHED)
     return all(vocabulary.articles.issuperset(rest) for rest in rests)
 
 
 def _goes_on(draft: MissionDraft, text: str) -> bool:
-    """Whether anything but another spelling may follow."""
+    """Return whether anything but another spelling may follow."""
     if text.count('"') % 2:
         return True
     return any(not option.spelling for option in continuations(draft, text))
 
 
 def _tree_so_far(draft: MissionDraft, text: str, tokens: list[Token]) -> Outline | None:
-    """The tree of the text without its last words, as few as possible."""
+    """Return the tree of the text without its last words, as few as possible."""
     tokens = [token for token in tokens if token.end > token.start]
     for _ in range(_MOST_TRIES):
         if tokens:
@@ -124,3 +131,44 @@ def _marks(tokens: list[Token]) -> tuple[tuple[int, int, str], ...]:
         elif token.kind not in _OPERANDS and token.end > token.start:
             marks.append((token.start, token.end, "connective"))
     return tuple(marks)
+
+
+_TAKE_FILES = frozenset(("load", "save", "world"))
+_SPEEDS = ("real", "max", "5")
+
+
+class Offers(Completer):
+    """The completer of the entry. At the start of a line it offers nothing until the user asks."""
+
+    def __init__(self, draft: MissionDraft) -> None:
+        self._draft = draft
+        self._paths = PathCompleter(expanduser=False)
+
+    def get_completions(self, document: Document, complete_event: CompleteEvent) -> Iterable[MenuItem]:
+        """Return what may follow the text before the cursor."""
+        text = document.text_before_cursor
+        if not document.current_line_before_cursor.strip() and not complete_event.completion_requested:
+            return
+        name, space, rest = text.partition(" ")
+        if space and name in _TAKE_FILES:
+            rest = rest.removeprefix("over ") if name == "save" else rest
+            yield from self._paths.get_completions(Document(rest), complete_event)
+            return
+        if space and name in ("show", "speed"):
+            words = [*self._draft.definitions, "tree"] if name == "show" else _SPEEDS
+            yield from (MenuItem(word, -len(rest)) for word in words if word.startswith(rest))
+            if name == "speed":
+                return
+        own = list(_own_words(text)) if not space and "\n" not in text else []
+        for option in continuations(self._draft, text):
+            if option.spelling and own:
+                break
+            mark = "(spelling) " if option.spelling else ""
+            yield MenuItem(option.text, option.start - len(text), display_meta=mark + option.help)
+        yield from own
+
+
+def _own_words(start: str) -> Iterator[MenuItem]:
+    for command in COMMANDS:
+        if command.name.startswith(start.lower()) and command.name != start:
+            yield MenuItem(command.name, -len(start), display_meta=command.help)

@@ -35,9 +35,8 @@ from rich.text import Text
 from btlang.repl.commands import command_of, is_begun, near_command, robot_line
 from btlang.repl.draft import MissionDraft
 from btlang.repl.keys import key_bindings
-from btlang.repl.offers import Offers
-from btlang.repl.preview import Preview, continuations, preview
-from btlang.repl.store import Store
+from btlang.repl.preview import Offers, Preview, continuations, preview
+from btlang.repl.store import DraftStore
 from btlang.text.drawing import lines
 from btlang.text.output import has_colour
 
@@ -59,14 +58,16 @@ _STYLE = Style.from_dict({
 })  # fmt: skip
 
 
-class Screen:
-    """Asks for entries. `ask` returns a text that compiles, or a line for the REPL itself.
+class ReplScreen:
+    """The screen of the REPL, which asks for entries.
+
+    `ask` returns a text that compiles, or a line for the REPL itself.
 
     `input` and `output` are those of the terminal where none are given.
     """
 
     def __init__(
-        self, draft: MissionDraft, store: Store, input: Input | None = None, output: Output | None = None
+        self, draft: MissionDraft, store: DraftStore, input: Input | None = None, output: Output | None = None
     ) -> None:
         self.draft = draft
         self._store = store
@@ -82,7 +83,7 @@ class Screen:
             complete_while_typing=True,
             history=history,
             multiline=True,
-            on_text_changed=self._changed,
+            on_text_changed=self._change,
         )
         self.application: Application[str] = Application(
             layout=self._layout(),
@@ -94,14 +95,14 @@ class Screen:
         )
 
     def ask(self, text: str = "") -> str:
-        """Lets the user type, from a text to begin with. Raises EOFError when the user wants to leave."""
+        """Let the user type, from a text to begin with. Raises EOFError when the user wants to leave."""
         self.buffer.reset(Document(text))
         self._refused, self._asked, self.note, self.leaving, self.asks = "", "", "", False, False
         self._keep()
         return self.application.run()
 
     def preview(self) -> Preview:
-        """Of the text as it is now."""
+        """Return the preview of the text as it is now."""
         text = self.buffer.text
         if self._seen[0] != text or not text:
             seen = preview(self.draft, text)
@@ -111,7 +112,7 @@ class Screen:
         return self._seen[1]
 
     def refuse(self, is_whole: bool = False) -> None:
-        """Shows what is wrong with the entry although more might come: the user wants to run it.
+        """Show what is wrong with the entry although more might come: the user wants to run it.
 
         If `is_whole`, nothing of it was understood, and it is selected.
         """
@@ -127,7 +128,7 @@ class Screen:
             self.note = f"Not run. Did you mean: {near}"
 
     def readings(self) -> list[tuple[int, int, str]]:
-        """The changes between which the first warning with two readings leaves a choice."""
+        """Return the changes between which the first warning with two readings leaves a choice."""
         text = self.buffer.text
         for problem in self.preview().problems:
             if len(problem.readings) == 2 and all(span.end <= len(text) for span, _ in problem.readings):
@@ -135,7 +136,7 @@ class Screen:
         return []
 
     def ask_which(self) -> bool:
-        """Whether the entry has two readings, and nobody was asked yet which of them is meant."""
+        """Return whether the entry has two readings, and nobody was asked yet which of them is meant."""
         readings = self.readings()
         if not readings or self._asked == self.buffer.text:
             return False
@@ -147,14 +148,14 @@ class Screen:
         return True
 
     def clear(self) -> None:
-        """Clears the terminal."""
+        """Clear the terminal."""
         output = self.application.output
         output.erase_screen()
         output.cursor_goto(0, 0)
         output.flush()
 
     def type_ahead(self, keys: str) -> None:
-        """What was typed while a mission ran: the next line gets it as if it were typed then."""
+        """Keep what was typed while a mission ran: the next line gets it as if it were typed then."""
         presses: list[KeyPress] = []
         Vt100Parser(presses.append).feed_and_flush(keys.replace("\n", "\r"))
         store_typeahead(self.application.input, presses)
@@ -162,7 +163,7 @@ class Screen:
     def _is_unfinished(self) -> bool:
         return self.preview().unfinished and self._refused != self.buffer.text
 
-    def _changed(self, _: Buffer) -> None:
+    def _change(self, _: Buffer) -> None:
         self.note, self.leaving, self.asks = "", False, False
         self._keep()
 
@@ -206,18 +207,18 @@ class Screen:
         return Layout(HSplit(rows), focused_element=line)
 
     def _problems(self) -> Group:
-        """Carets under the words, if the entry fits on one line, and what is wrong."""
+        """Return carets under the words, if the entry fits on one line, and what is wrong."""
         seen, unfinished = self.preview(), self._is_unfinished()
         parts: list[RenderableType] = []
         for problem in seen.problems[:_MOST_PROBLEMS] if not (unfinished and seen.midword) else ():
             if unfinished:
-                parts.append(_indented(problem.message, _UNFINISHED))
+                parts.append(_indent(problem.message, _UNFINISHED))
                 break
             style = {"error": "red", "warning": "yellow"}.get(problem.kind.severity, "cyan")
             start, end = problem.span.start, min(problem.span.end, len(self.buffer.text))
             if "\n" not in self.buffer.text and len(PROMPT) + len(self.buffer.text) < self._columns():
                 parts.append(Text(" " * (len(PROMPT) + start) + "^" * max(1, end - start), style))
-            parts += [_indented(line, style) for line in (problem.message, *problem.hint.splitlines())]
+            parts += [_indent(line, style) for line in (problem.message, *problem.hint.splitlines())]
         return Group(*parts)
 
     def _tree_lines(self) -> Iterator[str]:
@@ -248,7 +249,7 @@ class Screen:
         return ANSI("\n".join(lines(drawing, self._columns(), has_colour(sys.stdout), fold)))
 
     def fix(self) -> tuple[int, int, str] | None:
-        """The first correction that is proposed: characters from and to, and what to write there."""
+        """Return the first correction that is proposed: characters from and to, and what to write there."""
         for problem in self.preview().errors if not self._is_unfinished() else ():
             if problem.fix is not None:
                 span, words = problem.fix
@@ -257,7 +258,7 @@ class Screen:
         return None
 
     def offers(self) -> bool:
-        """Whether anything may follow at the cursor."""
+        """Return whether anything may follow at the cursor."""
         return bool(continuations(self.draft, self.buffer.document.text_before_cursor))
 
     def _rows(self) -> int:
@@ -268,13 +269,13 @@ class Screen:
 
 
 class _Marks(Lexer):
-    """Colours of the entry, from its preview."""
+    """The colours of the entry, from its preview."""
 
     def __init__(self, seen: Callable[[], Preview]) -> None:
         self._preview = seen
 
     def invalidation_hash(self) -> object:
-        """The same text may be coloured otherwise later, when more names are defined."""
+        """Return a new value each time: the same text may be coloured otherwise later, when more names are defined."""
         return self._preview().marks
 
     def lex_document(self, document: Document) -> Callable[[int], StyleAndTextTuples]:
@@ -292,5 +293,5 @@ class _Marks(Lexer):
         return line_of
 
 
-def _indented(text: str, style: str) -> Padding:
+def _indent(text: str, style: str) -> Padding:
     return Padding(Text(text, style), (0, 0, 0, len(CONTINUED)))

@@ -8,8 +8,8 @@ import time
 from pathlib import Path
 
 from btlang.diagnostics.reading import reason_of
-from btlang.record import Record
-from btlang.user_dirs import user_dir
+from btlang.support.record import Record
+from btlang.support.user_dirs import user_dir
 
 try:
     import fcntl
@@ -19,7 +19,7 @@ except ImportError:  # not on Windows, where sessions of running processes are o
 _MOST_KEPT = 20  # sessions; older ones are deleted
 
 
-class Kept(Record):
+class SavedDraft(Record):
     """A draft of a process that is gone: its entries, what was being typed, and the world that it was for."""
 
     entries: tuple[str, ...]
@@ -29,11 +29,11 @@ class Kept(Record):
 
 
 def state_folder() -> Path:
-    """The platform's folder for such things, $XDG_STATE_HOME/btlang on Linux."""
+    """Return the platform's folder for such things, $XDG_STATE_HOME/btlang on Linux."""
     return Path(user_dir("state"))
 
 
-class Store:
+class DraftStore:
     """A folder with the file `history` and a file for each draft; None keeps nothing.
 
     A folder that cannot be written to is no error: `problem` says why nothing is kept.
@@ -63,11 +63,11 @@ class Store:
 
     @property
     def history(self) -> Path:
-        """What was typed in all sessions, in the format of prompt_toolkit's FileHistory."""
+        """The history of what was typed in all sessions, in the format of prompt_toolkit's FileHistory."""
         return self._folder / "history"
 
     def save(self, entries: list[str], draft: str, world: str | None = None) -> None:
-        """The present state of this draft, in its file before this returns: it outlives a kill at any moment."""
+        """Save the present state of this draft, in its file before this returns: it outlives a kill at any moment."""
         if self.problem:
             return
         state = {"entries": entries, "draft": draft, "world": world and os.path.abspath(world)}
@@ -80,12 +80,12 @@ class Store:
             self.problem = f"{self._own}: {reason_of(error)}"
 
     def forget(self) -> None:
-        """Deletes this session's files: all of it has been saved elsewhere, or there is nothing in it."""
+        """Delete this session's files: all of it has been saved elsewhere, or there is nothing in it."""
         if not self.problem:
             _delete(self._own)
 
-    def left(self) -> Kept | None:
-        """The latest draft that was left with something in it."""
+    def left(self) -> SavedDraft | None:
+        """Return the latest draft that was left with something in it."""
         kept = []
         for path in self._files():
             if path == self._own or not _is_left(path):
@@ -105,19 +105,19 @@ class Store:
         except OSError:
             return []
 
-    def done_with(self, kept: Kept) -> None:
-        """A draft that was taken up again is no longer kept by itself."""
+    def done_with(self, kept: SavedDraft) -> None:
+        """Forget a draft that was taken up again: it is no longer kept by itself."""
         _delete(kept.path)
 
 
-def _read(path: Path) -> Kept | None:
-    """None where the draft is empty or not readable."""
+def _read(path: Path) -> SavedDraft | None:
+    """Read a draft; None where it is empty or not readable."""
     try:
         state = json.loads(path.read_text(encoding="ascii"))
         entries, draft, world = tuple(map(str, state["entries"])), str(state["draft"]), state.get("world")
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return None
-    return Kept(entries, draft, world and str(world), path) if entries or draft.strip() else None
+    return SavedDraft(entries, draft, world and str(world), path) if entries or draft.strip() else None
 
 
 def _delete(path: Path) -> None:
@@ -126,7 +126,7 @@ def _delete(path: Path) -> None:
 
 
 def _lock(path: Path) -> int | None:
-    """The open lock of a draft, which ends with its process; None where one that still runs holds it."""
+    """Return the open lock of a draft, which ends with its process; None where one that still runs holds it."""
     lock = os.open(path.with_suffix(".lock"), os.O_CREAT | os.O_WRONLY, 0o600)
     if fcntl is not None:
         try:

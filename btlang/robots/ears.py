@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from math import inf
 
-from btlang.record import Record
 from btlang.robots.files import DataFileError, as_mission_error, load_data
 from btlang.speech.recogniser import Expected, spoken
+from btlang.support.record import Record
 from btlang.text.source import Source
 from btlang.text.toml_table import Problem, Table
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from math import atan2, cos, degrees, hypot, radians, sin
 
-from btlang.record import Record
+from btlang.support.record import Record
 
 Point = tuple[float, float]
 Segment = tuple[float, float, float, float]

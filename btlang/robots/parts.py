@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol, runtime_checkable
 
-from btlang.record import Record
 from btlang.robots.bodies.body import Body
 from btlang.robots.bodies.gesture import Gesture
 from btlang.robots.geometry import Pose
 from btlang.robots.robot import Hand, Operation
+from btlang.support.record import Record
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -7,7 +7,6 @@ from collections.abc import Collection, Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
-from btlang.record import Record
 from btlang.robots.bodies.body import Body
 from btlang.robots.bodies.gesture import BEARING
 from btlang.robots.bodies.gesture_file import ARTICLES, phrase_forms
@@ -16,6 +15,7 @@ from btlang.robots.geometry import Point
 from btlang.robots.worlds.world import World
 from btlang.speech.engine import SpeechError
 from btlang.speech.marks import read_marks
+from btlang.support.record import Record
 from btlang.text.source import NOWHERE, Span
 from btlang.text.spelling import nearest
 from btlang.tree.catalogue import SUBTREE

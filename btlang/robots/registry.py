@@ -8,9 +8,9 @@ from contextlib import suppress
 from functools import partial
 from importlib.util import find_spec
 
-from btlang.record import Record
 from btlang.robots.bodies.body_file import read_body, shipped_bodies, standard_body
 from btlang.robots.platforms import ALL, COMPONENTS, ROBOTS, import_function
+from btlang.support.record import Record
 from btlang.text.source import Source
 from btlang.vocabulary.shipped import BODIES
 

@@ -7,12 +7,12 @@ from math import isnan
 from typing import Any, Literal, Protocol
 
 from btlang.engine.leaves.leaf import ActionFailed, Unknown
-from btlang.record import Record
 from btlang.robots.bodies.body import Body, Joint
 from btlang.robots.ears import Ears
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.zones import Zones
-from btlang.run.standstill import Standstill
+from btlang.run.outcome import Standstill
+from btlang.support.record import Record
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -14,10 +14,10 @@ from geometry_msgs.msg import Pose as PoseMessage
 from geometry_msgs.msg import PoseStamped
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from btlang.record import Record
 from btlang.robots.geometry import Pose
 from btlang.robots.motion.guard.guard import check_velocity
 from btlang.robots.robot import RobotError
+from btlang.support.record import Record
 
 MAP, ODOM, BASE = "map", "odom", "base_link"
 """The frames of navigation, of odometry, and of the robot."""

@@ -8,8 +8,8 @@ from collections import deque
 from collections.abc import Callable
 
 from btlang.engine.clock import Clock
-from btlang.record import Record
 from btlang.run.events import ROBOT_EVENTS, Event, RobotEvent, StatusesChanged
+from btlang.support.record import Record
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -19,13 +19,13 @@ if TYPE_CHECKING:
     from btlang.run.events import Sink
 
 INLINE = "inline"
-"""Called in the thread of the run: for sinks that only keep what they get."""
+"""A policy: called in the thread of the run, for sinks that only keep what they get."""
 BLOCK = "block"
-"""Gets every event, in a thread of its own; the run waits where it is MOST_WAITING events behind."""
+"""A policy: gets every event, in a thread of its own; the run waits where it is MOST_WAITING events behind."""
 DROP_OLDEST = "drop oldest"
-"""In a thread of its own; what is more than MOST_WAITING events behind is lost."""
+"""A policy: in a thread of its own; what is more than MOST_WAITING events behind is lost."""
 NEWEST = "newest"
-"""In a thread of its own; gets the latest event whenever it is ready for one."""
+"""A policy: in a thread of its own; gets the latest event whenever it is ready for one."""
 MOST_WAITING = 10_000
 _PATIENCE = 2.0  # seconds that a sink which may lose events gets at the end
 
@@ -51,7 +51,7 @@ class Bus:
         self.clock = Clock() if clock is None else clock
         self.errors: list[Exception] = []
         self.slow: list[SlowSink] = []
-        """Known after `close`."""
+        """The sinks that were slow, known after `close`."""
         self.closed = False
         self.before: Callable[[], object] | None = None
         self._number = 0
@@ -61,8 +61,9 @@ class Bus:
         self._queues: list[_Queue] = []
 
     def add(self, sink: Sink) -> None:
-        """Adds a sink, which gets the events from now on. Its attribute `policy` is INLINE, BLOCK, which is usual,
-        DROP_OLDEST or NEWEST.
+        """Add a sink, which gets the events from now on.
+
+        Its attribute `policy` is INLINE, BLOCK, which is usual, DROP_OLDEST or NEWEST.
         """
         policy = getattr(sink, "policy", BLOCK)
         if policy != INLINE and self._queued:
@@ -72,11 +73,11 @@ class Bus:
         self._sinks.append(sink)
 
     def emit(self, kind: type[Event], /, *data: Any, **more: Any) -> None:
-        """Makes an event of a class and hands it to all sinks."""
+        """Make an event of a class and hand it to all sinks."""
         if self.before is not None and kind is not StatusesChanged:
             self.before()
         with self._numbering:  # for no longer: an emergency stop reports from a thread of its own
-            event = kind.stamped(self.clock.now, self.run, self._number, *data, **more)
+            event = kind.stamp(self.clock.now, self.run, self._number, *data, **more)
             self._number += event.count
         for sink in tuple(self._sinks):
             try:
@@ -86,7 +87,7 @@ class Bus:
                 self.errors.append(problem)
 
     def emit_robot(self, kind: str, data: Mapping[str, Any]) -> None:
-        """As `emit`, of what a robot reports with its `on_event`."""
+        """Emit what a robot reports with its `on_event`, as `emit` does."""
         event = ROBOT_EVENTS.get(kind)
         if event is not None:
             self.emit(event, **data)
@@ -94,7 +95,7 @@ class Bus:
             self.emit(RobotEvent, kind, data)
 
     def close(self) -> None:
-        """Waits until the sinks have had what they are to get."""
+        """Wait until the sinks have had what they are to get."""
         self.closed = True
         for queue in self._queues:
             queue.close()
@@ -102,7 +103,7 @@ class Bus:
 
 
 class _Queue:
-    """Hands events to one sink in a thread of its own."""
+    """A queue that hands events to one sink in a thread of its own."""
 
     def __init__(self, sink: Sink, policy: str, failed: Callable[[Exception], object]) -> None:
         self._sink, self._policy, self._failed = sink, policy, failed

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from time import time
 
 from btlang.engine.status import FAILURE, IDLE
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False
@@ -35,8 +35,10 @@ if TYPE_CHECKING:
         def reason(self, index: int, fault: Fault | NodeInstance | None) -> str: ...
 
     class Robot(Protocol):
-        """What a run needs from a robot; see btlang.robots.robot.Robot. `moving`, `standstill`, `disable` and `enable`
-        may be missing, and so may `moves_by_itself`, which is then assumed to be true.
+        """The part of a robot that a run needs; see btlang.robots.robot.Robot.
+
+        `moving`, `standstill`, `disable` and `enable` may be missing, and so may `moves_by_itself`, which is then
+        assumed to be true.
 
         `moves_by_itself` is False for a simulated robot: its world stands still between two steps.
         """
@@ -60,7 +62,10 @@ class Event(Record):
     alarms: ClassVar[bool] = False
     """Whether something is wrong: the page says so in another colour."""
     line: ClassVar[str] = ""
-    """What people read of it, a verb first. Fields are in braces; what is in brackets needs ones that say something."""
+    """The line that people read of it, a verb first.
+
+    Fields are in braces; what is in brackets needs ones that say something.
+    """
     t: float
     run: str
     number: int
@@ -68,7 +73,7 @@ class Event(Record):
 
     @property
     def words(self) -> str:
-        """Its line in plain English, "" if it has none."""
+        """Return its line in plain English, "" if it has none."""
 
         def fill(found: re.Match[str]) -> str:
             part, name, form = found.groups()
@@ -83,13 +88,13 @@ class Event(Record):
         return _FIELD.sub(fill, self.line)
 
     @classmethod
-    def stamped(cls, t: float, run: str, number: int, /, *data: Any, **more: Any) -> Event:
-        """An event of this class that happens now. The only place that fills in the common fields."""
+    def stamp(cls, t: float, run: str, number: int, /, *data: Any, **more: Any) -> Event:
+        """Return an event of this class that happens now. The only place that fills in the common fields."""
         return cls(t, run, number, time(), *data, **more)
 
     @property
     def count(self) -> int:
-        """How many numbers it takes."""
+        """The number of numbers that it takes."""
         return 1
 
 
@@ -121,16 +126,16 @@ class StatusesChanged(Event):
 
     @property
     def count(self) -> int:
-        """One for each change."""
+        """The number of changes."""
         return len(self.changes)
 
     def without_paths(self) -> Iterator[tuple[int, int, int, str]]:
-        """Index, new status, status before and reason of each change. Paths cost more than all the rest."""
+        """Yield index, new status, status before and reason of each change. Paths cost more than all the rest."""
         for index, status, before, fault in self.changes:
             yield index, status, before, self.nodes.reason(index, fault) if status == FAILURE else ""
 
     def values_now(self) -> dict[int, Node]:
-        """`valued` without nodes that are IDLE again, whose keys may have the values of a later round by now."""
+        """Return `valued` without nodes that are IDLE again, whose keys may have the values of a later round by now."""
         if not self.valued:
             return {}
         latest = {index: status for index, status, _, _ in self.changes}
@@ -486,7 +491,7 @@ class PeriodPassed(Event):
 
     @property
     def count(self) -> int:
-        """It has the number of the next event: so the numbers of a log have no gaps."""
+        """The count 0: it has the number of the next event, so the numbers of a log have no gaps."""
         return 0
 
 
@@ -501,7 +506,7 @@ class Sampled(Event):
 
     @property
     def count(self) -> int:
-        """It has the number of the next event, too."""
+        """The count 0: it has the number of the next event, too."""
         return 0
 
 
@@ -513,6 +518,6 @@ ROBOT_EVENTS: dict[str, type[Event]] = {
         Switched, Given, Pictured, LanguageChosen, StrokePlanned, GestureStarted, PartChanged, Warned, Troubled,
     )
 }  # fmt: skip
-"""What robots report, by the kinds of btlang.robots.robot.Robot.on_event."""
+"""The events that robots report, by the kinds of btlang.robots.robot.Robot.on_event."""
 LOGGED: tuple[type[Event], ...] = (StatusChanged, *ROBOT_EVENTS.values(), RobotEvent, Overrun, Ended)
-"""What a log has."""
+"""The events of a log."""

@@ -1,26 +1,33 @@
-"""What had been tried before a mission failed, gathered from its stream of events."""
+"""What had been tried before a mission failed, gathered from its events, and the text about it for people."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
 
+from btlang.diagnostics.render import underlined
+from btlang.engine.engine import Failure
+from btlang.engine.leaves.leaf import raised_in
+from btlang.engine.nodes.decorators import WAS_TRUE
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SUCCESS
-from btlang.record import Record
 from btlang.run.bus import INLINE
 from btlang.run.events import StatusesChanged
+from btlang.support.record import Record
+from btlang.text.escaping import printable
 from btlang.tree.catalogue import CATALOGUE, ON_FAILURE, SUBTREE, NodeKind
+from btlang.tree.node import Node
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.engine.engine import Engine
     from btlang.run.events import Event
 
+
 MOST = 10
-"""So many different failures are kept for a node, the latest ones."""
+"""The number of different failures that are kept for a node, the latest ones."""
 
 
 class Attempt(Record):
-    """What a node tried in vain: its index, why it failed, when first, when the last two times, and how many times.
+    """An attempt of a node, in vain: its index, why it failed, when first, when the last two times, and how many times.
 
     `stopped` are the leaves that its latest failure halted, with the seconds that they had run. A recovery that was
     done and did not help has no reason.
@@ -36,7 +43,7 @@ class Attempt(Record):
 
 
 class Attempts(Record):
-    """Attempts by the time of their latest failure; equal ones are one. `dropped` older ones are not kept."""
+    """The attempts by the time of their latest failure; equal ones are one. `dropped` older ones are not kept."""
 
     kept: tuple[Attempt, ...] = ()
     dropped: int = 0
@@ -45,8 +52,8 @@ class Attempts(Record):
 _NONE = Attempts()
 
 
-def together(parts: Iterable[Attempts]) -> Attempts:
-    """All attempts, as far as they are kept."""
+def combine_attempts(parts: Iterable[Attempts]) -> Attempts:
+    """Return all attempts, as far as they are kept."""
     parts = [part for part in parts if part.kept]
     if len(parts) == 1:
         return parts[0]
@@ -63,7 +70,7 @@ def together(parts: Iterable[Attempts]) -> Attempts:
 
 
 def _one(old: Attempt, new: Attempt) -> Attempt:
-    """Both as one; their times may lie between each other where nodes run side by side."""
+    """Return both attempts as one; their times may lie between each other where nodes run side by side."""
     latest: Attempt = max(new, old, key=lambda attempt: attempt.last)
     other = old if latest is new else new
     before = other.last if latest.times == 1 else max(latest.before, other.last)
@@ -83,7 +90,7 @@ class FailureHistory:
     def __init__(self, engine: Engine) -> None:
         self.engine = engine
         self.ended = 0.0
-        """When the mission failed."""
+        """The time when the mission failed."""
         self._tried: dict[int, Attempts] = {}  # below a node in its present run
         self._failed: dict[int, dict[int, Attempts]] = {}  # by node: the children whose status is FAILURE, latest last
         self._since: dict[int, float] = {}  # when a running leaf began
@@ -92,15 +99,17 @@ class FailureHistory:
 
     @property
     def tried(self) -> Attempts:
-        """What led to the failure of the mission, the failure itself included; nothing where it has not failed."""
+        """Return what led to the failure of the mission, the failure itself included; nothing where it has not
+        failed.
+        """
         return self._failed.get(-1, {}).get(0, _NONE)
 
     def __call__(self, event: Event) -> None:
         if isinstance(event, StatusesChanged):
             for index, status, _, reason in event.without_paths():
-                self._changed(index, status, event.t, reason)
+                self._take_change(index, status, event.t, reason)
 
-    def _changed(self, index: int, status: int, t: float, reason: str) -> None:
+    def _take_change(self, index: int, status: int, t: float, reason: str) -> None:
         above = self.engine.parent(index)
         self._failed.get(above, {}).pop(index, None)
         if status == RUNNING:
@@ -125,12 +134,12 @@ class FailureHistory:
         failed = self._failed.get(index)
         kind = self._kind(index)
         if not failed:
-            attempts = together((tried, Attempts((Attempt(index, reason, t, t, t),))))
+            attempts = combine_attempts((tried, Attempts((Attempt(index, reason, t, t, t),))))
         elif kind is not None and kind.again == ON_FAILURE:
             attempts = tried
         else:
             needs_all = kind is not None and (kind.goes_on == ON_FAILURE or kind.at_once)
-            attempts = together(failed.values()) if needs_all else next(reversed(failed.values()))
+            attempts = combine_attempts(failed.values()) if needs_all else next(reversed(failed.values()))
         now = self._stopped if t == self._stopped_at else []
         halted = tuple(leaf for leaf in now if leaf[0] > index)  # what is below comes later
         if halted and attempts.kept:
@@ -146,12 +155,119 @@ class FailureHistory:
 
     def _add(self, index: int, tried: Attempts) -> None:
         if tried.kept and index >= 0:
-            self._tried[index] = together((self._tried.get(index, _NONE), tried))
+            self._tried[index] = combine_attempts((self._tried.get(index, _NONE), tried))
 
     def _recovers(self, index: int) -> bool:
-        """Whether what a node does beside its first child is to help that one."""
+        """Return whether what a node does beside its first child is to help that one."""
         kind = self._kind(index)
         return kind is not None and kind.again == ON_FAILURE and kind.most > 1
 
     def _kind(self, index: int) -> NodeKind | None:
         return CATALOGUE.get(self.engine.node(index).id) if index >= 0 else None
+
+
+_LONGEST = 60  # of the words of a sentence beside a reason
+
+
+def failure_report(failure: Failure, story: FailureHistory, label: Callable[[Node], str], colour: str = "") -> str:
+    """Return which sentence failed, its words underlined in a colour, at which leaf, why, and what had been tried
+    before.
+
+    `label` gives the words for a node.
+    """
+    return "\n".join(_one_line(line) for line in _Report(failure, story, label).lines(colour))
+
+
+class _Report:
+    def __init__(self, failure: Failure, story: FailureHistory, label: Callable[[Node], str]) -> None:
+        self._failure = failure
+        self._story = story
+        self._label = label
+
+    def lines(self, colour: str) -> Iterator[str]:
+        failure, story = self._failure, self._story
+        named = self._name(failure.index)
+        last, before = self._apart(story.tried)
+        yield f"The mission failed after {story.ended:.1f} s."
+        yield f"{failure.path if failure.span is None else failure.span.place}: {self._words(failure.index)}"
+        if failure.span is not None:
+            yield from underlined(failure.span, colour)
+        denied, reason = story.engine.node(named), failure.reason
+        if reason == WAS_TRUE and not denied.children:
+            reason = f"'{self._words(named)}' was true"
+        yield f"  {denied.id}: {reason}"
+        if place := raised_in(failure.exception):
+            yield f"  raised in {place}"
+        for index, seconds in last.stopped if last is not None else ():
+            yield f"  It stopped '{self._words(index)}' after {seconds:.1f} s."
+        around = list(self._around())
+        if around:
+            yield "It was part of:"
+            yield from around
+        if before.kept:
+            yield "What had been tried before:"
+            if before.dropped:
+                yield f"{'...':>9}  and {before.dropped} more before"
+            yield from map(self._attempt, sorted(before.kept, key=lambda attempt: attempt.first))
+
+    def _around(self) -> Iterator[str]:
+        """Yield the nodes around the failure that add something to it, and the names that it is part of, innermost
+        first.
+        """
+        reasons = {around.index: f": {around.reason}" for around in self._failure.around}
+        engine = self._story.engine
+        index = engine.parent(self._failure.index)
+        while index >= 0:
+            if index in reasons or (engine.node(index).id == SUBTREE and engine.node(index).span is not None):
+                yield f"  {self._sentence(index)}{reasons.get(index, '')}"
+            index = engine.parent(index)
+
+    def _apart(self, tried: Attempts) -> tuple[Attempt | None, Attempts]:
+        """Return the failure itself, and what came before it."""
+        own = [attempt for attempt in tried.kept if attempt.index == self._failure.index]
+        if not own:
+            return None, tried
+        last = own[-1]
+        kept = [attempt for attempt in tried.kept if attempt is not last]
+        if last.times > 1:
+            kept.append(last.replace(times=last.times - 1, last=last.before))
+        return last, Attempts(tuple(kept), tried.dropped)
+
+    def _attempt(self, attempt: Attempt) -> str:
+        reason = attempt.reason or "done, but it didn't help"
+        times = f" ({attempt.times} times, last at {attempt.last:.1f} s)" if attempt.times > 1 else ""
+        return f"{attempt.first:7.1f} s  {self._sentence(self._name(attempt.index))}: {reason}{times}"
+
+    def _name(self, index: int) -> int:
+        """Return the node that a reason is about: that of a `not` is about what it denies, its child."""
+        kind = CATALOGUE.get(self._story.engine.node(index).id)
+        return index + 1 if kind is not None and len(kind.turns) == 2 else index
+
+    def _sentence(self, index: int) -> str:
+        """Return the words of a node, cut where they are many, with their line where that is not the one of the
+        failure.
+        """
+        words = self._words(index)
+        if len(words) > _LONGEST:
+            words = f"{words[: _LONGEST - 3]}..."
+        span, own = self._story.engine.span(index), self._failure.span
+        if span is None or own is None:
+            return words
+        line, _ = span.source.position(span.start)
+        if span.source is not own.source:
+            return f"{words} ({span.source.name}:{line})"
+        return words if line == own.source.position(own.start)[0] else f"{words} (line {line})"
+
+    def _words(self, index: int) -> str:
+        """Return a command or condition in the words of the vocabulary, and as it was written what is made of
+        several.
+        """
+        engine = self._story.engine
+        node, span = engine.filled(index), engine.span(index)
+        if span is None or (node.span is not None and not node.children and node.id != SUBTREE):
+            return self._label(node)
+        return span.text.splitlines()[0]
+
+
+def _one_line(line: str) -> str:
+    return printable(line).replace("\n", "\\n")

@@ -3,6 +3,6 @@
 from __future__ import annotations
 
 SLOWEST = 0.001
-"""Seconds of the mission per second; slower than that is a mistake."""
+"""The least speed, in seconds of the mission per second; slower than that is a mistake."""
 RATES = (1.0, 1000.0)
-"""Ticks a second; below, a robot drives blind for too long between two."""
+"""The least and the most ticks a second; below, a robot drives blind for too long between two."""

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Sequence
 
 from btlang.diagnostics.errors import MissionError
-from btlang.run.command import run_mission
+from btlang.run.terminal import run_mission
 from btlang.text.output import show
 
 TYPE_CHECKING = False
@@ -15,15 +15,15 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from contextlib import AbstractContextManager
 
-    from btlang.run.command import Mission, Session
+    from btlang.run.terminal import RunnableMission, RunnerSession
 
 
 def run_module(
-    mission: Mission,
-    open_session: Callable[[], AbstractContextManager[Session]],
+    mission: RunnableMission,
+    open_session: Callable[[], AbstractContextManager[RunnerSession]],
     arguments: Sequence[str] | None = None,
 ) -> int:
-    """Runs the mission in a session as `btc run` does, with its option --speed; returns its exit code."""
+    """Run the mission in a session as `btc run` does, with its option --speed; return its exit code."""
     parser = argparse.ArgumentParser(description="Runs a behavior tree on the simulated robot.")
     parser.add_argument("--speed", default="real", help="real, max, or a factor of real time")
     speed = parser.parse_args(arguments).speed

@@ -1,30 +1,74 @@
-"""How a run ended."""
+"""How a run ended, and whether the robot stood still then."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
 from btlang.engine.engine import Failure
-from btlang.record import Record
-from btlang.run.standstill import Standstill
 from btlang.run.statuses import Status
+from btlang.support.record import Record
 from btlang.tree.node import Node
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+
+class Standstill(Record):
+    """How still the robot stood at the end of a run. `moving` is None where nothing reports it; `speed` says how fast.
+
+    `pending` are reasons why the robot may be moved on, such as a goal that its server did not give up. `early`: what
+    was measured may be older than the motion of a goal that was given up a moment ago.
+    """
+
+    moving: bool | None = False
+    speed: str = ""
+    pending: tuple[str, ...] = ()
+    early: bool = False
+
+    @property
+    def still(self) -> bool | None:
+        """Return whether it stands still for good; None where that is not known."""
+        if self.moving:
+            return False
+        return None if self.moving is None or self.pending else True
+
+    @property
+    def alarming(self) -> bool:
+        """Return whether people have to be warned."""
+        return bool(self.moving or self.pending)
+
+    def __str__(self) -> str:
+        reasons = "; ".join(dict.fromkeys(self.pending))
+        if self.moving:
+            moving = f"the robot is still moving{f' {self.speed}' if self.speed else ''}"
+            return f"{moving}: {reasons}" if reasons else moving
+        if self.moving is None:
+            unknown = "nothing reports whether the robot moves"
+            return f"{unknown}, and {reasons}" if reasons else unknown
+        return f"the robot stands still, but {reasons}" if reasons else "the robot stands still"
+
+
+def standstill_of(robot: Any) -> Standstill:
+    """Return the standstill of any robot: its `standstill`, else what its `moving` says."""
+    found: Standstill | None = getattr(robot, "standstill", None)
+    return Standstill(getattr(robot, "moving", None)) if found is None else found
+
 
 SUSPENDED, EMERGENCY = "suspended", "emergency stop"
 
 
 class Outcome(Record, uncompared=("why", "statuses", "exceptions")):
-    """How a run ended, which `print(outcome)` says as `btc run` does.
+    """The outcome of a run, which `print(outcome)` says as `btc run` does.
 
     `why()` is why it failed, as `btc run` says it, "" where it did not; `statuses()` are those of the nodes at the end,
     by their words. `exceptions` are those that leaves have raised, except ActionFailed: the latest of each leaf, also
     where the mission went on.
 
     `stopped` is "" where the tree completed, else (status IDLE) "time limit", "interrupted", "suspended" (it can go on
-    in another run) or "emergency stop".
-    `seconds` are those of the mission, without the time in which the robot came to rest. `overruns` are the ticks that
-    took too long, `worst` the slowest leaf in one and its seconds; None where no leaf was to blame, or nobody looked.
-    `standstill` says whether the robot came to rest.
+    in another run) or "emergency stop". `seconds` are those of the mission, without the time in which the robot came to
+    rest. `overruns` are the ticks that took too long, `worst` the slowest leaf in one and its seconds; None where no
+    leaf was to blame, or nobody looked. `standstill` says whether the robot came to rest.
     """
 
     status: Status
@@ -60,5 +104,5 @@ class Outcome(Record, uncompared=("why", "statuses", "exceptions")):
 
     @property
     def succeeded(self) -> bool:
-        """Whether the mission did what it should. One that had nothing to do did, too (status SKIPPED)."""
+        """Return whether the mission did what it should. One that had nothing to do did, too (status SKIPPED)."""
         return self.status in (Status.SUCCESS, Status.SKIPPED)

@@ -15,7 +15,9 @@ if TYPE_CHECKING:
     from btlang.run.events import Event
 
 MOST_EVENTS = 10_000
-"""So many are kept, where each change of a status counts: what is kept is garbage to look through while robots move."""
+"""The number of events that are kept, where each change of a status counts: what is kept is garbage to look through
+while robots move.
+"""
 
 
 class RecentEvents:
@@ -42,13 +44,13 @@ class RecentEvents:
             self._notify()
 
     def close(self) -> None:
-        """The run is over."""
+        """Note that the run is over."""
         with self._changed:
             self._over = True
             self._notify()
 
     def events(self) -> Iterator[Event]:
-        """The latest ones, then new ones until `close`."""
+        """Yield the latest ones, then new ones until `close`."""
         given = 0
         while True:
             with self._changed:
@@ -60,7 +62,7 @@ class RecentEvents:
             yield from batch
 
     async def events_async(self) -> AsyncIterator[Event]:
-        """Like `events`, for a task of asyncio, which doesn't block its loop meanwhile."""
+        """Yield the events as `events` does, for a task of asyncio, whose loop it doesn't block meanwhile."""
         from asyncio import Event as Signal
         from asyncio import get_running_loop
 
@@ -86,7 +88,7 @@ class RecentEvents:
             self._waiting.remove(wake)
 
     def _after(self, given: int) -> tuple[list[Event], int]:
-        """The kept ones behind the first `given`, and how many there have been now."""
+        """Return the kept ones behind the first `given`, and how many there have been now."""
         new = min(self._count - given, len(self._events))
         return list(self._events)[len(self._events) - new :], self._count
 

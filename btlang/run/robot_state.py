@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from math import isfinite
 
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.record import Record
+from btlang.support.record import Record
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -18,7 +18,8 @@ Whereabouts = tuple[str, float | None, float | None, bool]
 
 
 class RobotState(Record):
-    """Pose, percent of the battery, and what the hands hold; None for what the robot does not know.
+    """The state of a robot: pose, percent of the battery, and what the hands hold; None for what the robot does not
+    know.
 
     `things` are those that are or may be elsewhere than the map of the world has them.
     """
@@ -31,46 +32,46 @@ class RobotState(Record):
 
     @property
     def place(self) -> list[float] | None:
-        """Metres and degrees for those who watch: rounded, so that a robot at rest has nothing new."""
+        """The pose in metres and degrees for those who watch: rounded, so that a robot at rest has nothing new."""
         pose = self.pose
         return None if pose is None else [round(pose.x, 3), round(pose.y, 3), round(pose.heading, 1)]
 
     @property
     def charge(self) -> float | None:
-        """Percent of the battery, rounded likewise."""
+        """The percent of the battery, rounded likewise."""
         return None if self.battery is None else round(self.battery, 1)
 
 
 class Movements:
-    """Remembers whereabouts, so that those who keep or send them need only what has changed."""
+    """A memory of whereabouts, so that those who keep or send them need only what has changed."""
 
     def __init__(self) -> None:
         self._known: dict[str, Whereabouts] = {}
 
     def changed(self, things: Iterable[Whereabouts]) -> list[Whereabouts]:
-        """Those that are not as they were at the last call."""
+        """Return the whereabouts that are not as they were at the last call."""
         found = [each for each in things if self._known.get(each[0]) != each]
         self._known.update((each[0], each) for each in found)
         return found
 
 
 def read_robot(robot: Any) -> RobotState | None:
-    """The state of a robot, None where there is no robot. For the thread of the run."""
+    """Return the state of a robot, None where there is no robot. For the thread of the run."""
     if robot is None:
         return None
-    hands = (asked(lambda: robot.holding("left")), asked(lambda: robot.holding("right")))
-    things = asked(lambda: robot.things) or ()
-    return RobotState(asked(lambda: robot.pose), asked(lambda: robot.battery), *hands, things)
+    hands = (ask_sensor(lambda: robot.holding("left")), ask_sensor(lambda: robot.holding("right")))
+    things = ask_sensor(lambda: robot.things) or ()
+    return RobotState(ask_sensor(lambda: robot.pose), ask_sensor(lambda: robot.battery), *hands, things)
 
 
-def asked(ask: Callable[[], Any]) -> Any:
-    """What a sensor says; None where the robot has no such one, or it is silent."""
+def ask_sensor(ask: Callable[[], Any]) -> Any:
+    """Return what a sensor says; None where the robot has no such one, or it is silent."""
     try:
         return ask()
     except (ActionFailed, AttributeError):
         return None
 
 
-def rounded_scan(ranges: Iterable[float]) -> list[float | None]:
-    """Metres for those who watch, counter-clockwise from straight ahead; None where nothing is."""
+def round_scan(ranges: Iterable[float]) -> list[float | None]:
+    """Round metres for those who watch, counter-clockwise from straight ahead; None where nothing is."""
     return [round(distance, 2) if isfinite(distance) else None for distance in ranges]

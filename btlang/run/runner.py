@@ -15,11 +15,9 @@ from btlang.engine.status import IDLE, NAMES, RUNNING
 from btlang.run.bus import Bus
 from btlang.run.controls import Controls, disable
 from btlang.run.events import Ended, PeriodPassed, StatusesChanged, Troubled, Warned
-from btlang.run.outcome import EMERGENCY, SUSPENDED, Outcome
-from btlang.run.overruns import Overruns
-from btlang.run.pace import Pace
+from btlang.run.outcome import EMERGENCY, SUSPENDED, Outcome, Standstill, standstill_of
+from btlang.run.pace import Overruns, Pace
 from btlang.run.robot_state import read_robot
-from btlang.run.standstill import Standstill, standstill_of
 from btlang.run.statuses import Status
 from btlang.tree.node import Tree
 
@@ -33,8 +31,10 @@ if TYPE_CHECKING:
     from btlang.run.events import Robot
 
     class Ticked(Protocol):
-        """What a run ticks: an Engine, or several that count as one. `idle` may be missing: whether there is nothing to
-        tick now, so that the robot need not be enabled yet. So may `works_beside`: whether anything works in a thread.
+        """A thing that a run ticks: an Engine, or several that count as one.
+
+        `idle` may be missing: whether there is nothing to tick now, so that the robot need not be enabled yet. So may
+        `works_beside`: whether anything works in a thread.
         """
 
         on_wake: Callable[[], object] | None
@@ -58,7 +58,7 @@ _REST = 2.0  # seconds of the mission that a robot gets to come to rest
 _PATIENCE = 2.0  # seconds of real time that background leaves get to end after the last halt
 
 
-def traced_engine(
+def trace_engine(
     tree: Tree,
     bind: Callable[[str], LeafBinding | None],
     *,
@@ -69,7 +69,8 @@ def traced_engine(
     proxies: Mapping[str, Callable[..., Any]] = {},
     hooks: Hooks | None = None,
 ) -> Engine:
-    """An engine whose status changes go on the bus, and once a run each condition that isn't known or leaf that raised.
+    """Return an engine whose status changes go on the bus, and once a run each condition that isn't known or leaf that
+    raised.
 
     The time of day and the weekday are those of the robot, where it knows.
     """
@@ -105,12 +106,12 @@ def traced_engine(
 
 
 class Runner:
-    """Ticks an engine `rate` times a second of the mission until the tree completes.
+    """A runner that ticks an engine `rate` times a second of the mission until the tree completes.
 
-    `speed` is seconds of the mission per second of real time; math.inf waits only for background leaves, in real
-    time. `pace` makes what waits between two ticks and returns how much time has passed. The next tick comes sooner if
-    a node is due before the period is over (Clock.due), and at once if the service `wake` of the engine is called.
-    Where the engine has a stopwatch, ticks that take longer than their period are events (Overrun).
+    `speed` is seconds of the mission per second of real time; math.inf waits only for background leaves, in real time.
+    `pace` makes what waits between two ticks and returns how much time has passed. The next tick comes sooner if a node
+    is due before the period is over (Clock.due), and at once if the service `wake` of the engine is called. Where the
+    engine has a stopwatch, ticks that take longer than their period are events (Overrun).
 
     A pause suspends the tree (see Engine.suspend) and brakes the robot. Then the time of the mission stands still, and
     so does a simulated world once the robot is at rest.
@@ -145,19 +146,20 @@ class Runner:
             self._overruns = Overruns(engine, engine.stopwatch, self._pause, self._bus)
         self.ticks = 0
         self.after_tick: Callable[[], object] | None = None
-        """Called after each tick of the tree, in the thread of the run."""
+        """A function to call after each tick of the tree, in the thread of the run."""
         self._requests: deque[Callable[[], object]] = deque()
         self._thread = 0  # that of `run`, while it goes on
         self.controls.robot = robot
         engine.on_wake = self._pace.wake
 
     def halt(self) -> None:
-        """Halts the tree and stops the robot, outside of run(); the next tick starts the tree again."""
+        """Halt the tree and stops the robot, outside of run(); the next tick starts the tree again."""
         self._end()
 
     def tick(self, seconds: float | None = None) -> int:
-        """Ticks the tree, then, unless it completed, moves clock and robot on by `seconds`, or one period. Returns the
-        status.
+        """Tick the tree, then, unless it completed, moves clock and robot on by `seconds`, or one period.
+
+        Returns the status.
 
         After an emergency stop, also one during this tick, it halts the tree instead and returns IDLE.
         """
@@ -177,7 +179,9 @@ class Runner:
     def completed(
         self, status: Status, stopped: str = "", seconds: float | None = None, standstill: Standstill | None = None
     ) -> Outcome:
-        """The outcome of a tree that came to this status, or was `stopped`, after so many seconds, by default now."""
+        """Return the outcome of a tree that came to this status, or was `stopped`, after so many seconds, by default
+        now.
+        """
         failure = None if stopped else self._engine.failure
         count, worst = (self._overruns.count, self._overruns.worst) if self._overruns is not None else (0, None)
         standstill = Standstill() if standstill is None else standstill
@@ -186,7 +190,7 @@ class Runner:
         return Outcome(status, seconds, self.ticks, failure, stopped, count, worst, standstill, exceptions=raised)
 
     def between_ticks(self, call: Callable[[], Any]) -> Any:
-        """What `call` returns or raises, between two ticks of `run`. From any thread; waits until then."""
+        """Return what `call` returns or raises, between two ticks of `run`. From any thread; waits until then."""
         if self._thread in (0, get_ident()):
             return call()
         answered = Event()
@@ -210,7 +214,7 @@ class Runner:
         return answers[0]
 
     def end_requests(self) -> None:
-        """The run is over: from now on `between_ticks` calls at once. Does what it still waits for."""
+        """Do what still waits, as the run is over: from now on `between_ticks` calls at once."""
         self._thread = 0
         self._answer_requests()
 
@@ -219,7 +223,7 @@ class Runner:
             self._requests.popleft()()
 
     def run(self) -> Outcome:
-        """Runs to the end, the time limit, a stop or Ctrl-C; then halts the tree and brings the robot to rest.
+        """Run to the end, the time limit, a stop or Ctrl-C; then halt the tree and bring the robot to rest.
 
         An emergency stop counts also where it comes during the latter. An exception other than KeyboardInterrupt does
         the same and comes through.
@@ -274,7 +278,7 @@ class Runner:
         return status
 
     def _stand_still(self, stepped: bool) -> None:
-        """One period of a pause. After a single step a simulated world stops as it is, so that steps add up."""
+        """Spend one period of a pause. After a single step a simulated world stops as it is, so that steps add up."""
         robot = self._robot
         frozen = robot is None or not getattr(robot, "moves_by_itself", True)
         if not self._suspended and not (stepped and frozen):
@@ -293,7 +297,7 @@ class Runner:
         self.controls.wait(self._pause)
 
     def _period_left(self) -> float:
-        """The length of a period; the last one ends with the time limit."""
+        """Return the length of a period; the last one ends with the time limit."""
         left = self._began + self._limit - self._clock.now
         return min(self._period, left) if left > 0 else self._period
 
@@ -308,7 +312,7 @@ class Runner:
         self._bus.emit(PeriodPassed, self.ticks, self._pace.late, read_robot(self._robot), self._robot)
 
     def _end(self, suspends: bool = False) -> Standstill:
-        """Another Ctrl-C cuts short only the wait for the robot, not the halting."""
+        """End the run. Another Ctrl-C cuts short only the wait for the robot, not the halting."""
         try:
             if suspends and not self.controls.emergency:
                 self._engine.suspend()
@@ -332,7 +336,9 @@ class Runner:
             passed = self._pace.rest(self._period)
 
     def _enable(self) -> None:
-        """A run begins, or goes on after a pause: the one place where a robot that was stopped gets to move again."""
+        """Enable the robot as a run begins, or goes on after a pause: the one place where a robot that was stopped gets
+        to move again.
+        """
         self._disabled = False
         if self._robot is not None:
             getattr(self._robot, "enable", _nothing)()
@@ -356,11 +362,11 @@ def _place(failure: Failure) -> str:
 
 
 def _nothing() -> None:
-    """In place of what a robot does not have."""
+    """Do nothing, in place of what a robot does not have."""
 
 
 def _ending(outcome: Outcome) -> tuple[Any, ...]:
-    """The fields of Ended."""
+    """Return the fields of Ended."""
     still, failure = outcome.standstill.still, outcome.failure
     data = NAMES[outcome.status], outcome.stopped, outcome.seconds, still, "" if still else str(outcome.standstill)
     if failure is None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from btlang.engine.blackboard import Blackboard
 from btlang.run.bus import INLINE, Bus
 from btlang.run.events import Event, PeriodPassed, Sampled
-from btlang.run.robot_state import asked
+from btlang.run.robot_state import ask_sensor
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ class Sampler:
         self._next_scan = 0.0
 
     def __call__(self, event: Event) -> None:
-        """An event of the run."""
+        """Take in an event of the run."""
         if not isinstance(event, PeriodPassed):
             return
         changed = {}
@@ -40,4 +40,4 @@ class Sampler:
 
     def _scan(self, event: PeriodPassed) -> tuple[float, ...]:
         self._next_scan = event.t + 1 / self._scans
-        return tuple(asked(lambda: [float(distance) for distance in event.robot.scan()]) or ())
+        return tuple(ask_sensor(lambda: [float(distance) for distance in event.robot.scan()]) or ())

@@ -1,24 +1,24 @@
-"""What is known of a run: the status of each node and when it got it, the robot, the counts."""
+"""What is known of a run: the status of each node, the robot, the counts; and what of it is new for a page."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from threading import Lock
 
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.engine.status_trace import repeats
-from btlang.record import Record
 from btlang.run.bus import INLINE
 from btlang.run.events import Arrived, Ended, Heard, NavigationStarted, PeriodPassed, Said, StatusesChanged, Stopped
 from btlang.run.robot_state import RobotState
-from btlang.run.shape import Shape
 from btlang.run.statuses import Status
+from btlang.support.record import Record
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Protocol
+    from typing import Any, Protocol
 
     from btlang.run.events import Event, Nodes
+    from btlang.text.source import Span
     from btlang.tree.node import Node
 
     class WatchedNodes(Nodes, Protocol):
@@ -26,11 +26,60 @@ if TYPE_CHECKING:
 
         def parent(self, index: int) -> int: ...
 
+    class Spans(Protocol):
+        """The nodes of a run by their numbers: a btlang.engine.engine.Engine, or those of a recording."""
+
+        @property
+        def size(self) -> int: ...
+
+        def span(self, index: int) -> Span | None: ...
+
+
+class Shape:
+    """A node is its preorder number; all below node i are the numbers from i + 1 up to `ends[i]` (exclusive).
+
+    `parents` holds the parent of each node (-1: the root), `before` the sibling in front of it (-1: there is none),
+    `depths` the distance to the root, and `depth` the largest of them.
+    """
+
+    __slots__ = ("before", "depth", "depths", "ends", "parents")
+
+    def __init__(self, parents: Sequence[int]) -> None:
+        count = len(parents)
+        self.parents = list(parents)
+        self.ends = [i + 1 for i in range(count)]
+        for i in range(count - 1, 0, -1):
+            parent = parents[i]
+            if self.ends[parent] < self.ends[i]:
+                self.ends[parent] = self.ends[i]
+        self.before, self.depths = [-1] * count, [0] * count
+        latest = [-1] * count
+        for i in range(1, count):
+            self.before[i] = latest[parents[i]]
+            latest[parents[i]] = i
+            self.depths[i] = self.depths[parents[i]] + 1
+        self.depth = max(self.depths)
+
+    def __len__(self) -> int:
+        return len(self.parents)
+
+    def children(self, node: int) -> Iterator[int]:
+        """Yield the children of a node in order."""
+        child, end = node + 1, self.ends[node]
+        while child < end:
+            yield child
+            child = self.ends[child]
+
+    def after(self, node: int) -> int:
+        """Return the sibling behind a node, -1 if there is none."""
+        parent, end = self.parents[node], self.ends[node]
+        return end if parent >= 0 and end < self.ends[parent] else -1
+
 
 HALTED = IDLE + 1
-"""Was RUNNING and was halted."""
+"""The status of a node that was RUNNING and was halted."""
 SUSPENDED = HALTED + 1
-"""Was halted by a pause, or by the end of the run."""
+"""The status of a node that was halted by a pause, or by the end of the run."""
 
 
 class Snapshot(Record):
@@ -51,7 +100,9 @@ class Snapshot(Record):
 
 
 class Doing(Record):
-    """What a robot does, in words: the number of its task (0: none), where it is going, what it said and heard last."""
+    """The activity of a robot, in words: the number of its task (0: none), where it is going, what it said and heard
+    last.
+    """
 
     task: int = 0
     goal: str = ""
@@ -70,8 +121,8 @@ class Doing(Record):
         return self
 
 
-class State:
-    """Follows the status changes of a run. `statuses` holds one number for each node, in preorder.
+class RunState:
+    """The state of a run, which follows its status changes. `statuses` holds one number for each node, in preorder.
 
     A node that is started again keeps nothing of its earlier round: what it has not reached yet is IDLE again. Where
     that round was over within a tick, this is so once the new one is RUNNING (see btlang/engine/status_trace.py).
@@ -95,16 +146,16 @@ class State:
         self._sweep = 1
         self._halted: list[int] = []  # by the halts that come in a row
 
-    def copy(self) -> State:
-        """Another one, which goes on from here by itself."""
-        other = State.__new__(State)
+    def copy(self) -> RunState:
+        """Return another one, which goes on from here by itself."""
+        other = RunState.__new__(RunState)
         for name, value in vars(self).items():
             shared = name in ("shape", "_nodes") or not isinstance(value, bytearray | dict | list)
             setattr(other, name, value if shared else value.copy())
         return other
 
     def take(self, event: Event) -> None:
-        """An event of the run."""
+        """Take in an event of the run."""
         if isinstance(event, StatusesChanged):
             for index, status, _, reason in event.without_paths():
                 self.change(index, status, event.t, reason)
@@ -114,7 +165,7 @@ class State:
             self.doing = self.doing.after(event)
 
     def change(self, index: int, status: int, t: float, reason: str = "") -> None:
-        """A node has a new status."""
+        """Take in that a node has a new status."""
         self._begin_anew(index)
         before = self.statuses[index]
         if status == IDLE:
@@ -157,7 +208,9 @@ class State:
             self._sweep += 1
 
     def _begin_anew(self, index: int) -> None:
-        """Children report changes before their parents do, so the first change below a node begins its new run."""
+        """Begin the new run of a node: children report changes before their parents do, so the first change below it
+        does.
+        """
         over, top, parents = self._over, -1, self.shape.parents
         node = index
         while node >= 0 and self._seen[node] != self._sweep:
@@ -173,7 +226,7 @@ class State:
             over[top:end] = bytes(end - top)
 
     def _clear_older(self, index: int, t: float) -> None:
-        """Nothing below a node counts any more but what has just changed."""
+        """Clear all below a node but what has just changed."""
         node, end = index + 1, self.shape.ends[index]
         while node < end:
             if self.statuses[node] == RUNNING:  # which has cleared what is below it
@@ -184,14 +237,14 @@ class State:
             node += 1
 
     def is_leaf(self, index: int) -> bool:
-        """Whether nothing is below a node."""
+        """Return whether nothing is below a node."""
         return not self._has_children(index)
 
     def _has_children(self, index: int) -> bool:
         return self.shape.ends[index] > index + 1
 
 
-class Follower:
+class RunFollower:
     """A sink that follows a run, and gives snapshots of it to any thread."""
 
     policy = INLINE
@@ -199,7 +252,7 @@ class Follower:
     def __init__(self, engine: WatchedNodes) -> None:
         self._engine = engine
         self._lock = Lock()
-        self._state: State | None = None
+        self._state: RunState | None = None
         self._latest: Event | None = None
         self._nodes: Sequence[Node] = ()
 
@@ -208,17 +261,17 @@ class Follower:
             if self._state is None:
                 count = self._engine.size
                 self._nodes = [self._engine.node(index) for index in range(count)]
-                self._state = State(Shape([self._engine.parent(index) for index in range(count)]), self._nodes)
+                self._state = RunState(Shape([self._engine.parent(index) for index in range(count)]), self._nodes)
             self._state.take(event)
             self._latest = event
 
-    def jump(self, state: State) -> None:
-        """Goes on from another state of the same tree."""
+    def jump(self, state: RunState) -> None:
+        """Go on from another state of the same tree."""
         with self._lock:
             self._state = state
 
     def snapshot(self, label: Callable[[Node], str]) -> Snapshot:
-        """The state now; `label` gives the words of a command."""
+        """Return the state now; `label` gives the words of a command."""
         with self._lock:
             state, latest = self._state, self._latest
             if state is None or latest is None:
@@ -233,12 +286,12 @@ class Follower:
         return Snapshot(run, number, t, _status(codes[0]), reached, running, said, robot)
 
     def codes(self) -> bytes:
-        """The status of each node in preorder, also HALTED and SUSPENDED; nothing before the first event."""
+        """Return the status of each node in preorder, also HALTED and SUSPENDED; nothing before the first event."""
         with self._lock:
             return bytes(self._state.statuses) if self._state is not None else b""
 
     def statuses(self, label: Callable[[Node], str]) -> dict[str, Status]:
-        """The status of each node by its words."""
+        """Return the status of each node by its words."""
         with self._lock:
             codes = list(self._state.statuses) if self._state is not None else []
         found: dict[str, Status] = {}
@@ -251,3 +304,55 @@ class Follower:
 
 def _status(code: int) -> Status:
     return Status(min(code, IDLE))  # HALTED and SUSPENDED are IDLE for everybody else
+
+
+_SHOWN = bytes.maketrans(bytes([HALTED, SUSPENDED]), bytes([IDLE, IDLE]))
+
+
+class KnownNodes:
+    """The statuses and the words of `count` nodes, as somebody has got them so far. In the beginning all are IDLE."""
+
+    def __init__(self, count: int) -> None:
+        self._codes = bytes([IDLE]) * count
+        self._valued: dict[int, Node] = {}
+
+    def new_statuses(self, codes: bytes) -> list[tuple[int, int]]:
+        """Return number and status of each node that has another status by now; HALTED and SUSPENDED are IDLE."""
+        before, self._codes = self._codes, codes.translate(_SHOWN)
+        return [(index, self._codes[index]) for index in _find_differences(before, self._codes)]
+
+    def new_words(self, valued: Mapping[int, Node], label: Callable[[Node], str]) -> list[tuple[int, str]]:
+        """Return number and words of each node whose keys have other values by now."""
+        found = []
+        for index, node in valued.items():
+            known = self._valued.get(index)
+            if known is not node:
+                self._valued[index] = node
+                if known is None or known.ports != node.ports:
+                    found.append((index, label(node)))
+        return found
+
+
+def text_and_places(syntax: Any, nodes: Spans) -> tuple[str, list[tuple[int, int] | None]]:
+    """Return the text that a mission was read from, and the characters of it that say each node.
+
+    `syntax` is that of a btlang.api.Mission, None for one without a text. A node that another file says has no place.
+    """
+    source = None if syntax is None else syntax.span.source
+    spans = [nodes.span(index) for index in range(nodes.size)]
+    places = [(span.start, span.end) if span is not None and span.source is source else None for span in spans]
+    return "" if source is None else source.text, places
+
+
+def _find_differences(before: bytes, after: bytes) -> Iterator[int]:
+    """Yield the positions that differ, found by halves: few nodes of a large tree change at a time."""
+    spans = [(0, len(after))]
+    while spans:
+        start, end = spans.pop()
+        if before[start:end] == after[start:end]:
+            continue
+        if end - start == 1:
+            yield start
+        else:
+            middle = (start + end) // 2
+            spans += (middle, end), (start, middle)

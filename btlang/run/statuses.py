@@ -8,7 +8,7 @@ from btlang.engine import status
 
 
 class Status(IntEnum):
-    """What a node or a mission came to. Equal to the numbers of btlang.engine.status."""
+    """A status of a node or a mission. Equal to the numbers of btlang.engine.status."""
 
     FAILURE = status.FAILURE
     SUCCESS = status.SUCCESS

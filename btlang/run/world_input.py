@@ -32,10 +32,10 @@ class WorldInput:
         """The open question, "" while there is none."""
 
     def __call__(self, event: Event) -> None:
-        """An event of the run."""
+        """Take in an event of the run."""
         if isinstance(event, Asked):
             self.question = event.text or "..."
-            if (answer := self._scripted(event.text.lower())) is not None:
+            if (answer := self._take_answer(event.text.lower())) is not None:
                 self.type(answer)
         elif isinstance(event, PeriodPassed) and (self.question or self._calls):
             while self._calls:
@@ -46,14 +46,14 @@ class WorldInput:
             self.question = ""
 
     def type(self, text: str) -> None:
-        """Somebody answers."""
+        """Answer for somebody who types."""
         self._calls.append(lambda robot: robot.hear(text))
 
     def invite(self) -> None:
-        """A visitor comes, where the world is simulated."""
+        """Let a visitor come, where the world is simulated."""
         self._calls.append(lambda robot: robot.invite() if hasattr(robot, "invite") else None)
 
-    def _scripted(self, question: str) -> str | None:
+    def _take_answer(self, question: str) -> str | None:
         texts = next((texts for words, texts in self._answers.items() if words in question), self._answers.get(_ANY))
         if not texts:
             return None

@@ -1,1 +1,1 @@
-"""The representative server: the door to robots for everything outside this computer."""
+"""The representative server: how everything outside this computer reaches robots."""

@@ -6,7 +6,7 @@ import re
 from bisect import bisect_right
 from collections.abc import Sequence
 
-from btlang.record import Record
+from btlang.support.record import Record
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

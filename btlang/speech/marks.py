@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from btlang.record import Record
+from btlang.support.record import Record
 
 _MARK = re.compile(r"\\<|<(?![\s\d])([^<>]+)>")
 _SENTENCE_ENDS = re.compile(r"[.!?…]+[\"'”»)\]]*\s+")

@@ -7,7 +7,7 @@ import unicodedata
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Literal
 
-from btlang.record import Record
+from btlang.support.record import Record
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -1,6 +1,6 @@
 """What may be asked of a robot: a class for each command. The CLI, the library, ROS 2 and servers all send these.
 
-As JSON a command is an object with its name under "command" and its fields; `command_schema.py` describes them all.
+As JSON a command is an object with its name under "command" and its fields; `commands/schema.py` describes them all.
 """
 
 from __future__ import annotations
@@ -9,10 +9,9 @@ from collections.abc import Mapping
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
-from btlang.record import Record
-from btlang.run.field_types import field_type
-from btlang.task.keepable import can_be_kept
-from btlang.task.task import Kind, Missed, Overlap, Restart
+from btlang.support.field_types import field_type
+from btlang.support.record import Record
+from btlang.task.store.records import LibraryKind, Missed, Overlap, Restart, is_storable
 from btlang.text.source import NOWHERE
 from btlang.text.spelling import nearest
 
@@ -165,7 +164,7 @@ class Put(Command):
     name: str
     text: str
     revision: int | None = None
-    kind: str = Kind.MISSION.value
+    kind: str = LibraryKind.MISSION.value
 
 
 class Delete(Command):
@@ -175,7 +174,7 @@ class Delete(Command):
 
     tag = "delete"
     name: str
-    kind: str = Kind.MISSION.value
+    kind: str = LibraryKind.MISSION.value
 
 
 class Library(Command):
@@ -186,7 +185,7 @@ class Library(Command):
     tag = "library"
     changes = False
     name: str = ""
-    kind: str = Kind.MISSION.value
+    kind: str = LibraryKind.MISSION.value
     revision: int | None = None
 
 
@@ -327,7 +326,7 @@ COMMANDS: dict[str, type[Command]] = {
         InviteVisitor, Down, Status, Report, Trail, Components, ChangeComponent, Picture, Voice, Urdf,
     )
 }  # fmt: skip
-"""By their names."""
+"""The classes of commands by their names."""
 
 
 class Answer(Record):
@@ -341,12 +340,12 @@ class Answer(Record):
     code: str = ""
 
     def as_json(self) -> dict[str, Any]:
-        """Its fields."""
+        """Return its fields."""
         return {"ok": self.ok, "text": self.text, "data": dict(self.data), "code": self.code}
 
 
 def read_command(data: object) -> Command:
-    """A command from its JSON. Raises MissionError (BT198) if it isn't one."""
+    """Read a command from its JSON. Raises MissionError (BT198) if it isn't one."""
     if not isinstance(data, dict):
         raise wrong("", "it must be an object")
     name = data.get("command")
@@ -360,7 +359,7 @@ def read_command(data: object) -> Command:
             continue
         if field not in kind.fields:
             raise wrong(kind.tag, f"it has no field '{field}'")
-        given[field] = _checked(kind, field, value)
+        given[field] = _check_field(kind, field, value)
     missing = [field for field in kind.fields if field not in given and field not in kind.field_defaults]
     if missing:
         raise wrong(kind.tag, f"the field '{missing[0]}' is missing")
@@ -368,7 +367,7 @@ def read_command(data: object) -> Command:
 
 
 def as_json(command: Command) -> dict[str, Any]:
-    """A command as `read_command` takes it, without the fields that have their defaults."""
+    """Write a command as `read_command` takes it, without the fields that have their defaults."""
     written: dict[str, Any] = {"command": command.tag}
     for field in command.fields:
         value = getattr(command, field)
@@ -377,7 +376,7 @@ def as_json(command: Command) -> dict[str, Any]:
     return written
 
 
-def _checked(kind: type[Command], field: str, value: Any) -> Any:
+def _check_field(kind: type[Command], field: str, value: Any) -> Any:
     annotation = kind.__annotations__[field]
     expected, described = field_type(annotation)
     texts = annotation == "tuple[str, ...]"
@@ -386,11 +385,11 @@ def _checked(kind: type[Command], field: str, value: Any) -> Any:
     fits = isinstance(value, expected) and not isinstance(value, bool)
     if not fits or (texts and not all(isinstance(each, str) for each in value)) or value != value:
         raise wrong(kind.tag, f"'{field}' must be of the type {described['type']}")
-    if not can_be_kept(value):
+    if not is_storable(value):
         raise wrong(kind.tag, f"'{field}' has a NUL or half a character (a lone surrogate), or a number without end")
     return tuple(value) if texts else value
 
 
 def wrong(name: str, reason: str) -> MissionError:
-    """BT198: a command, or a part of it, isn't as it must be."""
+    """Make the error BT198: a command, or a part of it, isn't as it must be."""
     return MissionError([diagnostic("BT198", NOWHERE, name=name, reason=reason)])

@@ -22,7 +22,7 @@ _NAMES = re.compile("my_gadget|Gadget|gadget")
 
 
 def make_project(kind: str, name: str) -> list[str]:
-    """Makes the folder `name`, which is one of a Python module, in the current folder; returns the paths of its files.
+    """Make the folder `name`, which is one of a Python module, in the current folder; return the paths of its files.
 
     Raises MissionError (BT009) where there is one that isn't empty, or it can't be made, or the name has a meaning.
     """
@@ -43,7 +43,7 @@ def make_project(kind: str, name: str) -> list[str]:
 
 
 def _files(kind: str, name: str) -> dict[str, str]:
-    """The text of each file by its path; fewer where two have one path."""
+    """Return the text of each file by its path; fewer where two have one path."""
     names = {"my_gadget": name, "gadget": _said(name), "Gadget": _class(name)}
     return {
         os.path.join(name, file.replace("my_gadget", name)): _NAMES.sub(lambda match: names[match[0]], text)
@@ -67,7 +67,7 @@ def _class(name: str) -> str:
 
 
 def _meaning(kind: str, name: str, files: Mapping[str, str]) -> str:
-    """What a name means already, so that this can't have it; "" where it is free."""
+    """Return what a name means already, so that this can't have it; "" where it is free."""
     spec = find_spec(name)
     if name in sys.stdlib_module_names or (spec is not None and spec.origin is not None):
         return "there is a Python module of this name; choose another one"

@@ -23,7 +23,8 @@ _PATIENCE = 5.0  # seconds, on a busy computer
 
 
 class ComponentBench:
-    """Leads components through their life in this process: `bench(Machine, heat=70)` is one that is active.
+    """A bench that leads components through their life in this process: `bench(Machine, heat=70)` is one that is
+    active.
 
     The test stands in for their devices: `readings` are their readings by name, and a device without one is silent;
     `commands` are the latest that they got. `events` are what the components have reported: kind and data.
@@ -36,7 +37,10 @@ class ComponentBench:
         self._active: list[Component] = []
 
     def __call__(self, kind: type[Tested], **parameters: object) -> Tested:
-        """A component with these parameters, configured and active. Raises ComponentError, and what its hooks raise."""
+        """Return a component with these parameters, configured and active.
+
+        Raises ComponentError, and what its hooks raise.
+        """
         made = kind()
         made.name = kind.__name__.lower()
         made._devices = dict.fromkeys([*kind.needs, *self.readings], self)
@@ -48,17 +52,17 @@ class ComponentBench:
         return made
 
     def read(self, name: str) -> Reading:
-        """The reading of a device. Raises DeviceSilent."""
+        """Return the reading of a device. Raises DeviceSilent."""
         if name not in self.readings:
             raise DeviceSilent(f"the {name} is silent: the test gives no reading")
         return self.readings[name]
 
     def write(self, name: str, command: Command) -> None:
-        """Keeps a command to a device."""
+        """Keep a command to a device."""
         self.commands[name] = command
 
     def close(self) -> None:
-        """Brings all of them down, the latest first."""
+        """Bring all of them down, the latest first."""
         while self._active:
             component = self._active.pop()
             component.deactivate()
@@ -78,15 +82,15 @@ class DeviceBench:
         self._loop.start()
 
     def read(self) -> Reading:
-        """The latest reading. Raises DeviceSilent."""
+        """Return the latest reading. Raises DeviceSilent."""
         return self._loop.read(self._device.name)
 
     def write(self, command: Command) -> None:
-        """Sends it a command, which counts for 0.2 s. Raises DeviceError."""
+        """Send it a command, which counts for 0.2 s. Raises DeviceError."""
         self._loop.write(self._device.name, command)
 
     def wait(self, expected: Callable[[Any], bool] = lambda reading: True, seconds: float = _PATIENCE) -> Reading:
-        """The first reading that is as expected. Raises AssertionError if none comes in so many seconds."""
+        """Return the first reading that is as expected. Raises AssertionError if none comes in so many seconds."""
 
         def look() -> Reading | None:
             try:
@@ -98,11 +102,11 @@ class DeviceBench:
         return self._first(look, seconds, "gives no such reading")
 
     def wait_for_silence(self, seconds: float = _PATIENCE) -> str:
-        """Why it has fallen silent. Raises AssertionError where it doesn't in so many seconds."""
+        """Return why it has fallen silent. Raises AssertionError where it doesn't in so many seconds."""
         return self._first(lambda: self._loop.silent(self._device.name), seconds, "is not silent")
 
     def close(self) -> None:
-        """Brings it to rest, and lets go of its port."""
+        """Bring it to rest, and let go of its port."""
         self._loop.close()
 
     def _first(self, look: Callable[[], Found | None], seconds: float, problem: str) -> Found:

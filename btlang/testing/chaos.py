@@ -44,14 +44,14 @@ class Chaos:
         self.broken = ""
         """The first rule that did not hold, and when."""
         self.troubles: list[str] = []
-        """What went wrong in the world, and when."""
+        """The faults in the world, and when they came."""
         self._observed, self._robot, self._controls, self._words = observed, robot, controls, words
         self._random = Random(seed)
-        self._pending = list(self._planned(limit))
+        self._pending = list(self._plan(limit))
         self._stopped_at: float | None = None
 
     def __call__(self, event: Event) -> None:
-        """An event of the run."""
+        """Take in an event of the run."""
         if not isinstance(event, PeriodPassed):
             return
         while self._pending and self._pending[0][0] <= event.t:
@@ -67,7 +67,7 @@ class Chaos:
                 self._controls.stop()
 
     def end(self) -> None:
-        """The run is over: the robot stands, and keeps standing."""
+        """Check a run that is over: the robot stands, and keeps standing."""
         before = self._robot.travelled
         for _ in range(20):
             self._robot.step(0.05)
@@ -75,7 +75,7 @@ class Chaos:
             self.broken = "it moved after the mission was over"
 
     def _rules(self, now: float) -> Iterator[str]:
-        """What does not hold now."""
+        """Yield what does not hold now."""
         body, (linear, angular) = self._robot.body, self._robot.velocity
         if abs(linear) > body.driving.top_speed * _TOLERANCE:
             yield f"after {now:.1f} s it drove at {linear:.2f} m/s, faster than its body allows"
@@ -92,8 +92,8 @@ class Chaos:
         entry = self._words.entry(node.id)
         return set(entry.resources) if entry is not None and entry.sort == "action" else set()
 
-    def _planned(self, limit: float) -> Iterator[Trouble]:
-        """In the order of time."""
+    def _plan(self, limit: float) -> Iterator[Trouble]:
+        """Plan faults in the order of time."""
         at = 0.0
         end = self._random.uniform(0.0, min(limit, 120.0)) if self._random.random() < _STOPS else limit
         while (at := at + self._random.expovariate(1 / _PACE)) < end:
@@ -102,9 +102,9 @@ class Chaos:
             yield end, "an emergency stop", self._stop
 
     def _kinds(self) -> Sequence[Callable[[float], tuple[str, Callable[[], object]]]]:
-        kinds = [self._slip, self._silence, self._dropped_goal]
+        kinds = [self._slip, self._silence, self._drop_goal]
         world = self._robot.world
-        kinds += [self._blocked] if world.places else []
+        kinds += [self._block] if world.places else []
         kinds += [self._in_the_way] if world.objects or world.people else []
         return kinds + ([self._weak_hand] if self._robot.body.hand("right") is not None else [])
 
@@ -123,14 +123,14 @@ class Chaos:
     def _silence(self, at: float) -> tuple[str, Callable[[], object]]:
         return "the laser scanner is silent", self._fault(at, "silent scanner")
 
-    def _blocked(self, at: float) -> tuple[str, Callable[[], object]]:
+    def _block(self, at: float) -> tuple[str, Callable[[], object]]:
         place = self._random.choice(self._robot.world.places).name
         return f"the way to {said(place)} is blocked", self._fault(at, "blocked", place=place)
 
     def _weak_hand(self, at: float) -> tuple[str, Callable[[], object]]:
         return "the right hand is weak", self._fault(at, "weak hand", hand="right")
 
-    def _dropped_goal(self, at: float) -> tuple[str, Callable[[], object]]:
+    def _drop_goal(self, at: float) -> tuple[str, Callable[[], object]]:
         return "a goal is dropped", lambda: self._robot.drop_goal("the goal was dropped")
 
     def _in_the_way(self, at: float) -> tuple[str, Callable[[], object]]:

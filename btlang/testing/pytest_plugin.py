@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from btlang.testing.names import is_test_file
+from btlang.support.test_files import is_test_file
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
-    """None for other files."""
+    """Collect a file of tests; return None for other files."""
     return MissionTestFile.from_parent(parent, path=file_path) if is_test_file(file_path.name) else None
 
 
 @pytest.fixture
 def component() -> Iterator[ComponentBench]:
-    """Makes components that are tested alone: see btlang.testing.bench.ComponentBench."""
+    """Make components that are tested alone: see btlang.testing.bench.ComponentBench."""
     from btlang.testing.bench import ComponentBench
 
     bench = ComponentBench()
@@ -36,7 +36,7 @@ def component() -> Iterator[ComponentBench]:
 
 @pytest.fixture
 def device() -> Iterator[Callable[..., DeviceBench]]:
-    """Makes devices whose driver is tested alone: the parameters are those of btlang.testing.bench.DeviceBench."""
+    """Make devices whose driver is tested alone: the parameters are those of btlang.testing.bench.DeviceBench."""
     from btlang.testing.bench import DeviceBench
 
     benches: list[DeviceBench] = []
@@ -54,7 +54,7 @@ class MissionTestFile(pytest.File):
     """A file of tests. One that can't be read is an error of collection, with all that is wrong with it."""
 
     def collect(self) -> Iterator[MissionTestItem]:
-        """Its tests, in their order."""
+        """Yield its tests, in their order."""
         from btlang.diagnostics.errors import MissionError
         from btlang.diagnostics.reading import read_source
         from btlang.testing.test_file import read_tests
@@ -75,7 +75,7 @@ class MissionTestItem(pytest.Item):
         self._test = test
 
     def runtest(self) -> None:
-        """Raises Failed with what did not hold, and MissionError where the mission can't run."""
+        """Raise Failed with what did not hold, and MissionError where the mission can't run."""
         from btlang.testing.runner import run_test
 
         result = run_test(self._test)
@@ -83,16 +83,16 @@ class MissionTestItem(pytest.Item):
             raise MissionTestFailed(result.problem)
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
-        """The lines of `btc test` in place of a traceback."""
+        """Return the lines of `btc test` in place of a traceback."""
         if isinstance(excinfo.value, MissionTestFailed):
             return str(excinfo.value)
         return super().repr_failure(excinfo, style)
 
     def reportinfo(self) -> tuple[Path, int, str]:
-        """Where it stands."""
+        """Return where it stands."""
         line, _ = self._test.span.source.position(self._test.span.start)
         return self.path, line - 1, self.name
 
 
 class MissionTestFailed(Exception):
-    """What did not hold."""
+    """A failure of a test: what did not hold."""

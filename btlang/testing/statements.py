@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import Span
 from btlang.text.words import END_OF_STATEMENT, Line, Words
 from btlang.vocabulary.lexicon import Lexicon
@@ -27,12 +27,12 @@ OPENERS = {
     "never": "never it has bumped",
     "finally": "finally the mission succeeds",
 }
-"""What a line may begin with, and an example of each."""
+"""The words that a line may begin with, and an example of each."""
 _QUOTE = '"'
 _FILES = {("in", "world"), ("on", "robot"), ("under", "rules")}
 
 
-class Statement(Record):
+class ScriptStatement(Record):
     """A line without the words that say what it is. Words are given by their numbers: `first` to `last` (exclusive).
 
     `seconds` are those of `within`, `for` and `after`, and the time of `run`, the longest one if `at_most`; `file` of
@@ -53,8 +53,8 @@ class Statement(Record):
 
 def statements_of(
     text: Words, lines: Sequence[Line], vocabulary: Lexicon, problems: list[Diagnostic]
-) -> Iterator[Statement]:
-    """The statements of the lines of a test; what is none is added to the problems."""
+) -> Iterator[ScriptStatement]:
+    """Yield the statements of the lines of a test; what is none is added to the problems."""
     waiting = list(reversed(lines))
     while waiting:
         line = waiting.pop()
@@ -72,17 +72,17 @@ def statements_of(
                 block.append(waiting.pop())
             span = text.span(line.first, line.last)
             inner = text.span(block[0].first, block[-1].last) if block else None
-            yield Statement("run", span, line.last, line.last, block=inner)
+            yield ScriptStatement("run", span, line.last, line.last, block=inner)
 
 
-def _read(text: Words, first: int, last: int, vocabulary: Lexicon) -> Iterator[Statement]:
+def _read(text: Words, first: int, last: int, vocabulary: Lexicon) -> Iterator[ScriptStatement]:
     words, begin = text.words, first
     while words[first] in ("then", "and", ",") and first + 1 < last:
         first += 1
     word, span = words[first], text.span(begin, last)
     named = words[first + 1] if (word, words[first + 1]) in _FILES and words[first + 2][0] == _QUOTE else ""
     if named:
-        yield Statement(named, span, first + 3, first + 3, file=text.span(first + 2, first + 3))
+        yield ScriptStatement(named, span, first + 3, first + 3, file=text.span(first + 2, first + 3))
         at = first + 3 + (words[first + 3] == ",")
         if at < last:
             yield from _read(text, at, last, vocabulary)
@@ -97,25 +97,25 @@ def _read(text: Words, first: int, last: int, vocabulary: Lexicon) -> Iterator[S
         if found is None or found[1] != "duration" or found[2] >= last:
             raise _unread(span, word)
         at = found[2] + (words[found[2]] == ",")
-        yield Statement(word, span, at, last, found[0])
+        yield ScriptStatement(word, span, at, last, found[0])
         return
     if word in ("when", "once", "before"):
         comma = next((at for at in range(first + 1, last) if words[at] == ","), -1)
         if comma < 0:
             raise _unread(span, word if word in OPENERS else "when")
-        yield Statement("before" if word == "before" else "when", span, comma + 1, last, head=first + 1)
+        yield ScriptStatement("before" if word == "before" else "when", span, comma + 1, last, head=first + 1)
         return
     if word in ("with", "always", "never", "finally"):
         first += 1 + (words[first + 1] == ",")
         if first >= last:
             raise _unread(span, word)
-        yield Statement(word, span, first, last)
+        yield ScriptStatement(word, span, first, last)
         return
-    yield Statement("fake" if word[0] == _QUOTE else "now", span, first, last)
+    yield ScriptStatement("fake" if word[0] == _QUOTE else "now", span, first, last)
 
 
-def _run(text: Words, first: int, last: int, vocabulary: Lexicon) -> Statement:
-    """`run "patrol.txt"`, `for 2 minutes` or `for at most 2 minutes`."""
+def _run(text: Words, first: int, last: int, vocabulary: Lexicon) -> ScriptStatement:
+    """Read `run "patrol.txt"`, `for 2 minutes` or `for at most 2 minutes`."""
     words, span = text.words, text.span(first, last)
     seconds, at = None, first + 2
     at_most = words[at : at + 3] == ["for", "at", "most"]
@@ -125,7 +125,7 @@ def _run(text: Words, first: int, last: int, vocabulary: Lexicon) -> Statement:
             seconds, at = found[0], found[2]
     if words[first + 1][0] != _QUOTE or at != last:
         raise _unread(span, "run")
-    return Statement("run", span, last, last, seconds, text.span(first + 1, first + 2), at_most=at_most)
+    return ScriptStatement("run", span, last, last, seconds, text.span(first + 1, first + 2), at_most=at_most)
 
 
 def _unread(span: Span, opener: str) -> MissionError:

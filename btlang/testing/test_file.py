@@ -19,13 +19,13 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import OUTSIDE, included_path, is_below, read_source
 from btlang.frontends.mission.symbols.needs import WORDS as NEEDED_WORDS
-from btlang.house_rules import house_rules
-from btlang.mission_vocabulary import world_vocabulary
 from btlang.printer.layout import laid_out
-from btlang.record import Record
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.robots.registry import body_of
-from btlang.testing.pieces import Pieces, moved
-from btlang.testing.statements import Statement, statements_of
+from btlang.support.record import Record
+from btlang.task.execution.missions import read_house_rules
+from btlang.testing.english import MissionEnglish, move_problem
+from btlang.testing.statements import ScriptStatement, statements_of
 from btlang.testing.test import MissionTest
 from btlang.text.source import Source, Span
 from btlang.text.words import Line, Words, split
@@ -44,8 +44,10 @@ WORDS = os.path.join(os.path.dirname(__file__), "words.toml")
 
 
 def read_tests(source: Source, given: Given = lambda name, world: None) -> tuple[MissionTest, ...]:
-    """The tests of a file, with their missions. `given` has missions that aren't read from files: by the name that
-    follows `run`, and the path of the world that the test names, if it does. Raises MissionError with what is wrong.
+    """Return the tests of a file, with their missions.
+
+    `given` has missions that aren't read from files: by the name that follows `run`, and the path of the world that the
+    test names, if it does. Raises MissionError with what is wrong.
     """
     vocabulary = load_vocabulary([WORDS])
     text = split(source, vocabulary.orthography)
@@ -53,7 +55,7 @@ def read_tests(source: Source, given: Given = lambda name, world: None) -> tuple
     found: list[MissionTest] = []
     for block in _blocks(text, problems):
         try:
-            found.append(_Reader(text, block, vocabulary, given).test())
+            found.append(_TestFileReader(text, block, vocabulary, given).test())
         except MissionError as error:
             problems += error.diagnostics
     if not found and not problems:
@@ -64,12 +66,12 @@ def read_tests(source: Source, given: Given = lambda name, world: None) -> tuple
 
 
 def check_tests(source: Source) -> list[Diagnostic]:
-    """The warnings of the missions of a file of tests. Raises MissionError with all that is wrong."""
+    """Return the warnings of the missions of a file of tests. Raises MissionError with all that is wrong."""
     return [warning for test in read_tests(source) for warning in test.mission.warnings]
 
 
 def format_tests(source: Source) -> str:
-    """The text in the canonical layout of missions. Raises MissionError where its tests can't be read."""
+    """Return the text in the canonical layout of missions. Raises MissionError where its tests can't be read."""
     read_tests(source)
     return laid_out(source, load_vocabulary().orthography)
 
@@ -83,7 +85,7 @@ class _Block(Record):
 
 
 def _blocks(text: Words, problems: list[Diagnostic]) -> Iterator[_Block]:
-    """The tests of a text, by their first lines."""
+    """Yield the tests of a text, by their first lines."""
     heads = [number for number, line in enumerate(text.lines) if line.indent <= text.lines[0].indent]
     for at, number in enumerate(heads):
         line = text.lines[number]
@@ -100,8 +102,8 @@ def _problem(code: str, span: Span, reason: str, example: str) -> Diagnostic:
     return diagnostic(code, span, reason=reason, example=example)
 
 
-class _Reader:
-    """Reads one test: first its mission, whose words its other lines use."""
+class _TestFileReader:
+    """A reader of one test: first its mission, whose words its other lines use."""
 
     def __init__(self, text: Words, block: _Block, vocabulary: Lexicon, given: Given) -> None:
         self._text, self._block, self._source, self._given = text, block, text.source, given
@@ -112,7 +114,7 @@ class _Reader:
         self._world: str | None = None
 
     def test(self) -> MissionTest:
-        """Raises MissionError."""
+        """Raise MissionError."""
         runs = [one for one in self._statements if one.kind == "run"]
         if len(runs) != 1:
             span = runs[1].span if runs else self._block.span
@@ -121,17 +123,17 @@ class _Reader:
             raise MissionError(self._problems)
         try:
             mission = self._mission(runs[0])
-            if rules := self._named_file("rules"):
-                mission = house_rules(self._parsed(read_source(rules, _root(self._source)))).around(mission)
+            if rules := self._find_file("rules"):
+                mission = read_house_rules(self._parse(read_source(rules, _root(self._source)))).around(mission)
         except MissionError as error:  # the other lines need its words
-            moved_problems = [moved(problem, self._source) for problem in error.diagnostics]
+            moved_problems = [move_problem(problem, self._source) for problem in error.diagnostics]
             raise MissionError([*self._problems, *moved_problems]) from None
         keywords = list(self._robot_words)
         if mission.syntax is not None:
             needed = [path for role, path in mission.syntax.needs if role == NEEDED_WORDS]
             keywords += [included_path(path, mission.syntax.span.source)[0] for path in needed]
         vocabulary = world_vocabulary([*keywords, WORDS], mission.world)
-        pieces = Pieces(self._text, vocabulary, mission)
+        pieces = MissionEnglish(self._text, vocabulary, mission)
         at_run = self._statements.index(runs[0])
         for number, one in enumerate(self._statements):
             try:
@@ -145,35 +147,35 @@ class _Reader:
             tuple(pieces.steps), tuple(pieces.texts), *pieces.limit(runs[0]), self._robot,
         )  # fmt: skip
 
-    def _mission(self, run: Statement) -> Mission:
-        world = self._named_file("world") or None
-        self._robot = self._named_file("robot")
+    def _mission(self, run: ScriptStatement) -> Mission:
+        world = self._find_file("world") or None
+        self._robot = self._find_file("robot")
         if self._robot:
             body = body_of(self._robot)
             self._robot_words = words_of(body)
             world = world or body.world or None
         self._world = world
         if run.file is not None:
-            mission = self._given(_named(run.file), world)
+            mission = self._given(_name(run.file), world)
             if mission is not None:
                 return mission
-            return self._parsed(read_source(self._path(run.file), _root(self._source)))
+            return self._parse(read_source(self._path(run.file), _root(self._source)))
         if run.block is None:
             raise MissionError([_problem("BT181", run.span, "it runs no mission", 'run "patrol.txt"')])
-        return self._parsed(_only(self._source, run.block))
+        return self._parse(_only(self._source, run.block))
 
-    def _parsed(self, source: Source) -> Mission:
-        """In the words of the robot and the names of the world of the test. Raises MissionError."""
+    def _parse(self, source: Source) -> Mission:
+        """Parse a mission in the words of the robot and the names of the world of the test. Raises MissionError."""
         return parse_tree(source, keywords=self._robot_words, world=self._world)
 
-    def _named_file(self, kind: str) -> str:
-        """The path that the first statement of a kind names; "" where none does."""
+    def _find_file(self, kind: str) -> str:
+        """Return the path that the first statement of a kind names; "" where none does."""
         return next((self._path(one.file) for one in self._statements if one.kind == kind), "")
 
     def _path(self, named: Span | None) -> str:
-        """Where a file lies that the test names. Raises MissionError where that is no folder of the user's."""
+        """Return where a file lies that the test names. Raises MissionError where that is no folder of the user's."""
         assert named is not None
-        path, real = included_path(_named(named), self._source)
+        path, real = included_path(_name(named), self._source)
         if not self._source.roots or not any(is_below(real, root) for root in (*self._source.roots, "")):
             raise MissionError([diagnostic("BT001", named, file=path, reason=OUTSIDE)])
         if not os.path.isfile(real):
@@ -181,7 +183,7 @@ class _Reader:
         return path
 
 
-def _named(file: Span) -> str:
+def _name(file: Span) -> str:
     return file.text.strip("\"'“”„’‘")  # noqa: RUF001
 
 
@@ -190,6 +192,6 @@ def _root(source: Source) -> str | None:
 
 
 def _only(source: Source, span: Span) -> Source:
-    """A text in which all but a part is blank, so that places in it are the same."""
+    """Return a text in which all but a part is blank, so that places in it are the same."""
     before = "".join(character if character == "\n" else " " for character in source.text[: span.start])
     return Source(before + span.text, source.name, source.folder, source.roots, may_load=source.may_load)

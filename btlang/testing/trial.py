@@ -9,8 +9,7 @@ from threading import Event, Timer
 from btlang.api import Mission
 from btlang.diagnostics.errors import MissionError
 from btlang.editing.messages import offsets
-from btlang.recording.film import Film
-from btlang.recording.trial import check_words
+from btlang.recording.film import Film, check_words
 from btlang.run.controls import Controls
 from btlang.testing.runner import Result, run_test
 from btlang.testing.test import MissionTest
@@ -30,14 +29,16 @@ _OVER = "it took too long to simulate"
 
 
 def results_of(source: Source, given: Given, patience: float = 6.0) -> dict[str, Any]:
-    """The results of the tests in a text; `given` as for `read_tests`. They take `patience` seconds of real time.
+    """Return the results of the tests in a text; `given` as for `read_tests`.
+
+    They take `patience` seconds of real time.
 
     - `problems`: what is wrong with the text, so that nothing runs: `line` (from 1; 0: it is elsewhere), `code` and
-      `message`. Words that are no words of btlang are a problem (BT221);
+    `message`. Words that are no words of btlang are a problem (BT221);
     - `results`: of each test its `name` and `line`, whether it `passed` (None: there was no time left), and the
-      `seconds` of the mission. Of one that failed also the `problem`; `at`, the line that did not hold (0: none);
-      `start` and `end`, the characters of the given mission that it was at (None: none); of the first ones the `film`
-      (btlang.recording.film), without words if the mission is another one.
+    `seconds` of the mission. Of one that failed also the `problem`; `at`, the line that did not hold (0: none);
+    `start` and `end`, the characters of the given mission that it was at (None: none); of the first ones the `film`
+    (btlang.recording.film), without words if the mission is another one.
     """
     own: list[Mission] = []
 
@@ -59,7 +60,7 @@ def results_of(source: Source, given: Given, patience: float = 6.0) -> dict[str,
 
 
 def _check(test: MissionTest) -> None:
-    """Raises MissionError."""
+    """Raise MissionError."""
     mission = test.mission
     check_words(mission.tree, mission.vocabulary, mission.label)
     for tree in _trees(test):
@@ -111,14 +112,14 @@ def _run(test: MissionTest, film: Film, patience: float) -> Result:
 
 
 def _place(span: Span | None, mission: Mission | None) -> dict[str, int | None]:
-    """The characters of the given mission, if it's that."""
+    """Return the characters of the given mission, if it's that."""
     if mission is None or mission.syntax is None:
         return {"start": None, "end": None}
     return offsets(span, mission.syntax.span.source)
 
 
 def _data(film: Film, mission: Mission | None) -> dict[str, Any]:
-    """Without words unless it's that of the given mission."""
+    """Return the data of a film, without the text and places of a mission that isn't the given one."""
     data = film.data()
     if mission is None:
         data |= {"text": "", "nodes": [{**node, "start": None, "end": None} for node in data["nodes"]]}

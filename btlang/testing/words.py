@@ -20,12 +20,12 @@ def _exactly(wanted: int, count: int) -> bool | Failed:
 
 
 def mission_succeeds(observed: Observations) -> bool:
-    """Only once it has ended."""
+    """Return whether the mission succeeded, once it has ended."""
     return observed.outcome is not None and observed.outcome.succeeded
 
 
 def mission_fails(observed: Observations) -> bool:
-    """Only once it has ended; one that was stopped has not failed."""
+    """Return whether the mission failed, once it has ended; one that was stopped has not failed."""
     outcome = observed.outcome
     return outcome is not None and not outcome.succeeded and not outcome.stopped
 
@@ -127,12 +127,12 @@ def stands_still(robot: SimulatedRobot) -> bool:
 
 
 def mission_time(observed: Observations) -> float:
-    """Seconds."""
+    """Return the time of the mission in seconds."""
     return observed.now
 
 
 def distance_travelled(robot: SimulatedRobot) -> float:
-    """Metres."""
+    """Return the distance in metres."""
     return robot.travelled
 
 

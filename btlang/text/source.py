@@ -6,7 +6,7 @@ import os
 from bisect import bisect_right
 from itertools import accumulate
 
-from btlang.record import Record
+from btlang.support.record import Record
 
 
 class Source:

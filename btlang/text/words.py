@@ -11,7 +11,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import Source, Span
 
 # Same length on both sides, so that offsets stay those of the text that the user sees.

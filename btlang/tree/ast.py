@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import Span
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.references import choice_of, keys_in

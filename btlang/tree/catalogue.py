@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 
-from btlang.record import Record
+from btlang.support.record import Record
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import Span
 from btlang.tree import ast
 from btlang.tree.catalogue import SUBTREE, never_ends

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import PythonSource, Span
 from btlang.tree.model import NodeModel
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.tree import ast
 from btlang.tree.visit import fold
 from btlang.vocabulary.lexicon import Lexicon

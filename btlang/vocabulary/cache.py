@@ -14,7 +14,7 @@ from collections.abc import Callable, Sequence
 from functools import cache
 from zlib import crc32
 
-from btlang.user_dirs import user_dir
+from btlang.support.user_dirs import user_dir
 
 try:
     import _pickle as pickle  # the rest of the module takes as long to import as a vocabulary to load

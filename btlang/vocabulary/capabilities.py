@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from btlang.record import Record
+from btlang.support.record import Record
 
 
 class Capability(Record):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterator, Sequence
 
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.words import Words
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.reading_context import ReadingContext

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import Span
 
 TYPE_CHECKING = False

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.vocabulary.entry import COMPARISONS, POINT, Entry, Role
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.pattern import Slot, forms

@@ -8,7 +8,7 @@ from math import inf, isfinite
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import Source, Span
 from btlang.text.toml import parse_toml
 from btlang.text.toml_positions import positions

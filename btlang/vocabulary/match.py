@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.references import choice_of
 

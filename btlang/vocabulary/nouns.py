@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Set
 from itertools import chain
 
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.words import Words
 from btlang.vocabulary.adjectives import UNSLOTTED, Adjectives
 from btlang.vocabulary.pattern import Form, Slot, forms

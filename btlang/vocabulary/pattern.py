@@ -12,7 +12,7 @@ from contextlib import suppress
 from functools import lru_cache
 from itertools import product
 
-from btlang.record import Record
+from btlang.support.record import Record
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

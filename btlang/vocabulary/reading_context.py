@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence, Set
 
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.words import Words
 from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.entry import MANNER

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Container, Iterator, Mapping
 
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.vocabulary.entry import POINT
 
 SIZED = ("largest", "smallest")

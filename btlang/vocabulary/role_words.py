@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.vocabulary.entry import PATH
 
 TYPE_CHECKING = False

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from btlang.record import Record
+from btlang.support.record import Record
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

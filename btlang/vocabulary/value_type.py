@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from btlang.record import Record
+from btlang.support.record import Record
 
 TEXT = "text"
 PLACE = "place"

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.entry import GOAL, MANNER, PATH, RECIPIENT, THEME, UNMARKED, Entry, Meaning, Role
 from btlang.vocabulary.match import Match, SlotValue

@@ -10,7 +10,7 @@ import btlang
 from btlang.cli import main
 from btlang.diagnostics.errors import MissionError
 from btlang.frontends.mission.reader import PARSERS
-from btlang.repl.commands import Commands
+from btlang.repl.commands import ReplCommands
 from btlang.repl.draft import MissionDraft
 from btlang.text.source import Source
 
@@ -91,7 +91,7 @@ def test_format_and_english_keep_the_lines(folder: Path, capsys: pytest.CaptureF
 def test_the_prompt_loads_it() -> None:
     draft = MissionDraft()
     said: list[str] = []
-    commands = Commands(draft, lambda text: said.append(str(text)), lambda: None)
+    commands = ReplCommands(draft, lambda text: said.append(str(text)), lambda: None)
     commands.do("load", "match/half.txt")
     assert draft.world == "match/worlds/field.toml"
     assert draft.session.world.names.places == ("pitch",)
@@ -104,7 +104,7 @@ def test_the_prompt_loads_it() -> None:
 
 def test_a_world_chosen_at_the_prompt_stays() -> None:
     draft = MissionDraft(world="other.toml")
-    commands = Commands(draft, lambda _: None, lambda: None)
+    commands = ReplCommands(draft, lambda _: None, lambda: None)
     with pytest.raises(MissionError):  # without a pitch
         commands.do("load", "match/half.txt")
     assert (draft.world, draft.text) == ("other.toml", "")

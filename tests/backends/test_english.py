@@ -13,10 +13,10 @@ from btlang.backends.english.editors import without_editors
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.frontends.mission.reader import read_mission
-from btlang.mission_vocabulary import world_vocabulary
 from btlang.passes import lower_mission
 from btlang.passes.compilation import Compilation
 from btlang.passes.lint.two_readings import two_readings
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.text.source import Source
 from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.dump import plain

@@ -6,7 +6,7 @@ import pytest
 
 from btlang.api import parse_tree
 from btlang.backends.english import to_english
-from btlang.mission_vocabulary import world_vocabulary
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.tree.node import Node, Tree
 
 WAVE, NOD, TURN, LOW = Node("Wave"), Node("Nod"), Node("TurnLeft"), Node("BatteryLow")

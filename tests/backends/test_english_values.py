@@ -12,8 +12,8 @@ from hypothesis import given
 from btlang.api import parse_tree
 from btlang.backends.english import to_english
 from btlang.frontends.mission.reader import read_mission
-from btlang.mission_vocabulary import world_vocabulary
 from btlang.passes import lower_mission
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.text.source import Source
 from btlang.tree import ast
 from btlang.tree.dump import plain

@@ -19,7 +19,7 @@ from btlang.backends.grammar.targets import GRAMMARS
 from btlang.cli import main
 from btlang.diagnostics.errors import MissionError
 from btlang.frontends.mission.reader import PARSERS, read_mission
-from btlang.mission_vocabulary import world_vocabulary
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.text.source import Source
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.load import vocabulary_with

@@ -15,8 +15,8 @@ from btlang.api import parse_tree
 from btlang.backends.json_tree import SCHEMA, to_json
 from btlang.diagnostics.errors import MissionError
 from btlang.frontends.json.reader import read_json
-from btlang.mission_vocabulary import world_vocabulary
-from btlang.record import Record
+from btlang.robots.mission_vocabulary import world_vocabulary
+from btlang.support.record import Record
 from btlang.tree.model import NodeModel, PortModel
 from btlang.tree.node import Node, Tree
 

@@ -16,8 +16,8 @@ from btlang.cli import main
 from btlang.diagnostics.reading import read_source
 from btlang.frontends.btcpp.files import read_files
 from btlang.frontends.btcpp.models import nav2_models
-from btlang.mission_vocabulary import world_vocabulary
 from btlang.printer.phrase import leaf_words
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.text.source import Source
 from btlang.tree.dump import plain
 from btlang.tree.model import NodeModel

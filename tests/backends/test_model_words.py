@@ -10,7 +10,7 @@ from btlang.api import parse_file, parse_tree
 from btlang.cli import main
 from btlang.diagnostics.errors import MissionError
 from btlang.editing.words import Words
-from btlang.mission_vocabulary import world_vocabulary
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.text.source import Source
 
 NODES = """<root BTCPP_format="4">

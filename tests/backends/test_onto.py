@@ -17,8 +17,8 @@ from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.frontends.btcpp.reader import read_xml
 from btlang.frontends.mission.reader import read_mission
-from btlang.mission_vocabulary import world_vocabulary
 from btlang.passes import lower_mission
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.text.source import Source
 from btlang.tree.dump import plain
 from btlang.tree.node import Node, Tree

@@ -19,7 +19,7 @@ from btlang.backends.targets import TARGETS, compiled, target_of
 from btlang.cli import main
 from btlang.diagnostics.errors import MissionError
 from btlang.frontends.json.reader import read_json
-from btlang.mission_vocabulary import world_vocabulary
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.text.source import Source
 from btlang.tree.model import NodeModel, PortModel
 from btlang.tree.node import Node, Tree

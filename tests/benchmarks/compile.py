@@ -26,8 +26,8 @@ from btlang.frontends.mission.parsers.build import Builder
 from btlang.frontends.mission.reader import PARSERS, read_mission
 from btlang.frontends.mission.token import Token
 from btlang.frontends.mission.tokens.lexer import Lexer
-from btlang.gc_pause import gc_paused
-from btlang.mission_vocabulary import world_vocabulary
+from btlang.robots.mission_vocabulary import world_vocabulary
+from btlang.support.gc_pause import gc_paused
 from btlang.text.source import Source
 from tests.benchmarks.missions import mission
 

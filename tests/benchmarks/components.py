@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any
 
 import btlang
+from btlang.cli.examples import examples
 from btlang.components.words import robot_words
-from btlang.examples import examples
 from btlang.robots.platforms import ALL
 from btlang.robots.registry import connector
 from btlang.vocabulary.shipped import shipped

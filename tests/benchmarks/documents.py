@@ -22,7 +22,7 @@ from btlang.editing.hover import hover
 from btlang.editing.palette import palette
 from btlang.editing.rename import rename
 from btlang.editing.words import Words
-from btlang.server.checking import Checker
+from btlang.server.page.processes import Checker
 from btlang.text.source import Source
 from tests.benchmarks.missions import mission
 

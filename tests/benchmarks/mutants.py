@@ -27,10 +27,10 @@ ROOT = Path(__file__).parents[2]
 _ACCESS = ["tests/server/test_access.py", "tests/server/test_attacks.py::test_wrong_passwords_cost_time"]
 _GUARD = [f"tests/robots/motion/test_guard{part}.py" for part in ("", "_corridor", "_limits")]
 MODULES = {
-    "access": ("btlang/server/access.py", _ACCESS),
-    "throttle": ("btlang/server/throttle.py", _ACCESS),
+    "access": ("btlang/server/http/access.py", _ACCESS),
+    "throttle": ("btlang/server/accounts/passwords.py", _ACCESS),
     "guard": ("btlang/robots/motion/guard/guard.py", _GUARD),
-    "manager": ("btlang/task/manager.py", ["tests/task/test_manager.py"]),
+    "manager": ("btlang/task/execution/manager.py", ["tests/task/test_manager.py"]),
 }
 """The modules, with the tests that are to notice."""
 _TURNED: dict[type[ast.cmpop], type[ast.cmpop]] = {

@@ -21,12 +21,12 @@ from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
+from btlang.cli.examples import examples
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.diagnostics.errors import MissionError
-from btlang.examples import examples
 from btlang.frontends.mission.reader import read_mission
-from btlang.mission_vocabulary import world_vocabulary
 from btlang.passes import compile_mission, errors_of
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.text.source import Source
 from btlang.tree.dump import plain
 from btlang.vocabulary.correct_words import correct_words

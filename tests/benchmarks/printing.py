@@ -16,8 +16,8 @@ import btlang
 from btlang.backends.english import to_english
 from btlang.frontends.btcpp.reader import read_xml
 from btlang.frontends.mission.reader import read_mission
-from btlang.gc_pause import gc_paused
-from btlang.mission_vocabulary import world_vocabulary
+from btlang.robots.mission_vocabulary import world_vocabulary
+from btlang.support.gc_pause import gc_paused
 from btlang.text.source import Source
 from btlang.tree.node import Tree
 from tests.benchmarks.missions import mission

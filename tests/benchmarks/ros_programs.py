@@ -27,7 +27,7 @@ from rclpy.task import Future
 from sensor_msgs.msg import BatteryState, JointState, LaserScan
 
 import btlang
-from btlang.ros.command import connect_ros
+from btlang.ros.connectors import connect_ros
 from btlang.ros.node import LATCHED, SpunNode
 
 RATE = 100.0

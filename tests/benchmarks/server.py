@@ -28,7 +28,7 @@ from btlang.api import Mission
 from btlang.run.bus import INLINE
 from btlang.run.events import Event, PeriodPassed
 from btlang.session import Run
-from btlang.task.timeliness import keep_ticks_in_time
+from btlang.task.layer import keep_ticks_in_time
 from tests.benchmarks.server_clients import figures
 from tests.server.doors import Door, robot_in
 from tests.task.layers import submit

@@ -25,7 +25,7 @@ from pathlib import Path
 from statistics import median
 
 from btlang.diagnostics.errors import MissionError
-from btlang.task.client import Client, emergency_stop
+from btlang.task.commands.client import RobotClient, emergency_stop
 from btlang.task.messages import Pause, Release, Resume, Show, Submit
 
 _WANTED = 1000  # tasks a second
@@ -38,16 +38,16 @@ def main() -> None:
     parser.add_argument("--stops", type=int, default=200)
     parser.add_argument("--tasks", type=int, default=2000)
     options = parser.parse_args()
-    with _robot(), Client() as client:
+    with _robot(), RobotClient() as client:
         client.send(Pause())
         began = time.perf_counter()
         for _ in range(options.tasks):
             assert client.send(Submit("print hi")).ok
         print(f"accepted: {options.tasks / (time.perf_counter() - began):.0f} tasks a second")
-    with _robot(), Client() as client:
+    with _robot(), RobotClient() as client:
         print(f"submission to first tick: {_figures([_first_tick(client) for _ in range(50)])}")
         print(f"emergency stop under load: {_figures(_stops(client, options.stops))}")
-    with _robot(full=True), Client() as client:
+    with _robot(full=True), RobotClient() as client:
         print(f"the same with a full disk: {_figures(_stops(client, options.stops))}")
 
 
@@ -73,7 +73,7 @@ def _robot(full: bool = False) -> Iterator[None]:
             robot.wait(30)
 
 
-def _first_tick(client: Client) -> float:
+def _first_tick(client: RobotClient) -> float:
     """By the robot's own clock: `created` to the change to underway, and one period at most until the tick."""
     task = client.send(Submit("print hi")).data["task"]
     while True:
@@ -84,7 +84,7 @@ def _first_tick(client: Client) -> float:
         time.sleep(0.01)
 
 
-def _stops(client: Client, count: int) -> list[float]:
+def _stops(client: RobotClient, count: int) -> list[float]:
     over = threading.Event()
     threads = [threading.Thread(target=_flood, args=(over,), daemon=True) for _ in range(4)]
     for thread in threads:
@@ -105,7 +105,7 @@ def _stops(client: Client, count: int) -> list[float]:
 
 
 def _flood(over: threading.Event) -> None:
-    with Client("robot") as client:
+    with RobotClient("robot") as client:
         while not over.is_set():
             try:
                 client.send(Submit("move forward 1 m"))

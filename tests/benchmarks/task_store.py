@@ -16,8 +16,8 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from btlang.task.store import Store, open_store
-from btlang.task.task import MissionText, State, Task
+from btlang.task.store.records import MissionText, Task, TaskState
+from btlang.task.store.task_store import TaskStore, open_store
 from tests.task.places import connection, new_place, server
 
 MISSION = MissionText("go to the lobby then say hello then go to the dock", "tour", values={"speed": 0.5})
@@ -46,18 +46,18 @@ def main() -> None:
     server().cleanup()
 
 
-def _measured(store: Store, tasks: int, kept: int, threads: int) -> dict[str, float]:
+def _measured(store: TaskStore, tasks: int, kept: int, threads: int) -> dict[str, float]:
     def add(_: int) -> None:
         store.add(TASK)
 
     def work(_: int) -> None:
         task = store.claim(200.0)
         assert task is not None
-        store.change(task.id, [State.STANDBY], State.COMPLETED, time=201.0, cause="done", ended=201.0)
+        store.change(task.id, [TaskState.STANDBY], TaskState.COMPLETED, time=201.0, cause="done", ended=201.0)
 
     rates = {"add": _rate(tasks, add), "claim and change": _rate(tasks, work)}
     for _ in range(max(kept - tasks, 0)):
-        store.add(TASK.replace(state=State.COMPLETED))
+        store.add(TASK.replace(state=TaskState.COMPLETED))
     full = f" with {kept:,} ended"
     rates |= {"add" + full: _rate(tasks, add), "claim and change" + full: _rate(tasks, work)}
     with ThreadPoolExecutor(threads) as pool:

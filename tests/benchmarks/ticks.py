@@ -23,7 +23,7 @@ from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
 from btlang.engine.leaves.leaf import LeafBinding
 from btlang.run.bus import Bus
-from btlang.run.runner import traced_engine
+from btlang.run.runner import trace_engine
 from btlang.tree.node import Node, Tree
 from tests.benchmarks.compile import medians, seconds
 
@@ -167,7 +167,7 @@ def compared(root: Node, rounds: int, fresh: bool) -> dict[str, float]:
     def traced() -> Callable[[], object]:
         bus = Bus()
         bus.add(told.append)
-        made = traced_engine(Tree(root), BINDINGS.get, bus=bus)
+        made = trace_engine(Tree(root), BINDINGS.get, bus=bus)
         made.blackboard.set(KEY, 1.5)
         return made.tick
 

@@ -18,8 +18,8 @@ from prompt_toolkit.input import create_pipe_input
 from prompt_toolkit.output.vt100 import Vt100_Output
 
 from btlang.repl.draft import MissionDraft
-from btlang.repl.screen import Screen
-from btlang.repl.store import Store
+from btlang.repl.screen import ReplScreen
+from btlang.repl.store import DraftStore
 
 SENTENCE = "go to the lab then wave at Alice and say hello, then (dock and look around) if the battery is low, then "
 TYPED = "move forward 2 m and raise your left arm then nod"
@@ -37,7 +37,7 @@ async def measure(words: int, keys: str, folder: Path) -> tuple[list[float], lis
     menus: list[float] = []
     with create_pipe_input() as keyboard:
         output = Vt100_Output(io.StringIO(), get_size=lambda: Size(rows=40, columns=120), term="xterm")
-        screen = Screen(draft, Store(folder), keyboard, output)
+        screen = ReplScreen(draft, DraftStore(folder), keyboard, output)
         rendered = asyncio.Event()
         screen.application.after_render += lambda _: rendered.set()
         screen.buffer.text = line_of(words)

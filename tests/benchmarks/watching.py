@@ -19,11 +19,11 @@ from statistics import median
 
 import btlang
 from btlang.engine.compile import outline
-from btlang.monitor.command import groot_monitor
+from btlang.monitor.groot import groot_monitor
 from btlang.recording.bundle import files_of
 from btlang.recording.reader import RecordedNodes, read_recording
 from btlang.recording.recorder import Recorder
-from btlang.recording.replay import Timeline
+from btlang.recording.replay import ReplayTimeline
 from btlang.run.controls import Controls
 from btlang.session import Session
 from btlang.testing.runner import run_test
@@ -81,7 +81,7 @@ def _jumps(mission: btlang.Mission) -> None:
         recorder.close()
         began = time.perf_counter()
         nodes = RecordedNodes(*outline(mission.tree))
-        timeline = Timeline(list(read_recording(path).events(nodes)), nodes)
+        timeline = ReplayTimeline(list(read_recording(path).events(nodes)), nodes)
         timeline.state(0)
         print(f"a replay of an hour, {len(timeline.events)} events: opened in {time.perf_counter() - began:.1f} s")
     taken = []

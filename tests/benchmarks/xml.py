@@ -14,8 +14,8 @@ from xml.etree import ElementTree
 
 from btlang.backends.btcpp import to_xml
 from btlang.frontends.btcpp.reader import read_xml
-from btlang.gc_pause import gc_paused
-from btlang.mission_vocabulary import world_vocabulary
+from btlang.robots.mission_vocabulary import world_vocabulary
+from btlang.support.gc_pause import gc_paused
 from btlang.text.source import Source
 
 LEAVES = 4  # below each Fallback

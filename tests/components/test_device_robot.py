@@ -9,11 +9,11 @@ from typing import Any
 import pytest
 
 import btlang
+from btlang.cli.examples import examples
 from btlang.components.device_robot import twins
 from btlang.components.parts.parts import DeviceHands
 from btlang.devices.kinds import Command, Grip, GripTarget
 from btlang.devices.simulated import SimulatedDevice
-from btlang.examples import examples
 from btlang.robots.bodies.body import Device
 from btlang.robots.bodies.body_file import standard_body
 from btlang.robots.platforms import ALL

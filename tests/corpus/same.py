@@ -7,7 +7,7 @@ from functools import cache
 from btlang.backends.btcpp import to_xml
 from btlang.frontends.btcpp.reader import read_xml
 from btlang.frontends.btcpp.scan import scanned
-from btlang.mission_vocabulary import world_vocabulary
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.text.source import Source
 from btlang.tree.node import Tree
 from btlang.vocabulary.lexicon import Lexicon

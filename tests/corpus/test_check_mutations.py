@@ -13,9 +13,9 @@ from btlang.diagnostics.reading import read_source
 from btlang.diagnostics.render import render
 from btlang.frontends.btcpp.files import XmlFiles
 from btlang.frontends.btcpp.project import read_project
-from btlang.mission_vocabulary import world_vocabulary
 from btlang.projects.checking import project_problems
 from btlang.projects.cpp_ports import CppSources
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.text.source import Source
 from tests.corpus.test_mutations import mutated
 from tests.profiles import amount

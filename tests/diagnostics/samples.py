@@ -11,9 +11,9 @@ from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.frontends.btcpp.reader import read_xml
 from btlang.frontends.mission.reader import DEFAULT_PARSER, read_mission
-from btlang.mission_vocabulary import world_vocabulary
 from btlang.passes import errors_of, run_passes
 from btlang.passes.compilation import Compilation
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.testing.test_file import check_tests
 from btlang.text.source import Source
 from btlang.vocabulary.lexicon import Lexicon

@@ -16,10 +16,10 @@ ERRORS = [ZeroDivisionError("division by zero"), MemoryError(), RecursionError("
 def test_a_bug(
     error: Exception, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    def fail(_: object) -> int:
+    def fail(*_: object) -> int:
         raise error
 
-    monkeypatch.setitem(cli._VERBS, "check", fail)
+    monkeypatch.setattr(cli, "_run_handler", fail)
     with pytest.raises(type(error)):
         main(["check", "-c", "wave"])
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))

@@ -11,9 +11,9 @@ import pytest
 from markdown_it import MarkdownIt
 
 from btlang.cli import main
-from btlang.documents.keys import KeyReader
-from btlang.documents.markdown import block, code, escaped, file_name
-from btlang.mission_vocabulary import world_vocabulary
+from btlang.documents.pages import block, code, escape_markdown, file_name
+from btlang.documents.project import KeyReader
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.tree.node import Node
 from tests.conftest import matches_golden
 from tests.corpus.test_team import TEAM
@@ -118,8 +118,8 @@ def test_code_is_shown_as_it_is(text: str) -> None:
 
 
 def test_marks_are_escaped() -> None:
-    assert escaped("a*b\n<c>") == "a\\*b \\<c\\>"
-    assert (escaped("1. x"), escaped("- x"), escaped("2 x")) == ("1\\. x", "\\- x", "2 x")
+    assert escape_markdown("a*b\n<c>") == "a\\*b \\<c\\>"
+    assert (escape_markdown("1. x"), escape_markdown("- x"), escape_markdown("2 x")) == ("1\\. x", "\\- x", "2 x")
     assert next(block("a\n````\n")) == "`````text"
     assert file_name("../a b/é.xml") == "a-b-.xml"
 

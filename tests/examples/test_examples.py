@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 from btlang.cli import main
-from btlang.mission_vocabulary import world_vocabulary
-from btlang.robots.simulation import connection
+from btlang.robots import simulation
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.robots.simulation.robot import SimulatedRobot
 
 from .cases import CASES, Case
@@ -71,7 +71,7 @@ def test_every_example_is_listed() -> None:
 @pytest.mark.parametrize("name", CASES)
 def test_run(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     case = CASES[name]
-    monkeypatch.setattr(connection, "SimulatedRobot", Witness)
+    monkeypatch.setattr(simulation, "SimulatedRobot", Witness)
     path = tmp_path / "log.json"
     assert main(["run", *mission(name), *case.options, "--speed", "max", "--log", str(path)]) == case.code
     assert case.error in capsys.readouterr().err

@@ -21,9 +21,9 @@ from btlang.robots.worlds.world_file import load_world
 from btlang.robots.worlds.world_writing import to_toml
 from btlang.run.events import Bumped, Called, Event, Heard, PeriodPassed, Said
 from btlang.speech.marks import read_marks
-from btlang.task.house import furnished_layer
-from btlang.task.missions import MissionReader
-from btlang.task.task import FINAL, State
+from btlang.task.execution.missions import MissionReader
+from btlang.task.layer import make_robot_layer
+from btlang.task.store.records import FINAL, TaskState
 from btlang.text.source import Source
 
 GUIDE = Path(__file__).parents[2] / "examples" / "guide"
@@ -90,7 +90,7 @@ def main(seed: int, days: float = 7.0) -> dict[str, Any]:
     reader = MissionReader(robot_words(robot), Source(to_toml(world), "world.toml"))
     began = time.perf_counter()
     with tempfile.TemporaryDirectory() as folder:
-        layer = furnished_layer(
+        layer = make_robot_layer(
             connect, reader, folder=folder, speed="max", begins=begins, keeps=8 * DAY,
             trouble=lambda text: print(text, file=sys.stderr), sinks=lambda task, mission, run: [observer],
         )  # fmt: skip
@@ -105,11 +105,11 @@ def main(seed: int, days: float = 7.0) -> dict[str, Any]:
     unexplained = [
         f"task {task.id}: {task.state}"
         for task in tasks
-        if task.state not in FINAL or (task.state is not State.COMPLETED and not task.reason)
+        if task.state not in FINAL or (task.state is not TaskState.COMPLETED and not task.reason)
     ]
     return {
         "seed": seed, "tasks": states, "unexplained": unexplained,
-        "reasons": sorted({f"{task.state}: {task.reason}" for task in tasks if task.state is not State.COMPLETED}),
+        "reasons": sorted({f"{task.state}: {task.reason}" for task in tasks if task.state is not TaskState.COMPLETED}),
         "contacts": observer.contacts, "entries": observer.entries, "least battery": round(observer.least, 1),
         "asked": observer.asked, "answered": observer.answered, "passed on": observer.passed_on, "late": observer.late,
         "seconds": round(time.perf_counter() - began, 1),

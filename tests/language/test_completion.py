@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from btlang.diagnostics.errors import MissionError
 from btlang.frontends.mission.completion.completer import Completion, completions
-from btlang.mission_vocabulary import world_vocabulary
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.vocabulary.lexicon import Lexicon
 from tests.language.letters import letters, read
 from tests.language.sentences import broken_missions, english, missions

@@ -19,8 +19,8 @@ from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.render import render
 from btlang.frontends.mission.completion.completer import completions
 from btlang.repl.draft import MissionDraft
-from btlang.repl.screen import Screen
-from btlang.repl.store import Store
+from btlang.repl.screen import ReplScreen
+from btlang.repl.store import DraftStore
 from btlang.text.source import Source
 from btlang.vocabulary.correct_words import correct_words
 from tests.benchmarks.mutations import PARSERS, checked, compiled, mutants, vocabulary
@@ -165,7 +165,7 @@ def mended(text: str, problem: Diagnostic) -> str:
 def prompted(text: str, tmp_path: Path) -> str | None:
     """The entry once Ctrl-F was pressed in the prompt, None where it is not offered."""
     with create_pipe_input() as keyboard:
-        screen = Screen(MissionDraft(), Store(tmp_path), keyboard, DummyOutput())
+        screen = ReplScreen(MissionDraft(), DraftStore(tmp_path), keyboard, DummyOutput())
         screen.buffer.text = text
         screen.refuse()  # as Enter does: the entry is meant as it is
         if screen.fix() is None:

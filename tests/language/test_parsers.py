@@ -14,7 +14,7 @@ from btlang.frontends.mission.parsers import lark_parser, shunting_yard
 from btlang.frontends.mission.parsers.build import Builder
 from btlang.frontends.mission.parsers.parse_error import ParseError
 from btlang.frontends.mission.token import Token
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import Source
 from btlang.tree import ast
 from tests.language import grouping_oracle

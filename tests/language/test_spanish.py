@@ -14,11 +14,11 @@ from btlang.cli import main
 from btlang.diagnostics.errors import MissionError
 from btlang.frontends.mission.completion.completer import completions
 from btlang.frontends.mission.reader import PARSERS
-from btlang.mission_vocabulary import world_vocabulary
 from btlang.printer.mission import english
 from btlang.repl.draft import MissionDraft
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.ros.mission.node import Setup
-from btlang.task.task import MissionText
+from btlang.task.store.records import MissionText
 from btlang.text.words import without_accents
 from btlang.vocabulary.load import load_vocabulary
 from btlang.vocabulary.shipped import ENGLISH, language_folder, languages

@@ -19,10 +19,8 @@ from hypothesis import strategies as st
 
 import btlang
 from btlang.cli import main
-from btlang.monitor.command import GrootMonitor
-from btlang.monitor.groot import GrootServer
-from btlang.monitor.groot_protocol import MOST_NODES
-from btlang.monitor.groot_tree import GrootTree
+from btlang.monitor.groot import GrootMonitor, GrootServer
+from btlang.monitor.groot_protocol import MOST_NODES, GrootTree
 from btlang.run.controls import Controls
 from btlang.session import Run, Session
 from btlang.tree.node import Node, Tree

@@ -13,9 +13,9 @@ import pytest
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.frontends.btcpp.reader import read_xml
 from btlang.frontends.mission.reader import read_mission
-from btlang.mission_vocabulary import world_vocabulary
 from btlang.passes import PASSES
 from btlang.passes.compilation import Compilation, Pass
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.text.source import Source
 from btlang.tree.dump import outline
 

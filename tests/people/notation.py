@@ -19,7 +19,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import btlang
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.tree.node import Node, Tree
 
 FOLDER = Path(__file__).parent

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from btlang.mission_vocabulary import world_vocabulary
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.lexicon import Lexicon

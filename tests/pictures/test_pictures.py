@@ -17,7 +17,7 @@ from PIL import Image
 
 import btlang
 from btlang.cli import main
-from btlang.pictures.people import PERSON, WALKED
+from btlang.pictures.track import PERSON, WALKED
 from btlang.pictures.tree_picture import draw_tree
 from tests.world.worlds import LIVELY
 

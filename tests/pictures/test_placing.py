@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from btlang.pictures.placing import Area, Placer, along
+from btlang.pictures.world_map import Area, Placer, along
 
 
 def test_labels_of_one_point_do_not_overlap() -> None:

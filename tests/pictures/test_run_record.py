@@ -9,10 +9,9 @@ from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.engine.status_trace import Changes
-from btlang.pictures.people import place_of, sighting_at, ways
 from btlang.pictures.run_picture import numbers
-from btlang.pictures.run_record import RunRecord, Sighting
-from btlang.pictures.statuses import LastStatuses, by_definition
+from btlang.pictures.run_record import LastStatuses, RunRecord, Sighting, by_definition
+from btlang.pictures.track import place_of, sighting_at, ways
 from btlang.robots.geometry import Point
 from btlang.robots.worlds.world_file import load_world
 from btlang.run.events import StatusesChanged

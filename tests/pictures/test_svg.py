@@ -15,8 +15,8 @@ from PIL import Image
 
 import btlang
 from btlang.pictures import letters
-from btlang.pictures.statuses import LastStatuses
-from btlang.pictures.tree_boxes import Maker, title_of
+from btlang.pictures.run_record import LastStatuses
+from btlang.pictures.tree_layout import Maker, title_of
 from btlang.pictures.tree_picture import draw_tree, picture_of
 from btlang.text.source import Source, Span
 from btlang.tree.node import Node, Tree

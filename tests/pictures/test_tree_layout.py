@@ -5,10 +5,8 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from btlang.pictures.letters import clipped, shown, width, wrapped
-from btlang.pictures.tree_block import side
-from btlang.pictures.tree_boxes import DEEPEST, IN_PLACE, MOST, Maker, Sheet
-from btlang.pictures.tree_layout import Layout, laid_out
+from btlang.pictures.letters import clip_text, make_printable, width, wrap_text
+from btlang.pictures.tree_layout import DEEPEST, IN_PLACE, MOST, Maker, Sheet, TreeLayout, lay_out, side
 from btlang.tree.node import Node, Tree
 
 WORDS = ("go to the kitchen", "wave", 'say "Good morning, dear visitors of our museum, follow me please!"', "w" * 60)
@@ -22,7 +20,7 @@ def sheets(tree: Tree, apart: bool = False) -> list[Sheet]:
     return Maker(tree, label, lambda node: True).sheets(apart)
 
 
-def overlapping(layout: Layout) -> list[tuple[str, str]]:
+def overlapping(layout: TreeLayout) -> list[tuple[str, str]]:
     """Pairs of boxes that overlap, where neither is a frame around the other."""
     found = []
     spots = sorted(layout.spots, key=lambda spot: spot.y)
@@ -42,7 +40,7 @@ def overlapping(layout: Layout) -> list[tuple[str, str]]:
     return found
 
 
-def check(layout: Layout) -> None:
+def check(layout: TreeLayout) -> None:
     assert overlapping(layout) == []
     for spot in layout.spots:
         assert spot.x >= 0
@@ -66,7 +64,7 @@ def test_a_tree_of_500_nodes_fits() -> None:
     tree = large(345)
     assert 490 <= sum(1 for _ in tree.walk()) <= 580
     [sheet] = sheets(tree)
-    layout = laid_out(sheet.boxes)
+    layout = lay_out(sheet.boxes)
     check(layout)
     assert 0.4 < layout.width / layout.height < 2.5, "columns keep it from becoming a ribbon"
 
@@ -91,13 +89,13 @@ def test_random_trees(root: Node, part: Node, apart: bool, signs: bool) -> None:
     tree = Tree(root, (("a", part), ("b", Node("Inverter", (part,))), ("c", Node("Do", name="wave"))))
     drawn = sheets(tree, apart)
     for sheet in drawn:
-        check(laid_out(sheet.boxes, signs))
+        check(lay_out(sheet.boxes, signs))
     assert [sheet.name for sheet in drawn] == (["", "a", "b", "c"] if apart else [""])
 
 
 def test_children_stand_in_order() -> None:
     [sheet] = sheets(Tree(Node("Sequence", tuple(Node("Do", name=str(i)) for i in range(9)))))
-    spots = laid_out(sheet.boxes).spots[1:]
+    spots = lay_out(sheet.boxes).spots[1:]
     assert [spot.box.text for spot in sorted(spots, key=lambda spot: spot.y)] == [str(i) for i in range(9)]
     assert {spot.x for spot in spots} == {spots[0].x}
 
@@ -118,7 +116,7 @@ def test_what_is_too_deep_or_too_large_is_counted() -> None:
     [sheet] = sheets(Tree(deep))
     assert len(sheet.boxes) == DEEPEST + 2
     assert sheet.boxes[-1].text == f"… and {10_001 - DEEPEST - 1} more"
-    check(laid_out(sheet.boxes))
+    check(lay_out(sheet.boxes))
     [sheet] = sheets(Tree(Node("Sequence", (Node("Do", name="wave"),) * 5000)))
     assert len(sheet.boxes) == MOST + 1
     assert sheet.boxes[-1].text == "… and 3001 more"
@@ -126,18 +124,18 @@ def test_what_is_too_deep_or_too_large_is_counted() -> None:
 
 @given(st.text(max_size=80), st.floats(30, 200))
 def test_wrapped_text_fits(text: str, room: float) -> None:
-    lines = wrapped(text, room, 3, 9.0, False)
+    lines = wrap_text(text, room, 3, 9.0, False)
     assert 1 <= len(lines) <= 3
     assert all(width(line, 9.0, False) <= room for line in lines)
 
 
 def test_long_text_ends_in_an_ellipsis() -> None:
-    assert wrapped("one two three four", 60, 2, 9.0, False) == ["one two", "three four"]
-    assert wrapped("one two three four", 40, 2, 9.0, False) == ["one two", "three f…"]
-    assert clipped("kitchen", 30, 9.0) == "kitc…"
+    assert wrap_text("one two three four", 60, 2, 9.0, False) == ["one two", "three four"]
+    assert wrap_text("one two three four", 40, 2, 9.0, False) == ["one two", "three f…"]
+    assert clip_text("kitchen", 30, 9.0) == "kitc…"
 
 
 def test_text_that_cannot_be_printed() -> None:
-    assert shown("a\tb\n c") == "a b c"
-    assert shown("\u4f60 \udcff\x07 $x$") == "\u4f60 �� $x$"
+    assert make_printable("a\tb\n c") == "a b c"
+    assert make_printable("\u4f60 \udcff\x07 $x$") == "\u4f60 �� $x$"
     assert width("wide", 9.0) > width("i", 9.0) > 0

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from btlang.mission_vocabulary import world_vocabulary
 from btlang.printer.phrase import leaf_words
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.vocabulary import node_words
 from btlang.vocabulary.lexicon import Lexicon
 

@@ -11,12 +11,12 @@ from hypothesis import strategies as st
 
 from btlang.diagnostics.errors import MissionError
 from btlang.frontends.mission.reader import read_mission
-from btlang.mission_vocabulary import world_vocabulary
 from btlang.passes import compile_mission
 from btlang.printer import blocks
 from btlang.printer.mission import english
 from btlang.printer.printer import Printer
 from btlang.printer.sentence import PRINTERS, statements
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.text.source import Source
 from btlang.tree import ast
 from btlang.tree.dump import plain

@@ -14,12 +14,10 @@ from btlang.cli import main
 from btlang.diagnostics.errors import MissionError
 from btlang.engine.compile import outline
 from btlang.engine.status import IDLE
-from btlang.recording.film import Film
-from btlang.recording.open import opened
-from btlang.recording.reader import RecordedNodes
-from btlang.recording.trial import tried
+from btlang.recording.film import Film, try_mission
+from btlang.recording.reader import RecordedNodes, open_recording
 from btlang.run.events import Event
-from btlang.run.snapshot import Follower
+from btlang.run.snapshot import RunFollower
 from btlang.text.source import Source
 from tests.world.worlds import LIVELY
 
@@ -44,7 +42,7 @@ def final(data: dict[str, object]) -> dict[int, str]:
 
 def test_nodes_have_the_words_of_their_round() -> None:
     rounds = 'set n to 1\nrepeat 2 times: (say "round {n}" then increase n by 1)'
-    data = tried(parse_tree(f"visit {{place}} is go to {{place}}\nvisit the lab\n{rounds}"))
+    data = try_mission(parse_tree(f"visit {{place}} is go to {{place}}\nvisit the lab\n{rounds}"))
     goes, says = (next(i for i, node in enumerate(data["nodes"]) if node["id"] == id) for id in ("GoTo", "Say"))
     assert data["nodes"][data["nodes"][says]["parent"]]["prepared"]
     assert not data["nodes"][goes]["prepared"]
@@ -61,7 +59,7 @@ def test_a_film_shows_what_a_live_view_has_shown() -> None:
     )
     live: dict[float, list[int]] = {}
     film, nodes = Film(mission), RecordedNodes(*outline(mission.tree))
-    follower = Follower(nodes)
+    follower = RunFollower(nodes)
 
     def watch(event: Event) -> None:
         follower(event)
@@ -82,12 +80,12 @@ def test_a_film_shows_what_a_live_view_has_shown() -> None:
 
 
 def test_a_film_has_what_the_robot_does() -> None:
-    data = tried(parse_tree('say "hello"\ngo to the lab'))
+    data = try_mission(parse_tree('say "hello"\ngo to the lab'))
     assert [row[1:] for row in data["doing"]] == [[0, "", "hello", ""], [0, "lab", "hello", ""], [0, "", "hello", ""]]
 
 
 def test_a_trial() -> None:
-    data = json.loads(json.dumps(tried(parse_tree(TEXT))))
+    data = json.loads(json.dumps(try_mission(parse_tree(TEXT))))
     said = ["" if node["start"] is None else TEXT[node["start"] : node["end"]] for node in data["nodes"]]
     assert said[0] == TEXT[TEXT.index("go") :].split("  #")[0]
     assert said[1] == "go to the lab"
@@ -108,7 +106,7 @@ def test_a_trial() -> None:
 
 
 def test_people_in_a_film() -> None:
-    data = tried(parse_tree("wait 28 s", world=Source(LIVELY, "lively.toml")), seed=3)
+    data = try_mission(parse_tree("wait 28 s", world=Source(LIVELY, "lively.toml")), seed=3)
     places = [row for row in data["things"] if row[1] == "Vera"]
     assert places[0] == [0.0, "Vera", None, None, False]
     assert places[1][2:4] == pytest.approx([9, 3.2], abs=0.3)
@@ -120,18 +118,18 @@ def test_people_in_a_film() -> None:
 
 
 def test_a_trial_without_an_end() -> None:
-    data = tried(parse_tree("repeat: wave"), seconds=20.0)
+    data = try_mission(parse_tree("repeat: wave"), seconds=20.0)
     assert data["stopped"] == "time limit"
     assert data["seconds"] == pytest.approx(20.0, abs=0.2)
-    busy = tried(parse_tree("repeat: print hello"), patience=0.5)
+    busy = try_mission(parse_tree("repeat: print hello"), patience=0.5)
     assert busy["stopped"]
 
 
 def test_a_trial_is_the_same_again_with_a_seed() -> None:
     mission = parse_tree("go to a random place\ngo to a random place\ngo to a random place")
-    one, two = (tried(mission, seed=7) for _ in range(2))
+    one, two = (try_mission(mission, seed=7) for _ in range(2))
     assert one["robot"] == two["robot"]
-    assert any(tried(mission, seed=seed)["robot"] != one["robot"] for seed in range(8, 12))
+    assert any(try_mission(mission, seed=seed)["robot"] != one["robot"] for seed in range(8, 12))
 
 
 def test_what_no_trial_may_do(tmp_path: Path) -> None:
@@ -139,7 +137,7 @@ def test_what_no_trial_may_do(tmp_path: Path) -> None:
         '[[action]]\nid = "Jump"\nphrase = "jump"\ncall = "nowhere_at_all:jump"\nhelp = "x"\nexample = "jump"\n'
     )
     with pytest.raises(MissionError, match="BT221"):
-        tried(parse_tree("if battery is low, jump", keywords=[str(tmp_path / "words.toml")]))
+        try_mission(parse_tree("if battery is low, jump", keywords=[str(tmp_path / "words.toml")]))
 
 
 def test_a_film_of_a_recording_is_that_of_its_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -147,9 +145,9 @@ def test_a_film_of_a_recording_is_that_of_its_run(tmp_path: Path, capsys: pytest
     path = tmp_path / "run.mcap"
     assert main(["run", str(tmp_path / "mission.txt"), "--speed", "max", "--quiet", "--record", str(path)]) == 1
     capsys.readouterr()
-    with opened(str(path), ()) as (recording, mission, nodes):
+    with open_recording(str(path), ()) as (recording, mission, nodes):
         film = Film(mission, dict(recording.about)).take(recording.events(nodes)).data()
-    ran = tried(parse_tree(TEXT))
+    ran = try_mission(parse_tree(TEXT))
     for same in ("text", "nodes", "story", "failed"):
         assert film[same] == ran[same]
     assert final(film) == final(ran)
@@ -158,6 +156,6 @@ def test_a_film_of_a_recording_is_that_of_its_run(tmp_path: Path, capsys: pytest
 
 def test_a_film_has_a_greatest_length(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("btlang.recording.film.MOST_CHANGES", 100)
-    data = tried(parse_tree("repeat 200 times: wave"))
+    data = try_mission(parse_tree("repeat 200 times: wave"))
     assert data["is_cut"]
     assert sum(len(row) // 2 for row in data["statuses"]) < 120

@@ -15,10 +15,10 @@ from btlang.cli import main
 from btlang.engine.compile import outline
 from btlang.recording import replay
 from btlang.recording.reader import RecordedNodes, read_recording
-from btlang.recording.replay import Player, Timeline
+from btlang.recording.replay import Player, ReplayTimeline
 from btlang.run.controls import Controls
 from btlang.run.events import Event, PeriodPassed
-from btlang.run.snapshot import State
+from btlang.run.snapshot import RunState
 from btlang.vocabulary.shipped import BODIES
 from tests.conftest import matches_golden
 from tests.recording.runs import recorded
@@ -38,10 +38,10 @@ def run(text: str, path: Path, *options: str) -> int:
     return main(["run", "-c", text, "--speed", "max", "--seed", "7", "--record", str(path), *options])
 
 
-def timeline_of(text: str, folder: Path) -> Timeline:
+def timeline_of(text: str, folder: Path) -> ReplayTimeline:
     mission, _ = recorded(text, folder / "run.mcap")
     nodes = RecordedNodes(*outline(mission.tree))
-    return Timeline(list(read_recording(str(folder / "run.mcap")).events(nodes)), nodes)
+    return ReplayTimeline(list(read_recording(str(folder / "run.mcap")).events(nodes)), nodes)
 
 
 def printed(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str]:
@@ -148,14 +148,14 @@ def test_it_begins_where_one_wants(tmp_path: Path) -> None:
 class Screen:
     """A sink that notes what it is shown."""
 
-    def __init__(self, timeline: Timeline) -> None:
+    def __init__(self, timeline: ReplayTimeline) -> None:
         self.state = timeline.state(0)
         self.jumps: list[float] = []
 
     def __call__(self, event: Event) -> None:
         self.state.take(event)
 
-    def jump(self, state: State) -> None:
+    def jump(self, state: RunState) -> None:
         self.state = state
         self.jumps.append(state.now)
 

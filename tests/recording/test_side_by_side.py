@@ -10,7 +10,7 @@ import pytest
 
 from btlang.cli import main
 from btlang.diagnostics.errors import MissionError
-from btlang.recording.side_by_side import side_by_side
+from btlang.recording.film import side_by_side
 from tests.recording.runs import recorded
 
 TEXT = "if the battery is low, nod\notherwise wave\nsay hello"

@@ -6,13 +6,13 @@ import sys
 
 from btlang.api import parse_tree
 from btlang.diagnostics.errors import MissionError
-from btlang.recording.trial import tried
+from btlang.recording.film import try_mission
 
 
 def try_sample(text: str, keywords: str) -> int:
     """Prints why a mission can't be tried, and returns the exit code, as `btc` does."""
     try:
-        tried(parse_tree(text, keywords=[keywords]))
+        try_mission(parse_tree(text, keywords=[keywords]))
     except MissionError as error:
         print(error, file=sys.stderr)
         return 2

@@ -7,20 +7,20 @@ from pathlib import Path
 import pytest
 
 from btlang.diagnostics.errors import MissionError
-from btlang.repl.commands import COMMANDS, Commands, Leave, command_of, near_command
+from btlang.repl.commands import COMMANDS, Leave, ReplCommands, command_of, near_command
 from btlang.repl.draft import MissionDraft
-from btlang.repl.entering import entries, needs_more
-from btlang.repl.store import Store
+from btlang.repl.keys import entries, needs_more
+from btlang.repl.store import DraftStore
 
 
 class Repl:
     """A session with commands, and what they wrote."""
 
-    def __init__(self, *texts: str, store: Store | None = None) -> None:
+    def __init__(self, *texts: str, store: DraftStore | None = None) -> None:
         self.session = MissionDraft()
         self.said: list[str] = []
         self.runs = 0
-        self.commands = Commands(self.session, lambda text: self.said.append(str(text)), self._run, store)
+        self.commands = ReplCommands(self.session, lambda text: self.said.append(str(text)), self._run, store)
         for text in texts:
             self.session.add(self.session.compile(text).entry)
 
@@ -195,9 +195,9 @@ def test_entries_of_lines() -> None:
 
 
 def test_a_store_keeps_what_was_left(tmp_path: Path) -> None:
-    gone = Store(tmp_path)
+    gone = DraftStore(tmp_path)
     gone.save(["bow is nod", "bow\ud800"], "bow the")
-    store = Store(tmp_path)
+    store = DraftStore(tmp_path)
     assert store.left() is None  # its process runs still
     del gone
     (tmp_path / "sessions" / "broken.json").write_text("{", encoding="utf-8")
@@ -213,10 +213,10 @@ def test_restore_takes_one_session_after_the_other_with_its_world(tmp_path: Path
         'start = { x = 1, y = 1 }\nplaces = [{ name = "corner", x = 2, y = 2 }]\n', encoding="utf-8"
     )
     for texts, draft, world in ((["bow is nod", "bow"], "bow the", None), (["go to the corner"], "", "room.toml")):
-        gone = Store(tmp_path)
+        gone = DraftStore(tmp_path)
         gone.save(texts, draft, world)
         del gone
-    repl = Repl(store=Store(tmp_path))
+    repl = Repl(store=DraftStore(tmp_path))
     assert "1 line" in repl.do("restore")
     assert repl.session.text == "go to the corner\n"
     assert repl.session.world == str(tmp_path / "room.toml")
@@ -227,7 +227,7 @@ def test_restore_takes_one_session_after_the_other_with_its_world(tmp_path: Path
 
 def test_a_store_that_cannot_write(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
-    store = Store(tmp_path / "file")
+    store = DraftStore(tmp_path / "file")
     assert "file" in store.problem
     store.save(["wave"], "")
     store.forget()

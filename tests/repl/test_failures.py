@@ -6,12 +6,12 @@ import pytest
 
 from btlang.repl.draft import MissionDraft
 from btlang.repl.loop import Repl
-from btlang.repl.store import Store
+from btlang.repl.store import DraftStore
 
 
 def told(capsys: pytest.CaptureFixture[str], *lines: str) -> list[str]:
     """What is written to standard error while these lines are done."""
-    assert Repl(MissionDraft(), Store(None), "max").read(lines) == 1
+    assert Repl(MissionDraft(), DraftStore(None), "max").read(lines) == 1
     return capsys.readouterr().err.splitlines()
 
 

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 import btlang
+from btlang.cli.examples import Example, examples
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
-from btlang.examples import Example, examples
 from btlang.robots.bodies.body import Body
 from btlang.robots.bodies.body_file import read_body
 from btlang.robots.geometry import Pose

@@ -17,7 +17,7 @@ from std_msgs.msg import Float64
 
 from btlang.robots.worlds.world_file import read_world
 from btlang.ros.clocks import RosPace
-from btlang.ros.command import keep_ending_signals
+from btlang.ros.ending import keep_ending_signals
 from btlang.ros.robot.connection import RosConnection
 from btlang.ros.simulator.simulator import Simulator
 from btlang.run.controls import Controls

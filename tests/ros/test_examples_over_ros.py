@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from btlang.cli import main
-from btlang.mission_vocabulary import world_vocabulary
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.vocabulary.shipped import DEFAULT_WORLD
 from tests.examples.cases import CASES
 from tests.examples.test_examples import mission, words_of

@@ -9,7 +9,7 @@ import pytest
 
 from btlang.diagnostics.errors import MissionError
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.mission_vocabulary import world_vocabulary
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.vocabulary.entry import Entry, SlotSpec
 from btlang.vocabulary.ros_binding import RosBinding
 from btlang.vocabulary.ros_table import read_ros

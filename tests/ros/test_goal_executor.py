@@ -10,7 +10,7 @@ import pytest
 from btlang import Session
 from btlang.backends.engine import bind_leaf
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.mission_vocabulary import world_vocabulary
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.ros.serving.goal_executor import BUSY, REST, GoalExecutor
 from btlang.ros.serving.names import action_name, choose_actions, find_servable
 from btlang.ros.serving.server import make_leaf

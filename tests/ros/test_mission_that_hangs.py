@@ -34,7 +34,7 @@ def test_a_command_that_hangs(tmp_path: Path, domain: int, run_mission: Any, mon
 
     from btlang.ros.mission.node import MissionNode, Setup
     from btlang.ros.node import SpunNode
-    from btlang.task import executor
+    from btlang.task.execution import executor
     from tests.ros.processes import LONG, wait_until
 
     (tmp_path / "words.toml").write_text(WORDS, encoding="utf-8")

@@ -11,7 +11,7 @@ import pytest
 from btlang.api import parse_tree
 from btlang.recording.bundle import files_of
 from btlang.recording.recorder import Recorder
-from btlang.ros.command import connect_ros
+from btlang.ros.connectors import connect_ros
 from btlang.run.events import Event
 from btlang.session import Session
 from tests.profiles import amount

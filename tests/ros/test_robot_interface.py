@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from btlang.mission_vocabulary import world_vocabulary
 from btlang.robots.bodies.body_file import standard_body
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.ros.robot.interface import interfaces
 from btlang.vocabulary.capabilities import CAPABILITIES, POSTURE
 

@@ -11,7 +11,7 @@ import pytest
 
 import btlang
 from btlang.engine.status import SUCCESS
-from btlang.ros.command import connect_ros
+from btlang.ros.connectors import connect_ros
 from tests.profiles import amount
 from tests.ros.processes import LONG, Command, wait_until
 

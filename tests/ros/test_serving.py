@@ -16,7 +16,7 @@ from std_srvs.srv import Trigger
 
 import btlang
 from btlang.cli import main
-from btlang.mission_vocabulary import world_vocabulary
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.vocabulary.shipped import DEFAULT_WORLD
 from tests.profiles import only_long
 from tests.ros.client import Client, Goal, answer

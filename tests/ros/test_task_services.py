@@ -15,8 +15,8 @@ import pytest
 from std_srvs.srv import Trigger
 
 from btlang.task import messages
-from btlang.task.client import Client as TaskClient
-from btlang.task.paths import socket_path
+from btlang.task.commands.client import RobotClient as TaskClient
+from btlang.task.commands.client import socket_path
 from tests.ros.client import LATCHED, Client
 from tests.ros.processes import LONG, Command, wait_until
 from tests.ros.test_mission_node import FAR, mission

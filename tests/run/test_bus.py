@@ -13,7 +13,7 @@ import btlang
 from btlang.run import bus as buses
 from btlang.run.bus import BLOCK, DROP_OLDEST, INLINE, NEWEST, Bus
 from btlang.run.events import LOGGED, Ended, Event, Printed, Said, StatusesChanged
-from btlang.run.json_log import JsonLog, as_json
+from btlang.run.logs import JsonLog, as_json
 from btlang.run.recent import RecentEvents
 from tests.generate import log_schema
 

@@ -230,7 +230,7 @@ def test_a_signal_ends_the_command_that_does_not_end_by_itself(name: str, code: 
     words = tmp_path / "words.toml"
     words.write_text('[[action]]\nphrase = "hang"\nid = "Hang"\ncall = "hanging:hang"\n')
     program = (
-        "import sys; from btlang import cli; from btlang.run import command; command.PATIENCE = 0.5;"
+        "import sys; from btlang import cli; from btlang.run import terminal; terminal.PATIENCE = 0.5;"
         f" sys.exit(cli.main(['run', '-c', 'hang', '--keywords', {str(words)!r}]))"
     )
     environment = {**os.environ, "PYTHONPATH": str(REPOSITORY)}
@@ -247,7 +247,7 @@ def test_a_signal_ends_the_command_that_does_not_end_by_itself(name: str, code: 
 
 GOES_ON = """
 import signal, time
-from btlang.run.emergency import emergency_signal
+from btlang.run.controls import emergency_signal
 began = time.monotonic()
 tell = lambda what: print(what, round(time.monotonic() - began, 1), flush=True)
 signal.signal(signal.SIGTERM, lambda *_: tell("told"))

@@ -10,9 +10,8 @@ import pytest
 from btlang.engine.leaves.leaf import ActionFailed, LeafBinding
 from btlang.engine.status import FAILURE, RUNNING
 from btlang.run.bus import Bus
-from btlang.run.failure_history import MOST, FailureHistory
-from btlang.run.report import failure_report
-from btlang.run.runner import traced_engine
+from btlang.run.failure_history import MOST, FailureHistory, failure_report
+from btlang.run.runner import trace_engine
 from btlang.text.source import Source, Span
 from btlang.tree.node import Node, Tree
 
@@ -37,7 +36,7 @@ class Run:
     def __init__(self, root: Node, **scripts: str) -> None:
         bus = Bus()
         self.clock = bus.clock
-        engine = traced_engine(Tree(root), {id: self._leaf(script) for id, script in scripts.items()}.get, bus=bus)
+        engine = trace_engine(Tree(root), {id: self._leaf(script) for id, script in scripts.items()}.get, bus=bus)
         self.engine, self.story = engine, FailureHistory(engine)
         bus.add(self.story)
 

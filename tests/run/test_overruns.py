@@ -17,11 +17,11 @@ from btlang.engine.engine import Engine
 from btlang.engine.leaves.leaf import LeafBinding
 from btlang.engine.status import RUNNING, SUCCESS
 from btlang.engine.timing import Stopwatch
-from btlang.run import command, overruns
+from btlang.run import pace as overruns
+from btlang.run import terminal
 from btlang.run.bus import Bus
 from btlang.run.events import Overrun
-from btlang.run.json_log import JsonLog
-from btlang.run.lines import Lines
+from btlang.run.logs import JsonLog, PlainLines
 from btlang.run.runner import Runner
 from btlang.tree.node import Node, Tree
 
@@ -144,7 +144,7 @@ def test_the_log_has_it() -> None:
 
 def test_one_line_a_leaf() -> None:
     lines: list[str] = []
-    sink = Lines(lambda node: "look around", lambda node: True, lines.append)
+    sink = PlainLines(lambda node: "look around", lambda node: True, lines.append)
     for event in (
         SLOW.replace(t=1.0, node=None, path=""),
         SLOW,
@@ -164,7 +164,7 @@ def test_the_end_of_a_run_names_it(capsys: pytest.CaptureFixture[str]) -> None:
         time.sleep(0.12)
 
     tree = btlang.parse_tree("peer about then wait 1 s then peer about", keywords=[peer_about])
-    assert command.run_mission(tree, btlang.Session, speed=10, rate=100, time_limit=None, log=None, quiet=False) == 0
+    assert terminal.run_mission(tree, btlang.Session, speed=10, rate=100, time_limit=None, log=None, quiet=False) == 0
     lines = capsys.readouterr().out.splitlines()
     assert [line[:28] for line in lines if " slow " in line] == [
         "   0.00  slow   peer about: ",

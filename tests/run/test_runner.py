@@ -17,7 +17,7 @@ from btlang.engine.leaves.leaf import ActionFailed, LeafBinding
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.run.bus import Bus
 from btlang.run.events import Ended, PeriodPassed, StatusChanged, StatusesChanged, Troubled
-from btlang.run.runner import Runner, traced_engine
+from btlang.run.runner import Runner, trace_engine
 from btlang.tree.node import Node, Tree
 
 
@@ -212,7 +212,7 @@ def test_status_changes_go_into_the_stream() -> None:
         raise ActionFailed("lost")
 
     root = Node("Sequence", (SLEEP, Node("Lost")))
-    engine = traced_engine(Tree(root), {"Lost": LeafBinding(lost)}.get, bus=bus)
+    engine = trace_engine(Tree(root), {"Lost": LeafBinding(lost)}.get, bus=bus)
     Runner(engine, bus=bus, speed=math.inf).run()
     told = [(round(e.t, 6), e.index, e.path, e.node.id, e.before, e.status, e.reason) for e in changes(seen)]
     assert told == [
@@ -232,7 +232,7 @@ def test_a_sink_that_raises_is_dropped_and_the_mission_goes_on() -> None:
 
     seen: list[Any] = []
     bus = bus_to(full, seen.append)
-    engine = traced_engine(Tree(SLEEP), lambda id: None, bus=bus)
+    engine = trace_engine(Tree(SLEEP), lambda id: None, bus=bus)
     assert Runner(engine, bus=bus, speed=math.inf).run().status == SUCCESS
     assert bus.errors == [problem]
     assert [change.status for change in changes(seen)] == [RUNNING, SUCCESS]

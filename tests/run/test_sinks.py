@@ -10,8 +10,7 @@ from btlang.engine.instance import Fault, NodeInstance
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.engine.status_trace import Changes
 from btlang.run.events import Bumped, Dropped, Event, FaultInjected, Printed, RobotEvent, Said, StatusesChanged, Stuck
-from btlang.run.json_log import JsonLog
-from btlang.run.lines import Lines
+from btlang.run.logs import JsonLog, PlainLines
 from btlang.text.source import Source, Span
 from btlang.tree.node import Node
 
@@ -80,7 +79,7 @@ def test_json_lines() -> None:
 
 def test_human_lines() -> None:
     written: list[str] = []
-    sink = Lines(label, lambda node: node.id == "GoTo", written.append)
+    sink = PlainLines(label, lambda node: node.id == "GoTo", written.append)
     for t, node, status, reason in [
         (0.0, SEE, SUCCESS, ""),
         (0.0, Node("Sequence"), RUNNING, ""),
@@ -121,7 +120,7 @@ def test_lines_show_the_values_that_a_command_worked_with() -> None:
         'meet {someone} is say "hello {someone}"\nfor each spot in door, hall: go to spot\nmeet Alice\n'
     )
     written: list[str] = []
-    tree.run(speed="max", sinks=[Lines(tree.label, tree.is_action, written.append)])
+    tree.run(speed="max", sinks=[PlainLines(tree.label, tree.is_action, written.append)])
     assert [line.split(None, 1)[1] for line in written if "says" not in line] == [
         "start  go to door",
         "done   go to door",

@@ -5,11 +5,11 @@ from __future__ import annotations
 import pytest
 
 import btlang
-from btlang.decorators import action
 from btlang.robots.bodies.body_file import standard_body
 from btlang.robots.geometry import Pose
 from btlang.robots.simulation.connection import Simulation
 from btlang.robots.worlds.world import World
+from btlang.vocabulary.decorators import action
 
 WALL = World(start=Pose(0.0, 0.0), walls=(((2.0, -2.0), (2.0, 2.0)),))
 

@@ -16,8 +16,8 @@ import pytest
 from btlang.api import parse_tree
 from btlang.diagnostics.reading import read_source
 from btlang.frontends.mission.reader import read_mission
-from btlang.mission_vocabulary import world_vocabulary
 from btlang.printer.mission import english
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.tree import ast
 from btlang.tree.dump import plain
 from btlang.vocabulary.entry import COMPARISONS

@@ -26,7 +26,7 @@ from tests.task.layers import LONG, robot_up
 _WITH_PAGE = """
 import sys
 from pathlib import Path
-from btlang.server import local_page
+from btlang.server.page import local_page
 local_page.PAGE = Path(__import__("btlang").__file__)
 from btlang.cli import main
 sys.exit(main(sys.argv[1:]))

@@ -11,12 +11,10 @@ from typing import Any
 import pytest
 from starlette.requests import Request
 
-from btlang.server import access as module
-from btlang.server.access import COOKIE, CSRF, Access, AccessError, address_of, is_same_site
-from btlang.server.accounts import Accounts, Identity
-from btlang.server.passwords import hashed
-from btlang.server.roles import Role
-from btlang.server.throttle import FREE, Throttle
+from btlang.server.accounts.accounts import Accounts, Identity, UserRole
+from btlang.server.accounts.passwords import FREE, Throttle, hash_password
+from btlang.server.http import access as module
+from btlang.server.http.access import COOKIE, CSRF, Access, AccessError, address_of, is_same_site
 from tests.server.doors import PASSWORD
 
 HERE, THERE = "10.0.0.1", "10.0.0.2"
@@ -55,13 +53,13 @@ class Guard:
 
 @pytest.fixture(scope="module")
 def password() -> str:
-    return hashed(PASSWORD)
+    return hash_password(PASSWORD)
 
 
 @pytest.fixture
 def guard(tmp_path: Path, password: str) -> Iterator[Guard]:
     with closing(Accounts(str(tmp_path))) as accounts:
-        for name, role in (("ann", Role.ADMINISTRATOR), ("bo", Role.VIEWER)):
+        for name, role in (("ann", UserRole.ADMINISTRATOR), ("bo", UserRole.VIEWER)):
             accounts.add(name, role, password)
         made = Guard(accounts)
         yield made
@@ -76,7 +74,7 @@ def refusal(call: Awaitable[Any] | Any) -> AccessError:
 
 def test_a_log_in_begins_a_session(guard: Guard) -> None:
     identity, secret = guard.log_in("bo")
-    assert (identity.user, identity.role, identity.is_session) == ("bo", Role.VIEWER, True)
+    assert (identity.user, identity.role, identity.is_session) == ("bo", UserRole.VIEWER, True)
     assert guard.identify(cookie=f"{COOKIE}={secret}") == identity
     [entry] = guard.accounts.entries()
     assert (entry.user, entry.address, entry.what, entry.outcome) == ("bo", HERE, "log in", "ok")
@@ -130,7 +128,7 @@ def test_who_mistyped_and_then_was_right_is_forgiven(guard: Guard) -> None:
 
 
 def test_too_many_at_once(guard: Guard, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("btlang.server.passwords._MOST_WAITING", 0)
+    monkeypatch.setattr("btlang.server.accounts.passwords._MOST_WAITING", 0)
     error = refusal(lambda: guard.log_in("bo"))
     assert (error.status, error.wait) == (503, 1.0)
     monkeypatch.undo()
@@ -192,16 +190,16 @@ def test_who_was_here_a_moment_ago_is_known_without_the_disk(guard: Guard) -> No
     known = guard.identify(authorization=header)
     guard.identify(authorization=f"Bearer {gone}")
     guard.accounts.revoke("bo", "gone")
-    guard.accounts.set_role("bo", Role.EDITOR)
+    guard.accounts.set_role("bo", UserRole.EDITOR)
     guard.now += 9.9
     assert guard.identify(authorization=header) == known
     assert guard.identify(authorization=f"Bearer {gone}")
     guard.now += 0.1
-    assert guard.identify(authorization=header).role is Role.EDITOR
+    assert guard.identify(authorization=header).role is UserRole.EDITOR
     assert refusal(lambda: guard.identify(authorization=f"Bearer {gone}")).status == 401
-    guard.accounts.set_role("bo", Role.OPERATOR)
+    guard.accounts.set_role("bo", UserRole.OPERATOR)
     guard.access.forget()
-    assert guard.identify(authorization=header).role is Role.OPERATOR
+    assert guard.identify(authorization=header).role is UserRole.OPERATOR
 
 
 def test_those_who_are_known_fill_no_memory(guard: Guard, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -244,7 +242,7 @@ def test_wrong_passwords_are_forgotten_after_a_quarter_of_an_hour() -> None:
 
 
 def test_of_too_many_the_least_recent_is_forgotten(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("btlang.server.throttle._MOST_KNOWN", 2)
+    monkeypatch.setattr("btlang.server.accounts.passwords._MOST_KNOWN", 2)
     throttle = Throttle(lambda: 0.0)
     for key in ("ann", "bo", "ann", "ed"):
         throttle.wrong(key)
@@ -267,7 +265,7 @@ def test_where_somebody_is() -> None:
 
 def test_a_trail_that_is_not_kept_keeps_nobody_out(guard: Guard, monkeypatch: pytest.MonkeyPatch) -> None:
     def full(*_entry: str) -> None:
-        guard.accounts.add("ann", Role.VIEWER, "")  # which is refused like a full disk is: by a MissionError
+        guard.accounts.add("ann", UserRole.VIEWER, "")  # which is refused like a full disk is: by a MissionError
 
     monkeypatch.setattr(guard.accounts, "log", full)
     assert guard.status("bo", PASSWORD) == 200

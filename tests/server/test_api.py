@@ -7,10 +7,10 @@ import json
 import pytest
 from websockets.exceptions import InvalidStatus
 
-from btlang.server.roles import NEEDED, Role
+from btlang.server.accounts.accounts import NEEDED, UserRole
 from btlang.task.layer import TaskLayer
 from btlang.task.messages import COMMANDS
-from btlang.task.task import State
+from btlang.task.store.records import TaskState
 from tests.server.conftest import ROLES
 from tests.server.doors import PASSWORD, Door, close_code, received
 from tests.task.layers import wait_for, wait_until
@@ -18,7 +18,7 @@ from tests.task.layers import wait_for, wait_until
 
 def test_every_command_needs_a_role() -> None:
     assert set(NEEDED) == set(COMMANDS.values())
-    assert [Role.OPERATOR.covers(role) for role in Role] == [True, True, False, False]
+    assert [UserRole.OPERATOR.covers(role) for role in UserRole] == [True, True, False, False]
 
 
 def test_a_task_from_log_in_to_its_end(door: Door, robot: TaskLayer) -> None:
@@ -27,7 +27,7 @@ def test_a_task_from_log_in_to_its_end(door: Door, robot: TaskLayer) -> None:
     assert (me["user"], me["role"]) == ("olga", "operator")
     answer = door.ask("POST", "/api/commands", {"command": "submit", "text": "wave", "labels": ["x"]}, **olga)
     assert (answer.status, answer.data["ok"]) == (200, True)
-    task = wait_for(robot, answer.data["data"]["task"]["id"], State.COMPLETED)
+    task = wait_for(robot, answer.data["data"]["task"]["id"], TaskState.COMPLETED)
     assert task.person == "olga"
     refused = door.ask("POST", "/api/commands", {"command": "cancel", "task": task.id}, **olga)
     assert (refused.status, refused.data["code"]) == (409, "BT187")

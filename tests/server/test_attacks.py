@@ -18,12 +18,10 @@ from hypothesis import HealthCheck, given
 from starlette.testclient import TestClient, WebSocketDisconnect
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
-from btlang.server.accounts import Accounts
-from btlang.server.app import Api
-from btlang.server.door import listening
-from btlang.server.passwords import LONGEST, Verifier, fits, hashed, problem
-from btlang.server.roles import Role
-from btlang.server.throttle import Throttle
+from btlang.server.accounts.accounts import Accounts, UserRole
+from btlang.server.accounts.passwords import LONGEST, Throttle, Verifier, fits, hash_password, problem
+from btlang.server.http.app import Api
+from btlang.server.http.listener import open_listener
 from tests.profiles import amount, searches
 from tests.server.doors import PASSWORD, Door, close_code, received, trusting
 from tests.task.test_commands import commands
@@ -91,7 +89,7 @@ def test_a_session_is_not_fixed_by_who_has_none(door: Door) -> None:
 )
 def test_odd_passwords(password: str) -> None:
     assert problem(password, "ann") == ""
-    kept = hashed(password)
+    kept = hash_password(password)
     assert fits(password, kept)
     assert not fits(password[:-1], kept)
     assert not fits(password.replace("\0", ""), kept) or "\0" not in password
@@ -111,7 +109,7 @@ def test_an_unknown_user_takes_as_long() -> None:
         return time.process_time() - began
 
     async def least() -> list[float]:
-        kept = hashed(PASSWORD)
+        kept = hash_password(PASSWORD)
         pairs = [(await seconds(kept), await seconds(None)) for _ in range(amount(7, 40))]
         return [min(each) for each in zip(*pairs, strict=True)]
 
@@ -257,7 +255,7 @@ def test_old_tls_is_refused(door: Door) -> None:
 
 def test_no_answer_is_held_back() -> None:
     """Its head and its body are written apart: the second one waited 40 ms for the other end to have the first."""
-    with listening("127.0.0.1", 0) as door, socket.create_connection(door.getsockname()):
+    with open_listener("127.0.0.1", 0) as door, socket.create_connection(door.getsockname()):
         accepted, _ = door.accept()
         with accepted:
             assert accepted.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY)
@@ -324,18 +322,18 @@ def test_who_says_nothing_is_hung_up_on(door: Door) -> None:
 
 def test_the_last_administrator_stays(tmp_path: Path) -> None:
     with closing(Accounts(str(tmp_path))) as accounts:
-        accounts.add("ann", Role.ADMINISTRATOR, "hash")
-        accounts.add("bo", Role.EDITOR, "hash")
-        for attempt in (lambda: accounts.remove("ann"), lambda: accounts.set_role("ann", Role.VIEWER)):
+        accounts.add("ann", UserRole.ADMINISTRATOR, "hash")
+        accounts.add("bo", UserRole.EDITOR, "hash")
+        for attempt in (lambda: accounts.remove("ann"), lambda: accounts.set_role("ann", UserRole.VIEWER)):
             with pytest.raises(Exception, match="is the only administrator"):
                 attempt()
-        accounts.set_role("bo", Role.ADMINISTRATOR)
+        accounts.set_role("bo", UserRole.ADMINISTRATOR)
         accounts.remove("ann")
         assert [user.name for user in accounts.users()] == ["bo"]
 
 
 def test_the_trail_fills_no_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("btlang.server.accounts.MOST_ENTRIES", 3)
+    monkeypatch.setattr("btlang.server.accounts.accounts.MOST_ENTRIES", 3)
     with closing(Accounts(str(tmp_path))) as accounts:
         for number in range(5):
             accounts.log("ann", "::1", str(number), "refused")
@@ -345,7 +343,7 @@ def test_the_trail_fills_no_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 def test_sessions_end_by_themselves(tmp_path: Path) -> None:
     now = [1000.0]
     with closing(Accounts(str(tmp_path), clock=lambda: now[0])) as accounts:
-        accounts.add("ann", Role.VIEWER, "hash")
+        accounts.add("ann", UserRole.VIEWER, "hash")
         secret = accounts.log_in("ann", "::1")
         for _ in range(20):
             now[0] += 7 * 3600

@@ -14,11 +14,10 @@ import pytest
 
 from btlang.cli import main
 from btlang.diagnostics.errors import MissionError
-from btlang.server import accounts as module
-from btlang.server.accounts import Accounts
-from btlang.server.roles import Role
-from btlang.task.backup import restore_backup
-from btlang.task.store import open_store
+from btlang.server.accounts import accounts as module
+from btlang.server.accounts.accounts import Accounts, UserRole
+from btlang.task.store.backup import restore_backup
+from btlang.task.store.task_store import open_store
 from tests.server.doors import Door
 from tests.task.places import execute_at
 
@@ -28,7 +27,7 @@ NEXT = ("ALTER TABLE token ADD COLUMN colour TEXT NOT NULL DEFAULT 'red'",)
 @pytest.fixture
 def accounts(tmp_path: Path) -> Iterator[Accounts]:
     with closing(Accounts(str(tmp_path / "server"))) as accounts:
-        accounts.add("ann", Role.ADMINISTRATOR, "hash")
+        accounts.add("ann", UserRole.ADMINISTRATOR, "hash")
         yield accounts
 
 
@@ -40,7 +39,7 @@ def refusal(accounts: Accounts, path: Path) -> str:
 
 
 def test_a_backup_has_all_but_the_sessions(accounts: Accounts, tmp_path: Path) -> None:
-    accounts.add("bo", Role.VIEWER, "other hash")
+    accounts.add("bo", UserRole.VIEWER, "other hash")
     token, session = accounts.add_token("bo", "screen"), accounts.log_in("ann", "::1")
     accounts.log("ann", "::1", "log in", "ok")
     path = tmp_path / "copy"
@@ -57,7 +56,7 @@ def test_a_backup_has_all_but_the_sessions(accounts: Accounts, tmp_path: Path) -
         assert restored.identity(session) is None
         known = restored.identity(token)
         assert known is not None
-        assert (known.user, known.role) == ("bo", Role.VIEWER)
+        assert (known.user, known.role) == ("bo", UserRole.VIEWER)
         restored.log("bo", "::1", "status", "ok")
         assert [entry.user for entry in restored.entries()] == ["bo", "ann"]
 
@@ -91,7 +90,7 @@ def test_a_backup_is_one_moment(accounts: Accounts, tmp_path: Path) -> None:
     def work() -> None:
         number = 0
         while not ended.is_set():
-            accounts.add(f"u{number}", Role.VIEWER, "hash")
+            accounts.add(f"u{number}", UserRole.VIEWER, "hash")
             accounts.add_token(f"u{number}", "program")
             number += 1
 
@@ -190,7 +189,7 @@ def test_users_of_an_older_btlang_stay(tmp_path: Path, monkeypatch: pytest.Monke
     steps = module._STEPS
     monkeypatch.setattr(module, "_STEPS", steps[:1])
     with closing(Accounts(str(tmp_path))) as older:
-        older.add("ann", Role.ADMINISTRATOR, "hash")
+        older.add("ann", UserRole.ADMINISTRATOR, "hash")
         token, session = older.add_token("ann", "program"), older.log_in("ann", "::1")
         monkeypatch.undo()
         with closing(Accounts(str(tmp_path))) as newer:  # beside one that is up

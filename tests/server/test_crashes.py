@@ -25,11 +25,10 @@ import pytest
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import WebSocketException
 
-from btlang.server.accounts import Accounts
-from btlang.server.door import kept_key
-from btlang.server.roles import Role
-from btlang.task.store import Store, open_store
-from btlang.task.task import FINAL, State
+from btlang.server.accounts.accounts import Accounts, UserRole
+from btlang.server.http.listener import load_key
+from btlang.task.store.records import FINAL, TaskState
+from btlang.task.store.task_store import TaskStore, open_store
 from tests.profiles import amount
 from tests.server.doors import Door, Program
 from tests.task.layers import LONG, wait_until
@@ -116,7 +115,7 @@ class Submitter(Client):
             time.sleep(_PAUSE)
 
     def _found(self, label: str) -> list[int]:
-        states = [state.value for state in State]
+        states = [state.value for state in TaskState]
         listed = {"command": "list", "robot": NAME, "label": label, "states": states}
         while not (answer := self.ask("POST", "/api/commands", listed)):
             time.sleep(_PAUSE)
@@ -214,7 +213,7 @@ def door() -> Iterator[Door]:
 def test_server_and_robot_are_killed_in_turn(door: Door) -> None:
     data = door.folder / "btlang"
     with closing(Accounts(str(data / "server"))) as accounts:
-        accounts.add("ed", Role.EDITOR, "no password")
+        accounts.add("ed", UserRole.EDITOR, "no password")
         token = accounts.add_token("ed", "program")
     draw, kills = random.Random(1), amount(2, 50)
     waits: list[float] = []
@@ -234,7 +233,7 @@ def test_server_and_robot_are_killed_in_turn(door: Door) -> None:
                 waits += answered(clients, began)
             for client in (*submitters, saver):
                 client.close()
-            wait_until(lambda: not store.count_tasks({state for state in State if state not in FINAL}), 600.0)
+            wait_until(lambda: not store.count_tasks({state for state in TaskState if state not in FINAL}), 600.0)
             wait_until(lambda: follower.changes[-1][0] >= store.latest_change())
         check(store, submitters, saver, follower)
     unanswered = sum(each.unanswered for each in submitters)
@@ -262,9 +261,9 @@ def answered(clients: Sequence[Client], since: float) -> list[float]:
     return list(waits.values())
 
 
-def check(store: Store, submitters: list[Submitter], saver: Saver, follower: Follower) -> None:
+def check(store: TaskStore, submitters: list[Submitter], saver: Saver, follower: Follower) -> None:
     """Everything is there, and once."""
-    tasks = store.tasks(State)
+    tasks = store.tasks(TaskState)
     submitted = [(label, number) for each in submitters for label, number in each.tasks.items()]
     assert sorted((task.labels[0], task.id) for task in tasks) == sorted(submitted)
     assert [revision.text for revision in store.revisions(MISSION)] == saver.texts
@@ -272,7 +271,7 @@ def check(store: Store, submitters: list[Submitter], saver: Saver, follower: Fol
     changes = [(number, change.task, change.state.value) for number, change in store.changes()]
     assert follower.changes == changes
     assert [number for number, *_ in changes] == list(range(1, len(changes) + 1))
-    ends = Counter(task for _, task, state in changes if State(state) in FINAL)
+    ends = Counter(task for _, task, state in changes if TaskState(state) in FINAL)
     assert ends == Counter(task.id for task in tasks)
 
 
@@ -280,8 +279,8 @@ def test_a_secret_is_written_whole_or_made_again(tmp_path: Path) -> None:
     """A server that is killed at its first start leaves none that is empty."""
     path = tmp_path / "secret.key"
     path.touch()
-    key = kept_key(str(tmp_path))
+    key = load_key(str(tmp_path))
     assert len(key) == 64
-    assert kept_key(str(tmp_path)) == key == path.read_text()
+    assert load_key(str(tmp_path)) == key == path.read_text()
     assert stat.S_IMODE(path.stat().st_mode) == 0o600
     assert list(tmp_path.iterdir()) == [path]

@@ -18,9 +18,9 @@ from websockets.exceptions import InvalidStatus
 
 from btlang.cli import main
 from btlang.editing.words import Words
-from btlang.server import editor, local_page
-from btlang.server.accounts import Accounts
-from btlang.server.files import Files
+from btlang.server.accounts.accounts import Accounts
+from btlang.server.page import editor, local_page
+from btlang.server.page.editor import EditorFiles
 from tests.server.doors import LocalDoor, Reply, received
 from tests.server.test_edit_trees import TREE
 from tests.task.layers import LONG
@@ -241,7 +241,7 @@ def test_a_token_is_good_for_a_minute(tmp_path: Path, monkeypatch: pytest.Monkey
 
     words = Words(file=str(tmp_path / "tour.txt"))
     with closing(Accounts(str(tmp_path / "accounts"), clock=lambda: 0.0)) as accounts:
-        api = editor.EditorApi(accounts, Files(words), words, 1)
+        api = editor.EditorApi(accounts, EditorFiles(words), words, 1)
         client: Any = TestClient(api.app(), base_url="http://127.0.0.1:1")
         later = time.monotonic() + local_page.OPEN + 1
         monkeypatch.setattr(local_page.time, "monotonic", lambda: later)

@@ -14,10 +14,9 @@ from hypothesis import strategies as st
 
 from btlang.api import parse_tree
 from btlang.editing.words import Words
-from btlang.server import checking
-from btlang.server.access import AccessError
-from btlang.server.checking import DOES, Checker, answer, arguments_of
-from btlang.server.utf16 import in_units
+from btlang.server.http.access import AccessError
+from btlang.server.page import processes as checking
+from btlang.server.page.processes import DOES, Checker, answer, arguments_of, in_units
 from btlang.text.utf16 import Units
 from tests.profiles import amount, searches
 from tests.server.doors import Door

@@ -13,9 +13,8 @@ from typing import Any
 
 import pytest
 
-from btlang.server.fetching import Pieces, fetched
-from btlang.server.reach import STREAM
-from btlang.server.recordings import PIECE
+from btlang.server.live.robot_connection import STREAM
+from btlang.server.page.recordings import PIECE, RecordingResponse, fetch
 from tests.server.cable import Cable
 from tests.server.doors import Door, Reply, received
 from tests.server.elsewhere import Elsewhere, asked_to_watch, btc, command, in_background, invited, is_up
@@ -170,7 +169,7 @@ def test_a_part_is_never_the_whole(then: Any) -> None:
         sent.append(message)
 
     async def answer() -> None:
-        await Pieces(await fetched(read, "a.mcap")).stream_response(send)
+        await RecordingResponse(await fetch(read, "a.mcap")).stream_response(send)
 
     asyncio.run(answer())
     assert [each.get("body") for each in sent] == [None, b"AAA"]

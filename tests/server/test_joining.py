@@ -12,10 +12,10 @@ from pathlib import Path
 import pytest
 
 from btlang.diagnostics.errors import MissionError
-from btlang.server.accounts import Accounts
-from btlang.server.fleet import VALID, Fleet, pin_in
-from btlang.server.reach import STREAM
-from btlang.server.sockets import FORBIDDEN
+from btlang.server.accounts.accounts import Accounts
+from btlang.server.fleet.fleet import VALID, Fleet, pin_in
+from btlang.server.live.robot_connection import STREAM
+from btlang.server.live.sockets import FORBIDDEN
 from tests.server.cable import Cable
 from tests.server.doors import Door, close_code, received
 from tests.server.elsewhere import Elsewhere, asked_to_watch, btc, command, in_background, invited, is_up, listed
@@ -159,17 +159,17 @@ def test_codes(tmp_path: Path) -> None:
         first = fleet.invite("kim", b"p" * 32)
         second = fleet.invite("kim", b"p" * 32)  # the first one is good no longer
         assert pin_in(second) == b"p" * 32
-        assert fleet.admitted("a" * 40, first) is None
+        assert fleet.admit("a" * 40, first) is None
         now[0] = VALID + 1
-        assert fleet.admitted("a" * 40, second) is None
+        assert fleet.admit("a" * 40, second) is None
         third = fleet.invite("kim", b"p" * 32)
-        assert fleet.admitted("a" * 40, third) is not None
-        assert fleet.admitted("a" * 40, third) is not None  # the answer may have been lost
-        assert fleet.admitted("b" * 40, third) is None
+        assert fleet.admit("a" * 40, third) is not None
+        assert fleet.admit("a" * 40, third) is not None  # the answer may have been lost
+        assert fleet.admit("b" * 40, third) is None
         with pytest.raises(MissionError, match="revoke it first"):
             fleet.invite("kim", b"p" * 32)
         fleet.revoke("kim")
-        assert fleet.admitted("a" * 40, third) is None
+        assert fleet.admit("a" * 40, third) is None
         with pytest.raises(MissionError, match="isn't known"):
             fleet.revoke("kim")
     for wrong in ("", "btr_", third[:-4], third + "AAAA", "btr_\0"):

@@ -8,29 +8,29 @@ from typing import Any
 
 import pytest
 
-from btlang.server.links import RobotLink
-from btlang.server.outlet import _MOST, _MUCH, News, Outlet
-from btlang.task.allowance import Allowance
+from btlang.server.live.client_queue import _MOST, _MUCH, ClientQueue, RobotNews
+from btlang.server.live.robot_feeds import RobotFeed
+from btlang.task.live.feed import Allowance
 
 
-def statuses(run: str, *changes: tuple[int, str], t: float = 1.0, robot: str = "robot") -> News:
-    return News(robot, {"type": "statuses", "run": run, "t": t, "changes": [list(change) for change in changes]})
+def statuses(run: str, *changes: tuple[int, str], t: float = 1.0, robot: str = "robot") -> RobotNews:
+    return RobotNews(robot, {"type": "statuses", "run": run, "t": t, "changes": [list(change) for change in changes]})
 
 
-def begun(run: str) -> News:
-    return News("robot", {"type": "run", "run": run, "task": 1})
+def begun(run: str) -> RobotNews:
+    return RobotNews("robot", {"type": "run", "run": run, "task": 1})
 
 
-def said(text: str, robot: str = "robot") -> News:
-    return News(robot, {"type": "event", "text": text})
+def said(text: str, robot: str = "robot") -> RobotNews:
+    return RobotNews(robot, {"type": "event", "text": text})
 
 
-def taken(outlet: Outlet) -> list[dict[str, Any]]:
+def taken(outlet: ClientQueue) -> list[dict[str, Any]]:
     return [json.loads(text) for text in outlet.take()]
 
 
-def filled(*news: News) -> Outlet:
-    outlet = Outlet()
+def filled(*news: RobotNews) -> ClientQueue:
+    outlet = ClientQueue()
     for each in news:
         outlet.put(each)
     return outlet
@@ -92,9 +92,9 @@ def test_robots_are_kept_apart() -> None:
     outlet = filled(
         statuses("a", (0, "RUNNING"), robot="anna"),
         statuses("b", (0, "FAILURE"), robot="otto"),
-        News("anna", {"type": "robot", "battery": 90.0}),
-        News("otto", {"type": "robot", "battery": 50.0}),
-        News("anna", {"type": "robot", "battery": 89.0}),
+        RobotNews("anna", {"type": "robot", "battery": 90.0}),
+        RobotNews("otto", {"type": "robot", "battery": 50.0}),
+        RobotNews("anna", {"type": "robot", "battery": 89.0}),
     )
     messages = taken(outlet)
     assert [(m["robot"], m["run"]) for m in messages if m["type"] == "statuses"] == [("anna", "a"), ("otto", "b")]
@@ -112,10 +112,10 @@ def test_what_is_left_out_is_said_once() -> None:
 
 
 def test_who_takes_nothing_fills_no_memory() -> None:
-    outlet = Outlet()
+    outlet = ClientQueue()
     for number in range(3 * _MOST):
         outlet.put(statuses("a", (number % 7, "RUNNING")))
-        outlet.put(News("robot", {"type": "robot", "battery": number}))
+        outlet.put(RobotNews("robot", {"type": "robot", "battery": number}))
     messages = taken(outlet)
     assert [message["type"] for message in messages] == ["statuses", "robot"]
     assert len(messages[0]["changes"]) == 7
@@ -139,12 +139,12 @@ def test_an_answer_ends_the_wait_that_a_rate_asks_for() -> None:
 
 
 def test_of_other_topics_nothing_waits() -> None:
-    outlet = Outlet()
+    outlet = ClientQueue()
     outlet.topics = {"map", "tasks"}
     for kind in ("up", "map", "scan", "robot", "event", "change"):
-        outlet.put(News("kim", {"type": kind, "number": 1}))
+        outlet.put(RobotNews("kim", {"type": kind, "number": 1}))
     outlet.put(statuses("1", {0: "RUNNING"}))
-    outlet.put(News("kim", {"type": "scan", "number": 2}))
+    outlet.put(RobotNews("kim", {"type": "scan", "number": 2}))
     assert [(each["type"], each.get("number")) for each in taken(outlet)] == [
         ("up", 1),
         ("change", 1),
@@ -154,7 +154,7 @@ def test_of_other_topics_nothing_waits() -> None:
 
 
 def test_a_client_that_comes_late_gets_what_is_now() -> None:
-    link, outlet = RobotLink("robot"), Outlet()
+    link, outlet = RobotFeed("robot"), ClientQueue()
     for message in (
         {"type": "hello", "change": 3},
         begun("a").message,
@@ -200,7 +200,7 @@ def test_no_more_often_than_the_rate(rate: float) -> None:
 
 
 def test_of_a_topic_the_newest_wait() -> None:
-    outlet = Outlet()
+    outlet = ClientQueue()
     for number in range(5):
         outlet.keep("/one", f"one {number}", 1)
         outlet.keep("/three", f"three {number}", 3)
@@ -210,7 +210,7 @@ def test_of_a_topic_the_newest_wait() -> None:
 
 def test_who_does_not_read_waits_with_what_he_asks_for() -> None:
     async def asked() -> None:
-        outlet = Outlet()
+        outlet = ClientQueue()
         await outlet.wait_for_room()
         for _ in range(50):
             outlet.keep("/big", "x" * 100_000, 100)

@@ -11,11 +11,11 @@ from typing import Any
 
 from starlette.applications import Starlette
 
-from btlang.server.access import AccessError
-from btlang.server.openapi import ROUTES
-from btlang.server.outlet import TOPICS
-from btlang.server.pages import page_routes
-from btlang.server.rosbridge import OPERATIONS
+from btlang.server.http.access import AccessError
+from btlang.server.http.openapi import ROUTES
+from btlang.server.http.pages import PLAIN, page_routes
+from btlang.server.live.client_queue import TOPICS
+from btlang.server.live.rosbridge import OPERATIONS
 from btlang.task.layer import TaskLayer
 from tests.server.doors import Door
 
@@ -49,6 +49,7 @@ def test_the_plain_page_is_there_without_a_built_one(tmp_path: Path) -> None:
         status, _, text = asked(app, path)
         assert status == 200
         assert words in text
+    assert {path.suffix for path in PLAIN.iterdir()} == {".html", ".js", ".css"}  # all of it is served, to anybody
 
 
 def test_a_built_page_may_be_kept_and_its_nonces_not(tmp_path: Path) -> None:

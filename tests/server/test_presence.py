@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from websockets.sync.client import ClientConnection
 
-from btlang.server import presence
+from btlang.server.live import clients as presence
 from tests.server.doors import Door, received
 from tests.task.layers import LONG
 

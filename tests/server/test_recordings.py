@@ -13,10 +13,10 @@ import pytest
 
 from btlang.api import parse_tree
 from btlang.cli import main
-from btlang.server.access import AccessError
-from btlang.server.recordings import listed, path_of
+from btlang.server.http.access import AccessError
+from btlang.server.page.recordings import list_recordings, path_of
 from btlang.task.layer import TaskLayer
-from btlang.task.task import State
+from btlang.task.store.records import TaskState
 from tests.server.doors import Door, robot_in
 from tests.task.layers import submit, wait_for
 
@@ -39,7 +39,7 @@ def robot() -> Iterator[TaskLayer]:
 def names(door: Door, robot: TaskLayer) -> list[str]:
     """The recordings of a run and of one that failed, of one mission."""
     for _ in range(2):
-        wait_for(robot, submit(robot, TEXT), State.COMPLETED, State.FAILED)
+        wait_for(robot, submit(robot, TEXT), TaskState.COMPLETED, TaskState.FAILED)
     return list(reversed([each["name"] for each in recordings(door)]))
 
 
@@ -85,13 +85,13 @@ def test_recordings_of_a_folder(tmp_path: Path, capsys: pytest.CaptureFixture[st
     capsys.readouterr()
     (tmp_path / "broken.mcap").write_bytes(b"no recording")
     (tmp_path / "other.txt").write_text("x")
-    assert {each["name"] for each in listed(folder)} == {path.name, "broken.mcap"}
+    assert {each["name"] for each in list_recordings(folder)} == {path.name, "broken.mcap"}
     assert path_of(folder, path.name) == os.path.join(folder, path.name)
     for name in ("../x.mcap", "other.txt", "none.mcap", "", "a/b.mcap", "\0.mcap", "x.mcap\n", "..mcap"):
         with pytest.raises(AccessError):
             path_of(folder, name)
     with pytest.raises(AccessError):
-        listed("")
+        list_recordings("")
 
 
 @pytest.mark.parametrize(

@@ -11,9 +11,9 @@ from typing import Any
 import pytest
 from websockets.sync.client import ClientConnection
 
-from btlang.server.outlet import _MOST
+from btlang.server.live.client_queue import _MOST
 from btlang.task.layer import TaskLayer
-from btlang.task.task import State
+from btlang.task.store.records import TaskState
 from tests.server.doors import Door, received
 from tests.task.layers import LONG, submit, wait_for, wait_until
 from tests.task.places import a_task
@@ -51,15 +51,15 @@ def numbers_until(connection: ClientConnection, last: int) -> list[int]:
 def test_a_server_that_was_killed_is_made_up_for(own_door: Door, token: dict[str, str], robot: TaskLayer) -> None:
     with own_door.socket(**token) as connection:
         first = subscribe(connection)
-        wait_for(robot, submit(robot, "wave"), State.COMPLETED)
+        wait_for(robot, submit(robot, "wave"), TaskState.COMPLETED)
         known = first + 4
         assert numbers_until(connection, known) == [first + 1, first + 2, first + 3, known]
         own_door.kill()
-    wait_for(robot, submit(robot, "nod"), State.COMPLETED)
+    wait_for(robot, submit(robot, "nod"), TaskState.COMPLETED)
     own_door.start()
     with own_door.socket(**token) as connection:
         subscribe(connection, after={"robot": known})
-        wait_for(robot, submit(robot, "wave"), State.COMPLETED)
+        wait_for(robot, submit(robot, "wave"), TaskState.COMPLETED)
         assert numbers_until(connection, known + 8) == list(range(known + 1, known + 9))
 
 

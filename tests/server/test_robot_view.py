@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from btlang.server.outlet import News, Outlet
-from btlang.server.robot_view import STATES, RobotView
+from btlang.server.live.client_queue import ClientQueue, RobotNews
+from btlang.server.live.robot_view import STATES, RobotView
 from tests.profiles import searches
 
 CASES = json.loads(Path(__file__).with_name("robot_views.json").read_text(encoding="utf-8"))
@@ -51,9 +51,9 @@ def state(view: RobotView) -> dict[str, Any]:
 
 def slowly(messages: list[dict[str, Any]]) -> list[dict[str, Any]]:
     """What somebody gets who reads once, at the end."""
-    outlet = Outlet()
+    outlet = ClientQueue()
     for message in messages:
-        outlet.put(News("robot", message))
+        outlet.put(RobotNews("robot", message))
     return [json.loads(text) for text in outlet.take()]
 
 

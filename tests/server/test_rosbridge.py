@@ -25,7 +25,7 @@ from sensor_msgs.msg import Image, LaserScan
 from std_msgs.msg import ByteMultiArray, String
 from std_srvs.srv import SetBool
 
-from btlang.arguments import ros_name
+from btlang.cli.values import ros_name
 from btlang.diagnostics.errors import MissionError
 from btlang.ros.available import require_package
 from btlang.ros.goals import GoalServer, HeldGoal

@@ -180,7 +180,7 @@ def test_what_is_no_recording_says_so_at_once(mission: Path, capsys: pytest.Capt
 def test_without_a_page_nothing_moves(
     mission: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("btlang.server.local_page.PAGE", Path("nowhere"))
+    monkeypatch.setattr("btlang.server.page.local_page.PAGE", Path("nowhere"))
     assert main(["run", str(mission), "--watch"]) == 2
     captured = capsys.readouterr()
     assert (captured.out, "error BT211: " in captured.err) == ("", True)

@@ -16,12 +16,12 @@ from starlette.routing import Route
 
 from btlang.editing.edits import Edit
 from btlang.editing.words import Words
-from btlang.server import checking
-from btlang.server.access import AccessError
-from btlang.server.accounts import Accounts
-from btlang.server.app import Api
-from btlang.server.checking import Checker, answer
-from btlang.server.openapi import ROUTES, document
+from btlang.server.accounts.accounts import Accounts
+from btlang.server.http.access import AccessError
+from btlang.server.http.app import Api
+from btlang.server.http.openapi import ROUTES, document
+from btlang.server.page import processes as checking
+from btlang.server.page.processes import Checker, answer
 from tests.server.doors import Door
 
 ARGUMENTS: dict[str, dict[str, Any]] = {

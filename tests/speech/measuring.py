@@ -6,12 +6,12 @@ import time
 from collections.abc import Sequence
 
 from btlang.actions.conversation import answers, meaning_of
-from btlang.record import Record
 from btlang.robots.bodies.body import Body, EarsSpec
 from btlang.speech.engine import Settings
 from btlang.speech.listener import Attention
 from btlang.speech.pocketsphinx import PocketSphinx
 from btlang.speech.recogniser import RATE, Expected, RecognisedSpeech, RecogniserSettings
+from btlang.support.record import Record
 from tests.speech.sounds import AFTER, guide, lines, recorded
 
 WAKE = "hello robot"

@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping
 from typing import Any, Protocol
 
 from btlang.actions.speech import say
-from btlang.record import Record
 from btlang.robots.robot import Operation
 from btlang.robots.simulation.robot import SimulatedRobot
+from btlang.support.record import Record
 
 FINE = 0.01  # seconds between two looks at the joints
 _NEAR = 3.0  # degrees from the stroke

@@ -21,7 +21,7 @@ from btlang.robots.registry import Connector
 from btlang.robots.simulation.robot import SimulatedRobot
 from btlang.session import Session
 from btlang.task import messages
-from btlang.task.voice_handler import VoiceHandler
+from btlang.task.commands.robot_handlers import VoiceHandler
 from btlang.text.source import Source
 from tests.speech.guide import ROOM, guide, room
 

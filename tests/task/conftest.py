@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from btlang.task.store import Store, open_store
+from btlang.task.store.task_store import TaskStore, open_store
 from tests.task.places import connection, new_place, server
 
 
@@ -27,7 +27,7 @@ def place(request: pytest.FixtureRequest, tmp_path: Path) -> str:
 
 
 @pytest.fixture
-def store(place: str) -> Iterator[Store]:
+def store(place: str) -> Iterator[TaskStore]:
     """An empty one."""
     with open_store(place) as opened:
         yield opened

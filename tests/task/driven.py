@@ -11,7 +11,7 @@ from typing import Any
 from btlang.run.events import Event, PeriodPassed, Printed
 from btlang.task.layer import TaskLayer
 from btlang.task.messages import Answer
-from btlang.task.task import Task
+from btlang.task.store.records import Task
 
 from .places import new_place
 

@@ -8,10 +8,10 @@ from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Any
 
+from btlang.task.commands.client import USUAL_NAME
+from btlang.task.commands.socket_server import SocketServer
 from btlang.task.layer import TaskLayer
-from btlang.task.paths import USUAL_NAME
-from btlang.task.socket_server import SocketServer
-from btlang.task.task import State, Task
+from btlang.task.store.records import Task, TaskState
 
 LONG = 20.0
 """Seconds for what should happen soon."""
@@ -69,7 +69,7 @@ def wait_until(holds: Callable[[], object], seconds: float = LONG) -> None:
         time.sleep(0.005)
 
 
-def wait_for(layer: TaskLayer, number: int, *states: State) -> Task:
+def wait_for(layer: TaskLayer, number: int, *states: TaskState) -> Task:
     """Until a task is in one of some states; the task then."""
     wait_until(lambda: task(layer, number).state in states)
     return task(layer, number)

@@ -11,9 +11,9 @@ import sys
 import time
 from pathlib import Path
 
+from btlang.task.execution.missions import MissionReader
 from btlang.task.layer import TaskLayer
 from btlang.task.messages import AddSchedule
-from btlang.task.missions import MissionReader
 from btlang.vocabulary.shipped import DEFAULT_WORLD
 
 TOUR = "say welcome then go to the lab then go to the kitchen then go to the living room then wave"

@@ -13,7 +13,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from btlang.task.task import MissionText, Task
+from btlang.task.store.records import MissionText, Task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -10,17 +10,17 @@ import sys
 import time
 
 from btlang.diagnostics.errors import MissionError
-from btlang.task.store import Store, open_store
+from btlang.task.store.task_store import TaskStore, open_store
 from tests.task.places import a_task
 
 
-def add(store: Store) -> None:
+def add(store: TaskStore) -> None:
     """Tasks until it is killed; a line is printed after the task was accepted."""
     while True:
         print(store.add(a_task("wave then nod")).id, flush=True)
 
 
-def claim(store: Store) -> None:
+def claim(store: TaskStore) -> None:
     """All that there are, once the other end of its input is closed."""
     print("ready", flush=True)
     sys.stdin.read()
@@ -28,19 +28,19 @@ def claim(store: Store) -> None:
         print(task.id, flush=True)
 
 
-def opened(store: Store) -> None:
+def opened(store: TaskStore) -> None:
     """Nothing: it is opened, and one task is added."""
     print(store.add(a_task()).id, flush=True)
 
 
-def own(store: Store) -> None:
+def own(store: TaskStore) -> None:
     """The ownership, until it is killed."""
     store.own()
     print("owned", flush=True)
     time.sleep(600)
 
 
-def own_and_fork(store: Store) -> None:
+def own_and_fork(store: TaskStore) -> None:
     """The same, with a child process that outlives it."""
     store.own()
     child = os.fork()
@@ -49,7 +49,7 @@ def own_and_fork(store: Store) -> None:
     time.sleep(600)
 
 
-def fill(store: Store) -> None:
+def fill(store: TaskStore) -> None:
     """Adds tasks until the file may not grow any more, and one when it may again."""
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     store.add(a_task())

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from random import Random
 from typing import Any
 
-from btlang.task.task import Restart, State
+from btlang.task.store.records import Restart, TaskState
 
 from .driven import HOUR, Driven
 
@@ -15,8 +15,8 @@ Command = tuple[str, dict[str, Any]]
 
 PRINTS = 3
 MISSION = " then ".join(f"print {number} then wait 0.2 s" for number in range(PRINTS))
-WAITING = (State.QUEUED, State.DELAYED)
-ENDS = {"cancel": State.CANCELED, "kill": State.KILLED, "skip": State.SKIPPED}
+WAITING = (TaskState.QUEUED, TaskState.DELAYED)
+ENDS = {"cancel": TaskState.CANCELED, "kill": TaskState.KILLED, "skip": TaskState.SKIPPED}
 ACTS = (
     "cancel", "kill", "interrupt", "stop", "down", "crash", "hour", "again", "submit", "submit", "move", "move another",
 )  # fmt: skip
@@ -33,7 +33,7 @@ class Expected:
     ) -> None:
         self.priority, self.bonus, self.position, self.restart = priority, 0, 0, restart
         self.earliest, self.deadline = earliest, deadline
-        self.state, self.token = State.QUEUED, ""
+        self.state, self.token = TaskState.QUEUED, ""
         self.has_begun = False
         self.prints = 0
         self.created = created
@@ -80,7 +80,7 @@ class Model:
         return number % (len(self.tasks) + 2)
 
     def is_open(self, number: int) -> bool:
-        return number in self.tasks and self.tasks[number].state in (*WAITING, State.UNDERWAY)
+        return number in self.tasks and self.tasks[number].state in (*WAITING, TaskState.UNDERWAY)
 
     def ok(self, command: str, **fields: Any) -> bool:
         return self.robot.ask(command, **fields).ok
@@ -112,12 +112,12 @@ class Model:
         assert not self.ok("interrupt", task=self.some(number))
 
     def let_go_on(self, number: int, right: bool) -> None:
-        interrupted = [each for each, task in self.tasks.items() if task.state is State.DELAYED and task.token]
+        interrupted = [each for each, task in self.tasks.items() if task.state is TaskState.DELAYED and task.token]
         number = interrupted[number % len(interrupted)] if interrupted else max(1, self.some(number))
         token = self.tasks[number].token if interrupted and right else "x"
         assert self.ok("resume", task=number, token=token) is (bool(interrupted) and right)
         if interrupted and right:
-            self.tasks[number].state, self.tasks[number].token = State.QUEUED, ""
+            self.tasks[number].state, self.tasks[number].token = TaskState.QUEUED, ""
 
     def again(self, number: int) -> None:
         number = self.some(number)
@@ -177,7 +177,7 @@ class Model:
                     task.age(self.hour)
             self.running = next(iter(self.order(ready=True)), 0)
         if self.running:
-            self.tasks[self.running].state = State.STANDBY
+            self.tasks[self.running].state = TaskState.STANDBY
         self.robot.turn()
         if self.running:
             self.ended(self.tasks[self.running])
@@ -191,41 +191,41 @@ class Model:
             self.robot.crash()
         else:
             self.check()
-            task.state, task.has_begun = State.UNDERWAY, True
+            task.state, task.has_begun = TaskState.UNDERWAY, True
 
     def ended(self, task: Expected) -> None:
         """What becomes of the task that was under way."""
         if self.crash_at == "standby":
-            task.state = State.QUEUED
+            task.state = TaskState.QUEUED
         elif self.robot.has_crashed and self.stopped:
-            task.state = State.KILLED
+            task.state = TaskState.KILLED
         elif self.robot.has_crashed:
             self.cut_off(task)
             if task.restart is Restart.RESUME and self.crash_at == "tick":
                 task.prints -= 1  # what the tick of a crash did is not in the store
         elif self.was_stopped:
-            task.state = State.KILLED
+            task.state = TaskState.KILLED
         elif self.asked in ENDS:
             task.state = ENDS[self.asked]
         elif self.asked:
-            task.state, task.token = State.DELAYED, self.token
+            task.state, task.token = TaskState.DELAYED, self.token
         elif self.goes_down:
             self.cut_off(task)
         else:
             assert task.prints == PRINTS, f"{task.prints} prints"
-            task.state = State.COMPLETED
+            task.state = TaskState.COMPLETED
 
     def cut_off(self, task: Expected) -> None:
         """As the task says for a restart."""
-        task.state = State.ERROR if task.restart is Restart.GIVE_UP else State.QUEUED
+        task.state = TaskState.ERROR if task.restart is Restart.GIVE_UP else TaskState.QUEUED
         if task.restart is Restart.AGAIN:
             task.prints = 0
 
     def skip_the_late(self) -> None:
         for task in self.tasks.values():
             is_late = task.deadline is not None and task.deadline < self.hour
-            if task.state is State.QUEUED and not task.has_begun and is_late:
-                task.state = State.SKIPPED
+            if task.state is TaskState.QUEUED and not task.has_begun and is_late:
+                task.state = TaskState.SKIPPED
 
     def printed(self, number: int, text: str) -> None:
         task = self.tasks[number]

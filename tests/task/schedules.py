@@ -6,7 +6,7 @@ import sys
 from collections.abc import Iterable
 
 from btlang.diagnostics.errors import MissionError
-from btlang.task.recurrence import read_rule
+from btlang.task.schedule.recurrence import read_rule
 
 
 def read_schedules(rules: Iterable[str], zone: str = "") -> int:

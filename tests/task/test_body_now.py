@@ -10,7 +10,7 @@ from typing import Any
 
 from btlang.robots.bodies.body_file import read_body
 from btlang.robots.robot import RobotError
-from btlang.task.body_now import BodyNow
+from btlang.task.live.robot_now import BodyNow
 from tests.robots.motion.bodies import GUIDE
 
 from .layers import ask, layer_in, refusal, submit

@@ -14,7 +14,7 @@ import pytest
 
 from btlang.cli import main
 from btlang.task.layer import TaskLayer
-from btlang.task.task import State
+from btlang.task.store.records import TaskState
 
 from .layers import ask, refusal, robot_up, submit, task, wait_for, wait_until
 
@@ -72,7 +72,7 @@ def test_a_list_says_which_task_comes_first_also_where_it_is_not_in_it(robot: Ta
     begun = submit(robot, "wait 10 h", priority=1)
     submit(robot, "nod", labels=["tour"])
     ask(robot, "resume")
-    wait_for(robot, begun, State.UNDERWAY)
+    wait_for(robot, begun, TaskState.UNDERWAY)
     assert btc("task", "list", "--label", "tour")[1] == "   3  queued     nod  [task 2 comes first]\n"
 
 
@@ -135,7 +135,7 @@ def test_a_robot_comes_up_with_what_its_library_has(
         made.append((robot, reader.world))
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("btlang.task.robot_command.furnished_layer", layer)
+    monkeypatch.setattr("btlang.cli.robot.make_robot_layer", layer)
     named = ("--robot", "library:q", "--world", "library:q")
     btc(*up, *named)
     [(connect, world)] = made
@@ -278,7 +278,7 @@ def test_what_is_not_there_is_called_so(robot: TaskLayer, btc: Btc) -> None:
 def test_a_token_that_is_not_given_is_asked_for(robot: TaskLayer, btc: Btc) -> None:
     ask(robot, "resume")
     number = submit(robot, "wait 10 h")
-    wait_for(robot, number, State.UNDERWAY)
+    wait_for(robot, number, TaskState.UNDERWAY)
     ask(robot, "interrupt", task=number)
     assert "only the token of that lets it go on: --token TOKEN" in btc("task", "resume", str(number))[1]
 
@@ -319,7 +319,7 @@ def test_a_unit_keeps_its_lines(btc: Btc, tmp_path: Path, monkeypatch: pytest.Mo
 def test_only_what_waits_gets_another_place(robot: TaskLayer) -> None:
     waiting, begun = submit(robot, "nod"), submit(robot, "wait 10 h", priority=1)
     ask(robot, "resume")
-    wait_for(robot, begun, State.UNDERWAY)
+    wait_for(robot, begun, TaskState.UNDERWAY)
     assert "can't come before itself" in refusal(robot, "reorder", task=waiting, before=waiting)
     for number, before in ((begun, waiting), (waiting, begun)):
         assert f"Task {begun} has begun" in refusal(robot, "reorder", task=number, before=before)

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from btlang.diagnostics.errors import MissionError
 from btlang.task import messages
-from btlang.task.command_schema import schema
+from btlang.task.commands.schema import schema
 from btlang.task.messages import COMMANDS, as_json, read_command
 from tests.profiles import searches
 

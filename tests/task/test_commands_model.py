@@ -7,7 +7,7 @@ from random import Random
 
 import pytest
 
-from btlang.task.task import Restart, State
+from btlang.task.store.records import Restart, TaskState
 from tests.profiles import amount
 
 from .driven import Driven
@@ -30,7 +30,7 @@ def problem(robot: Driven, commands: list[Command]) -> str:
 @pytest.fixture(params=["sqlite", "postgres"])
 def robot(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Iterator[Driven]:
     for waited in ("_LOOK", "_ANSWER"):  # who would be waited for is this thread
-        monkeypatch.setattr(f"btlang.task.executor.{waited}", 0.0)
+        monkeypatch.setattr(f"btlang.task.execution.executor.{waited}", 0.0)
     driven = Driven(request.param)
     yield driven
     driven.close()
@@ -50,13 +50,13 @@ def test_random_commands(robot: Driven, part: int) -> None:
 @pytest.mark.parametrize(
     ("first", "second", "accepted", "state"),
     [
-        ("cancel", "interrupt", False, State.CANCELED),
-        ("kill", "cancel", True, State.KILLED),
-        ("interrupt", "kill", True, State.KILLED),
-        ("interrupt", "interrupt", False, State.DELAYED),
+        ("cancel", "interrupt", False, TaskState.CANCELED),
+        ("kill", "cancel", True, TaskState.KILLED),
+        ("interrupt", "kill", True, TaskState.KILLED),
+        ("interrupt", "interrupt", False, TaskState.DELAYED),
     ],
 )
-def test_two_who_ask_in_the_same_tick(robot: Driven, first: str, second: str, accepted: bool, state: State) -> None:
+def test_two_who_ask_in_the_same_tick(robot: Driven, first: str, second: str, accepted: bool, state: TaskState) -> None:
     """What the first one was told holds, unless the second one asks for more."""
     answers = []
     robot.printed = lambda task, text: answers.extend(robot.ask(act, task=task) for act in (first, second))
@@ -65,7 +65,7 @@ def test_two_who_ask_in_the_same_tick(robot: Driven, first: str, second: str, ac
     assert [answer.ok for answer in answers] == [True, accepted]
     task = robot.layer.store.task(number)
     assert task is not None
-    assert (task.state, task.token) == (state, answers[0].data["token"] if state is State.DELAYED else "")
+    assert (task.state, task.token) == (state, answers[0].data["token"] if state is TaskState.DELAYED else "")
 
 
 @pytest.mark.parametrize("restart", list(Restart))
@@ -76,7 +76,7 @@ def test_a_stop_that_is_released_at_once_kills_the_task(robot: Driven, restart: 
     robot.turn()
     task = robot.layer.store.task(number)
     assert task is not None
-    assert (task.state, task.reason) == (State.KILLED, "emergency stop by ann")
+    assert (task.state, task.reason) == (TaskState.KILLED, "emergency stop by ann")
 
 
 @pytest.mark.parametrize("restart", list(Restart))
@@ -91,4 +91,4 @@ def test_a_crash_right_after_a_stop_does_not_undo_it(robot: Driven, restart: Res
     robot.restart()
     task = robot.layer.store.task(number)
     assert task is not None
-    assert (task.state, task.reason) == (State.KILLED, "emergency stop by ann")
+    assert (task.state, task.reason) == (TaskState.KILLED, "emergency stop by ann")

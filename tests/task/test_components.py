@@ -10,9 +10,9 @@ import pytest
 
 from btlang.components.words import robot_words
 from btlang.task import messages
+from btlang.task.execution.missions import MissionReader
 from btlang.task.layer import TaskLayer
 from btlang.task.messages import Answer, Command
-from btlang.task.missions import MissionReader
 from tests.components.robots import machine, robot_file
 from tests.task.layers import wait_until
 

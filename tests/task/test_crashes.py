@@ -18,9 +18,9 @@ from pathlib import Path
 
 import pytest
 
-from btlang.task.manager import ENDED
-from btlang.task.store import open_store
-from btlang.task.task import FINAL, State
+from btlang.task.execution.manager import ENDED
+from btlang.task.store.records import FINAL, TaskState
+from btlang.task.store.task_store import open_store
 from tests.profiles import amount
 
 from .layers import LONG, wait_until
@@ -79,7 +79,7 @@ class Peer:
         return [*self._before, *iter(partial(self.lines.get, timeout=LONG), "")]
 
 
-def recorded_in(place: str) -> tuple[int, State]:
+def recorded_in(place: str) -> tuple[int, TaskState]:
     """How many prints of task 1 are in the store, and its state. Of a run that is over nothing else is kept."""
     with open_store(place) as store:
         task = store.task(1)
@@ -115,7 +115,7 @@ def test_a_task_that_is_resumed_does_nothing_again(kind: str, tmp_path: Path) ->
         assert numbers == [str(number) for number in range(recorded + 1, 21)]
         rules = [*seen, *again].count("printed rule")
         assert rules == 1 or (rules == 2 and recorded <= 7)  # the end of that print was not yet recorded
-        assert recorded_in(place)[1] is State.COMPLETED
+        assert recorded_in(place)[1] is TaskState.COMPLETED
 
 
 @pytest.mark.long
@@ -152,7 +152,7 @@ def test_nothing_acknowledged_is_lost_and_nothing_ends_twice(tmp_path: Path) -> 
     peer = started(tmp_path, starts)
     with open_store(str(tmp_path / "tasks.db")) as store:
         until = time.monotonic() + 600
-        while store.tasks({state for state in State if state not in FINAL}):
+        while store.tasks({state for state in TaskState if state not in FINAL}):
             assert time.monotonic() < until
             time.sleep(0.2)
         tasks = {task.id: task for task in store.tasks()}
@@ -162,7 +162,7 @@ def test_nothing_acknowledged_is_lost_and_nothing_ends_twice(tmp_path: Path) -> 
             assert [state in FINAL for state in states] == [False] * (len(states) - 1) + [True]
     printed.update(line for line in peer.end() if line.startswith("printed"))
     ends = Counter((task.restart.value, task.state.value) for task in tasks.values())
-    assert {end for end in ends if end[1] != State.COMPLETED} <= {("give up", "error")}
+    assert {end for end in ends if end[1] != TaskState.COMPLETED} <= {("give up", "error")}
     assert all(printed[f"printed {number}"] <= 1 for number in range(count) if restart_of(number) == "give up")
     assert len(accepted) == count
     assert max(starts) < amount(10, 2)

@@ -13,12 +13,12 @@ from pathlib import Path
 import pytest
 
 from btlang.cli import main
-from btlang.task import socket_server
-from btlang.task.emergency import EmergencyStop, latch_path, shut_latch
+from btlang.task.commands import socket_server
+from btlang.task.commands.client import data_folder, socket_path
+from btlang.task.commands.socket_server import SocketServer
+from btlang.task.execution.emergency import EmergencyLatch, latch_path, shut_latch
 from btlang.task.messages import Answer
-from btlang.task.paths import data_folder, socket_path
-from btlang.task.socket_server import SocketServer
-from btlang.task.task import State
+from btlang.task.store.records import TaskState
 
 from .layers import ask, layer_in, robot_up, submit, wait_for, wait_until
 
@@ -42,9 +42,9 @@ def test_a_stop_between_a_crash_and_the_next_start(folder: Path, capsys: pytest.
     with layer_in(Path(data_folder("q"))) as layer:
         assert layer.emergency.reason.endswith(": smoke")
         ask(layer, "resume")
-        assert layer.store.task(number).state is State.QUEUED  # type: ignore[union-attr]
+        assert layer.store.task(number).state is TaskState.QUEUED  # type: ignore[union-attr]
         ask(layer, "release")
-        wait_for(layer, number, State.COMPLETED)
+        wait_for(layer, number, TaskState.COMPLETED)
 
 
 def test_a_stop_of_nobody(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -63,13 +63,13 @@ def answer_of(path: str) -> bytes:
 
 def test_a_robot_whose_sockets_were_taken_away(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with robot_up(Path(data_folder("q")), "q") as layer:
-        wait_for(layer, submit(layer, "repeat 99 times: wait 20 s"), State.UNDERWAY)
+        wait_for(layer, submit(layer, "repeat 99 times: wait 20 s"), TaskState.UNDERWAY)
         os.unlink(socket_path("q", stop=True))
         assert main(["robot", "stop", "--name", "q"]) == 0  # over the other socket
         assert layer.emergency.is_latched
         ask(layer, "release")
         shutil.rmtree(folder / "r" / "btlang")
-        wait_for(layer, submit(layer, "repeat 99 times: wait 20 s"), State.UNDERWAY)
+        wait_for(layer, submit(layer, "repeat 99 times: wait 20 s"), TaskState.UNDERWAY)
         assert main(["robot", "stop"]) == 0  # by its file
         wait_until(lambda: layer.emergency.is_latched)
         wait_until(lambda: os.path.exists(socket_path("q")) and os.path.exists(socket_path("q", stop=True)))
@@ -106,7 +106,7 @@ def test_a_latch_that_is_no_file(tmp_path: Path, odd: str) -> None:
     else:
         path.symlink_to("/dev/zero" if odd == "device" else target) if odd != "garbage" else path.write_text("[]")
     stops: list[int] = []
-    latch = EmergencyStop(str(path), lambda: stops.append(1))
+    latch = EmergencyLatch(str(path), lambda: stops.append(1))
     assert latch.reason == "its latch can't be read"
     latch.stop("ann")
     assert stops == [1]
@@ -116,10 +116,10 @@ def test_a_latch_that_is_no_file(tmp_path: Path, odd: str) -> None:
 
 def test_a_latch_that_somebody_shuts(tmp_path: Path) -> None:
     stops: list[int] = []
-    latch = EmergencyStop(latch_path(str(tmp_path)), lambda: stops.append(1))
+    latch = EmergencyLatch(latch_path(str(tmp_path)), lambda: stops.append(1))
     shut_latch(str(tmp_path), "bo", "fire")
     wait_until(lambda: stops)
     assert latch.reason == "emergency stop by bo: fire"
     latch.release()
-    assert EmergencyStop(latch_path(str(tmp_path)), int).reason == ""
+    assert EmergencyLatch(latch_path(str(tmp_path)), int).reason == ""
     latch.close()

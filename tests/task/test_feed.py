@@ -14,11 +14,11 @@ from typing import Any
 
 import pytest
 
-from btlang.task.feed import _MOST_CHANGES
+from btlang.task.commands.client import USUAL_NAME, socket_path
+from btlang.task.execution.missions import MissionReader
 from btlang.task.layer import TaskLayer
-from btlang.task.missions import MissionReader
-from btlang.task.paths import USUAL_NAME, socket_path
-from btlang.task.task import FINAL, State
+from btlang.task.live.feed import _MOST_CHANGES
+from btlang.task.store.records import FINAL, TaskState
 from btlang.text.source import Source
 from tests.world.worlds import LIVELY
 
@@ -56,7 +56,7 @@ def test_a_task_is_followed(tmp_path: Path) -> None:
     with layer_in(tmp_path) as layer:
         watcher = Watcher(layer)
         number = submit(layer, "wave then say hello")
-        watcher.wait(lambda message: message.get("state") == State.COMPLETED)
+        watcher.wait(lambda message: message.get("state") == TaskState.COMPLETED)
         run = watcher.wait(lambda message: message["type"] == "run" and message["task"] == number)
         assert [node[:2] for node in run["nodes"]] == [["/", "Sequence"], ["/0", "Wave"], ["/1", "Say"]]
         watcher.wait(lambda message: message.get("event", {}).get("event") == "end" and message["task"] == number)
@@ -67,7 +67,7 @@ def test_a_task_is_followed(tmp_path: Path) -> None:
         assert statuses == {0: "SUCCESS", 1: "SUCCESS", 2: "SUCCESS"}
         assert [each["event"]["text"] for each in watcher.of("event") if each["event"]["event"] == "say"] == ["hello"]
         states = [message["state"] for message in watcher.of("change")]
-        assert states == [State.QUEUED, State.STANDBY, State.UNDERWAY, State.COMPLETED]
+        assert states == [TaskState.QUEUED, TaskState.STANDBY, TaskState.UNDERWAY, TaskState.COMPLETED]
 
 
 def test_nodes_have_the_words_of_their_round(tmp_path: Path) -> None:
@@ -84,7 +84,7 @@ def test_nodes_have_the_words_of_their_round(tmp_path: Path) -> None:
         watcher.wait(is_told)
         late = Watcher(layer)
         late.wait(is_told)
-        watcher.wait(lambda message: message.get("state") == State.COMPLETED)
+        watcher.wait(lambda message: message.get("state") == TaskState.COMPLETED)
         run = watcher.wait(lambda message: message["type"] == "run" and message["task"] == number)
         assert [node[2] for node in run["nodes"] if node[1] == "GoTo"] == ["go to lab", "go to office"]
         says = next(index for index, node in enumerate(run["nodes"]) if node[1] == "Say")
@@ -101,7 +101,7 @@ def test_who_comes_late_knows_what_the_robot_does(tmp_path: Path) -> None:
         watcher.wait(lambda message: message["type"] == "doing" and message["goal"] == "lab")
         late = Watcher(layer).wait(lambda message: message["type"] == "doing")
         assert {**late, "goal": ""} == {"type": "doing", "task": number, "goal": "", "says": "hello", "heard": ""}
-        watcher.wait(lambda message: message.get("state") == State.COMPLETED)
+        watcher.wait(lambda message: message.get("state") == TaskState.COMPLETED)
         watcher.wait(lambda message: message["type"] == "doing" and not message["task"])
         assert watcher.of("doing")[-1] == {"type": "doing", "task": 0, "goal": "", "says": "hello", "heard": ""}
 
@@ -155,7 +155,7 @@ def test_a_question_and_its_answer(tmp_path: Path) -> None:
             assert "1 to 500" in refusal(layer, "answer", text=text)
         assert ask(layer, "answer", text=" Yes, please ")["question"] == "Shall I go?"
         watcher.wait(lambda m: m["type"] == "asking" and not m["text"])
-        assert wait_for(layer, number, *FINAL).state is State.COMPLETED
+        assert wait_for(layer, number, *FINAL).state is TaskState.COMPLETED
         heard = [m["event"] for m in watcher.of("event") if m["event"]["event"] in ("hear", "say")]
         assert [each["text"] for each in heard] == ["Shall I go?", "Yes, please", "Off I go"]
 
@@ -164,7 +164,7 @@ def test_answers_from_a_file_and_a_visitor(tmp_path: Path) -> None:
     with layer_in(tmp_path, answers={"coffee": ["yes"], "*": ["no"]}) as layer:
         watcher = Watcher(layer)
         mission = 'ask "Some coffee?", check that the answer is yes, ask "Tea?" then check that the answer is no'
-        assert wait_for(layer, submit(layer, mission), *FINAL).state is State.COMPLETED
+        assert wait_for(layer, submit(layer, mission), *FINAL).state is TaskState.COMPLETED
         assert watcher.wait(lambda m: m["type"] == "robot")["visitors"] is True
         ask(layer, "visitor")
         come = watcher.wait(lambda m: m.get("event", {}).get("event") == "come")["event"]["name"]
@@ -226,7 +226,7 @@ def test_who_reads_nothing_delays_nobody_and_fills_no_memory(tmp_path: Path) -> 
         next(silent)
         numbers = [submit(layer, f"repeat 60 times: print {number}") for number in range(20)]
         for number in numbers:
-            assert wait_for(layer, number, *FINAL).state is State.COMPLETED
+            assert wait_for(layer, number, *FINAL).state is TaskState.COMPLETED
         [watcher] = layer.feed._watchers
         assert len(watcher.events) == watcher.events.maxlen
         assert len(watcher.runs) == watcher.runs.maxlen

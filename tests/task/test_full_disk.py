@@ -9,9 +9,8 @@ from typing import Any
 
 import pytest
 
-from btlang.task.database import StoreError, store_error
-from btlang.task.outbox import Outbox
-from btlang.task.recordings import Recordings
+from btlang.task.execution.run_sinks import Recordings
+from btlang.task.store.database import Outbox, StoreError, store_error
 
 
 def test_recordings_make_room_on_a_full_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

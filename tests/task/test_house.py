@@ -10,9 +10,8 @@ import pytest
 from btlang.diagnostics.errors import MissionError
 from btlang.robots.bodies.body_file import read_body
 from btlang.robots.registry import connector
-from btlang.task.house import LABEL, furnished_layer, read_schedules
-from btlang.task.layer import TaskLayer
-from btlang.task.missions import MissionReader
+from btlang.task.execution.missions import MissionReader
+from btlang.task.layer import LABEL, TaskLayer, make_robot_layer, read_schedules
 from btlang.vocabulary.shipped import STANDARD_BODY
 
 WEEK = """
@@ -44,7 +43,7 @@ def robot(tmp_path: Path) -> Path:
 
 
 def up(robot: Path) -> TaskLayer:
-    return furnished_layer(connector(str(robot)), MissionReader(), folder=str(robot.parent / "store"), speed="max")
+    return make_robot_layer(connector(str(robot)), MissionReader(), folder=str(robot.parent / "store"), speed="max")
 
 
 def test_missions_schedules_and_rules_come_from_the_robot_file(robot: Path) -> None:

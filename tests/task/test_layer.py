@@ -18,11 +18,11 @@ import pytest
 from btlang.api import parse_tree
 from btlang.diagnostics.errors import MissionError
 from btlang.run.events import Event, Printed
-from btlang.task import executor
+from btlang.task.execution import executor
+from btlang.task.execution.missions import MissionReader
 from btlang.task.layer import TaskLayer
 from btlang.task.messages import Answer, Submit
-from btlang.task.missions import MissionReader
-from btlang.task.task import FINAL, MissionText, State, Task
+from btlang.task.store.records import FINAL, MissionText, Task, TaskState
 
 from .layers import ask, layer_in, refusal, submit, task, wait_for, wait_until
 
@@ -54,7 +54,7 @@ def test_the_most_urgent_comes_first_then_the_oldest(tmp_path: Path, place: str)
         ask(layer, "reorder", task=numbers[3], before=numbers[0])
         ask(layer, "resume")
         for number in numbers:
-            assert wait_for(layer, number, *FINAL).state is State.COMPLETED
+            assert wait_for(layer, number, *FINAL).state is TaskState.COMPLETED
     assert printer.texts == ["2", "5", "1", "4", "3", "0"]
 
 
@@ -64,12 +64,13 @@ def test_a_more_urgent_task_interrupts_and_the_other_goes_on(tmp_path: Path, pla
         slow = submit(layer, "print a then wait 20 s then print b then wait 10 s then print c")
         wait_until(lambda: printer.texts == ["a"])
         urgent = submit(layer, "print now", priority=1)
-        assert wait_for(layer, urgent, *FINAL).state is State.COMPLETED
-        assert wait_for(layer, slow, *FINAL).state is State.COMPLETED
+        assert wait_for(layer, urgent, *FINAL).state is TaskState.COMPLETED
+        assert wait_for(layer, slow, *FINAL).state is TaskState.COMPLETED
         states = [change.state for _, change in layer.store.changes(slow)]
     assert printer.texts == ["a", "now", "b", "c"]
     assert states == [
-        State.QUEUED, State.STANDBY, State.UNDERWAY, State.DELAYED, State.STANDBY, State.UNDERWAY, State.COMPLETED,
+        TaskState.QUEUED, TaskState.STANDBY, TaskState.UNDERWAY, TaskState.DELAYED,
+        TaskState.STANDBY, TaskState.UNDERWAY, TaskState.COMPLETED,
     ]  # fmt: skip
 
 
@@ -79,14 +80,14 @@ def test_an_interruption_ends_with_its_token(tmp_path: Path, place: str) -> None
         number = submit(layer, "print a then wait 100 s then print b")
         wait_until(lambda: printer.texts == ["a"])
         token = ask(layer, "interrupt", task=number, reason="a child is in the way")["token"]
-        assert task(layer, number).state is State.DELAYED
+        assert task(layer, number).state is TaskState.DELAYED
         [waiting] = ask(layer, "list")["tasks"]
         assert waiting["waits"] == "it was interrupted: a child is in the way"
         other = submit(layer, "print c")
-        assert wait_for(layer, other, *FINAL).state is State.COMPLETED
+        assert wait_for(layer, other, *FINAL).state is TaskState.COMPLETED
         assert "has another token" in refusal(layer, "resume", task=number, token="0")
         ask(layer, "resume", task=number, token=token)
-        assert wait_for(layer, number, *FINAL).state is State.COMPLETED
+        assert wait_for(layer, number, *FINAL).state is TaskState.COMPLETED
         assert "was already over: completed" in refusal(layer, "resume", task=number, token=token)
     assert printer.texts == ["a", "c", "b"]
 
@@ -96,13 +97,15 @@ CLEANS = """
 """
 
 
-@pytest.mark.parametrize(("act", "state", "cleaned"), [("cancel", State.CANCELED, 1), ("kill", State.KILLED, 0)])
-def test_a_cancel_cleans_up_and_a_kill_does_not(act: str, state: State, cleaned: int, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("act", "state", "cleaned"), [("cancel", TaskState.CANCELED, 1), ("kill", TaskState.KILLED, 0)]
+)
+def test_a_cancel_cleans_up_and_a_kill_does_not(act: str, state: TaskState, cleaned: int, tmp_path: Path) -> None:
     printer = Printer()
     tree = f'<root BTCPP_format="4"><BehaviorTree ID="Main">{CLEANS}</BehaviorTree></root>'
     with layer_in(tmp_path, sinks=printer.sinks) as layer:
         number = submit(layer, tree.replace("PrintText", layer.reader.read(MissionText("print hi")).tree.root.id))
-        wait_for(layer, number, State.UNDERWAY)
+        wait_for(layer, number, TaskState.UNDERWAY)
         ask(layer, act, task=number, reason="too late")
         ended = task(layer, number)
         assert (ended.state, ended.reason) == (state, "too late")
@@ -126,18 +129,18 @@ def test_an_emergency_stop_is_latched_also_by_the_next_process(tmp_path: Path) -
     printer = Printer()
     with layer_in(tmp_path, sinks=printer.sinks) as layer:
         driving = submit(layer, "go to the lab")
-        wait_for(layer, driving, State.UNDERWAY)
+        wait_for(layer, driving, TaskState.UNDERWAY)
         ask(layer, "emergency_stop", reason="smoke")
-        assert wait_for(layer, driving, *FINAL).state is State.KILLED
+        assert wait_for(layer, driving, *FINAL).state is TaskState.KILLED
         waiting = submit(layer, "print later")
         assert layer.session.robot.velocity == (0.0, 0.0)
         assert ask(layer, "list")["tasks"][0]["waits"] == "the robot is stopped: emergency stop by ann: smoke"
     with layer_in(tmp_path, sinks=printer.sinks) as layer:
         assert layer.emergency.is_latched
-        assert task(layer, waiting).state is State.QUEUED
+        assert task(layer, waiting).state is TaskState.QUEUED
         assert printer.texts == []
         ask(layer, "release")
-        assert wait_for(layer, waiting, *FINAL).state is State.COMPLETED
+        assert wait_for(layer, waiting, *FINAL).state is TaskState.COMPLETED
     with layer_in(tmp_path) as layer:
         assert not layer.emergency.is_latched
 
@@ -151,13 +154,13 @@ def test_house_rules_hold_during_and_between_missions(tmp_path: Path) -> None:
         number = submit(layer, "print a then wait 20 s then print b")
         wait_until(lambda: printer.texts == ["a"])
         power.set_level(50.0)
-        assert wait_for(layer, number, *FINAL).state is State.COMPLETED
+        assert wait_for(layer, number, *FINAL).state is TaskState.COMPLETED
         assert layer.session.robot.battery > 85
         wait_until(lambda: layer.executor.run is not None)
         power.set_level(50.0)
         wait_until(lambda: layer.executor.hindrance() == "a house rule acts")
         number = submit(layer, "print c")
-        assert wait_for(layer, number, *FINAL).state is State.COMPLETED
+        assert wait_for(layer, number, *FINAL).state is TaskState.COMPLETED
         assert layer.session.robot.battery > 85
     assert printer.texts == ["a", "b", "c"]
 
@@ -170,14 +173,14 @@ def test_a_house_rule_that_fails_stops_the_robot_until_somebody_helps(tmp_path: 
         number = submit(layer, "print a then wait 20 s then print b")
         wait_until(lambda: printer.texts == ["a"])
         layer.session.robot.power.set_level(50.0)
-        wait_for(layer, number, State.BLOCKED)
+        wait_for(layer, number, TaskState.BLOCKED)
         other = submit(layer, "print c")
         assert "a house rule failed" in ask(layer, "list")["tasks"][0]["waits"]
         assert "The robot needs help" in troubles[0]
         layer.session.robot.power.set_level(90.0)
         ask(layer, "resume")
-        assert wait_for(layer, number, *FINAL).state is State.COMPLETED
-        assert wait_for(layer, other, *FINAL).state is State.COMPLETED
+        assert wait_for(layer, number, *FINAL).state is TaskState.COMPLETED
+        assert wait_for(layer, other, *FINAL).state is TaskState.COMPLETED
     assert printer.texts == ["a", "b", "c"]
 
 
@@ -190,7 +193,7 @@ def test_a_mission_that_is_deleted_while_it_waits_is_still_done(tmp_path: Path) 
         ask(layer, "put", name="tour", text="print second")
         ask(layer, "delete", name="tour")
         ask(layer, "resume")
-        assert wait_for(layer, number, *FINAL).state is State.COMPLETED
+        assert wait_for(layer, number, *FINAL).state is TaskState.COMPLETED
         assert "isn't in the library" in refusal(layer, "submit", name="tour")
         revisions = ask(layer, "library", name="tour")["missions"]
         assert [each["text"] for each in revisions if not each["deleted"]] == ["print first", "print second"]
@@ -203,11 +206,11 @@ def test_a_cancel_in_the_moment_of_the_end_is_true_or_says_so(tmp_path: Path) ->
         answers = set()
         for _ in range(40):
             number = submit(layer, "wait 0.2 s")
-            wait_for(layer, number, State.UNDERWAY, *FINAL)
+            wait_for(layer, number, TaskState.UNDERWAY, *FINAL)
             answer = layer.handle({"command": "cancel", "task": number}, "ann")
             state = wait_for(layer, number, *FINAL).state
-            assert state in (State.CANCELED, State.COMPLETED)
-            assert answer.ok is (state is State.CANCELED), answer.text
+            assert state in (TaskState.CANCELED, TaskState.COMPLETED)
+            assert answer.ok is (state is TaskState.CANCELED), answer.text
             answers.add(state)
         assert answers
 
@@ -223,17 +226,17 @@ def test_a_cancel_of_a_task_that_is_about_to_begin_is_not_lost(tmp_path: Path) -
 
         with layer_in(tmp_path, sinks=sinks) as layer:
             number = submit(layer, "wait 100 s")
-            assert wait_for(layer, number, *FINAL).state is State.CANCELED
+            assert wait_for(layer, number, *FINAL).state is TaskState.CANCELED
             assert answers[0].result().text == f"Task {number} is canceled."
 
 
 @pytest.mark.parametrize(
-    ("restart", "state"), [("give up", State.ERROR), ("again", State.QUEUED), ("resume", State.QUEUED)]
+    ("restart", "state"), [("give up", TaskState.ERROR), ("again", TaskState.QUEUED), ("resume", TaskState.QUEUED)]
 )
-def test_a_robot_that_goes_down_ends_its_task_as_that_says(restart: str, state: State, tmp_path: Path) -> None:
+def test_a_robot_that_goes_down_ends_its_task_as_that_says(restart: str, state: TaskState, tmp_path: Path) -> None:
     with layer_in(tmp_path) as layer:
         number = submit(layer, "wait 24 h", restart=restart)
-        wait_for(layer, number, State.UNDERWAY)
+        wait_for(layer, number, TaskState.UNDERWAY)
         layer.halt()
         ended = task(layer, number)
         assert ended.state is state
@@ -272,7 +275,7 @@ def test_parameters_are_values_of_the_mission(tmp_path: Path) -> None:
             layer, 'repeat twice: increase visitors then print "{visitors} for {guide}"',
             values={"visitors": 3, "guide": "Ann"},
         )  # fmt: skip
-        assert wait_for(layer, number, *FINAL).state is State.COMPLETED
+        assert wait_for(layer, number, *FINAL).state is TaskState.COMPLETED
         assert "BT010" in refusal(layer, "submit", text="if visitors is 3, wave")
     assert printer.texts == ["4 for Ann", "5 for Ann"]
 
@@ -297,7 +300,7 @@ def test_a_store_that_refuses_is_not_asked_all_the_time(tmp_path: Path) -> None:
     troubles: list[str] = []
     with layer_in(tmp_path, trouble=troubles.append) as layer:
         number = submit(layer, "wait 5 s")
-        wait_for(layer, number, State.UNDERWAY)
+        wait_for(layer, number, TaskState.UNDERWAY)
         wait_until(lambda: layer.executor.run is not None)
         layer.store.close()
         wait_until(lambda: layer.executor.task is None)
@@ -320,7 +323,7 @@ def test_a_command_that_hangs_keeps_no_robot_up(tmp_path: Path, monkeypatch: pyt
     )
     layer.start()
     number = submit(layer, "hang")
-    wait_for(layer, number, State.UNDERWAY)
+    wait_for(layer, number, TaskState.UNDERWAY)
     assert not layer.halt()
     assert told == ["The mission doesn't end because a command hangs; the robot was stopped."]
     assert not layer.close()
@@ -332,7 +335,7 @@ def test_a_command_that_hangs_keeps_no_robot_up(tmp_path: Path, monkeypatch: pyt
 def test_any_name(tmp_path: Path, name: str) -> None:
     with layer_in(tmp_path) as layer:
         if "\0" not in name:
-            assert wait_for(layer, submit(layer, "wave", name=name), *FINAL).state is State.COMPLETED
+            assert wait_for(layer, submit(layer, "wave", name=name), *FINAL).state is TaskState.COMPLETED
         answer = layer.handle({"command": "put", "name": name, "text": "wave"}, "ann")
         assert answer.ok or answer.code in ("BT195", "BT198")
         assert "\x1b" not in answer.text
@@ -368,7 +371,7 @@ def test_recordings_that_cannot_be_written_are_told_once(tmp_path: Path) -> None
     troubles: list[str] = []
     with layer_in(tmp_path, recordings=str(tmp_path / "file"), trouble=troubles.append) as layer:
         for _ in range(2):
-            assert wait_for(layer, submit(layer, "wave"), *FINAL).state is State.COMPLETED
+            assert wait_for(layer, submit(layer, "wave"), *FINAL).state is TaskState.COMPLETED
     assert len(troubles) == 1
     assert "BT009" in troubles[0]
 
@@ -390,6 +393,6 @@ def test_a_task_says_what_it_needs_of_the_robot(tmp_path: Path) -> None:
 def test_status_between_two_commands_has_words(tmp_path: Path) -> None:
     with layer_in(tmp_path) as layer:
         number = submit(layer, "wait until the battery is below 1%")
-        wait_for(layer, number, State.UNDERWAY)
+        wait_for(layer, number, TaskState.UNDERWAY)
         wait_until(lambda: not ask(layer, "status")["running"])
         assert layer.handle({"command": "status"}, "ann").text == f"Task {number} is under way.\nNothing waits."

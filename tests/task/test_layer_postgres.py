@@ -9,9 +9,9 @@ from urllib.parse import urlsplit
 import pytest
 
 from btlang.run.events import Event, Printed
-from btlang.task.database import store_error
-from btlang.task.store import Store
-from btlang.task.task import FINAL, State, Task
+from btlang.task.store.database import store_error
+from btlang.task.store.records import FINAL, Task, TaskState
+from btlang.task.store.task_store import TaskStore
 
 from .layers import layer_in, refusal, submit, task, wait_for, wait_until
 from .places import connection, execute_at, new_place
@@ -39,7 +39,7 @@ class Server:
 
 @pytest.fixture
 def server(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Server]:
-    monkeypatch.setattr("btlang.task.executor._RETRY", 0.05)
+    monkeypatch.setattr("btlang.task.execution.executor._RETRY", 0.05)
     return Server(tmp_path)
 
 
@@ -63,16 +63,16 @@ def test_a_server_that_goes_away_during_a_task(restart: str, server: Server, tmp
         first = submit(layer, "print a then wait 10 s then print b then wait 1 s", restart=restart)
         second = submit(layer, "print c")
         wait_until(lambda: printer.texts == ["a"])
-        wait_for(layer, first, State.UNDERWAY)
+        wait_for(layer, first, TaskState.UNDERWAY)
         server.goes()
         assert "BT195" in refusal(layer, "submit", text="print d")
         wait_until(lambda: printer.texts == ["a", "b"] and layer.executor.task is None)
         assert troubles
         server.comes_back()
         for number in (first, second):
-            assert wait_for(layer, number, *FINAL).state is State.COMPLETED
+            assert wait_for(layer, number, *FINAL).state is TaskState.COMPLETED
         states = [change.state for _, change in layer.store.changes(first)]
-    assert states == [State.QUEUED, State.STANDBY, State.UNDERWAY, State.COMPLETED]
+    assert states == [TaskState.QUEUED, TaskState.STANDBY, TaskState.UNDERWAY, TaskState.COMPLETED]
     assert printer.texts == ["a", "b", "c"]
 
 
@@ -82,24 +82,24 @@ def test_a_server_that_goes_away_between_tasks(server: Server, tmp_path: Path) -
         assert "BT195" in refusal(layer, "submit", text="wave")
         server.comes_back()
         number = submit(layer, "wave")
-        assert wait_for(layer, number, *FINAL).state is State.COMPLETED
+        assert wait_for(layer, number, *FINAL).state is TaskState.COMPLETED
 
 
 def test_a_claim_of_which_nobody_was_told(tmp_path: Path, place: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """The connection is lost after the server has done it: the task isn't left behind."""
-    claim, lost = Store.claim, list[Task]()
+    claim, lost = TaskStore.claim, list[Task]()
 
-    def claimed(store: Store, now: float) -> Task | None:
+    def claimed(store: TaskStore, now: float) -> Task | None:
         found = claim(store, now)
         if found is not None and not lost:
             lost.append(found)
             raise store_error(store.place, "the connection is lost")
         return found
 
-    monkeypatch.setattr("btlang.task.executor._RETRY", 0.05)
-    monkeypatch.setattr(Store, "claim", claimed)
+    monkeypatch.setattr("btlang.task.execution.executor._RETRY", 0.05)
+    monkeypatch.setattr(TaskStore, "claim", claimed)
     with layer_in(tmp_path, store=place) as layer:
         number = submit(layer, "wave")
-        assert wait_for(layer, number, *FINAL).state is State.COMPLETED
+        assert wait_for(layer, number, *FINAL).state is TaskState.COMPLETED
         assert task(layer, number).attempts == 2
     assert lost

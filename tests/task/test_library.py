@@ -15,12 +15,12 @@ from btlang.api import parse_tree
 from btlang.robots.platforms import ROBOTS
 from btlang.robots.registry import Connector, body_of
 from btlang.robots.simulation.connection import Simulation
-from btlang.task.answers import outdated
+from btlang.task.commands.answers import outdated_error
+from btlang.task.commands.store_handlers import MOST_CHARACTERS, latest_text
+from btlang.task.execution.missions import MissionReader
 from btlang.task.layer import TaskLayer
-from btlang.task.library_handler import MOST_CHARACTERS, kept_text
 from btlang.task.messages import Put
-from btlang.task.missions import MissionReader
-from btlang.task.task import Kind, Revision
+from btlang.task.store.records import LibraryKind, Revision
 from btlang.text.source import Source
 from tests.conftest import matches_golden
 
@@ -30,7 +30,7 @@ HERE = Path(__file__).parent
 GARDEN = 'start = { x = 1, y = 1 }\nplaces = [{ name = "shed", x = 1, y = 2 }]\n'
 CART = 'name = "cart"\nradius = 0.25\n'
 TESTS = 'test "it waves":\n  run "first"\n  finally the mission succeeds\n'
-TEXTS = {Kind.MISSION: "wave", Kind.WORLD: GARDEN, Kind.ROBOT: CART, Kind.TEST: TESTS}
+TEXTS = {LibraryKind.MISSION: "wave", LibraryKind.WORLD: GARDEN, LibraryKind.ROBOT: CART, LibraryKind.TEST: TESTS}
 
 
 @pytest.fixture(scope="module")
@@ -39,8 +39,8 @@ def layer(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TaskLayer]:
         yield layer
 
 
-@pytest.mark.parametrize("kind", Kind)
-def test_a_text_from_its_first_revision_to_its_end(layer: TaskLayer, kind: Kind) -> None:
+@pytest.mark.parametrize("kind", LibraryKind)
+def test_a_text_from_its_first_revision_to_its_end(layer: TaskLayer, kind: LibraryKind) -> None:
     of = {"name": "first", "kind": kind}
     put = ask(layer, "put", **of, text=TEXTS[kind], revision=0)
     assert (put[kind]["number"], put[kind]["kind"], put[kind]["person"]) == (1, kind, "ann")
@@ -103,15 +103,15 @@ def test_refused_texts(layer: TaskLayer) -> None:
         assert not answer.ok, what
         told.append(f"{what}\n{answer.code} {answer.text}")
     assert time.monotonic() - began < 10.0
-    assert [ask(layer, "library", kind=kind) for kind in Kind] == [{f"{kind}s": []} for kind in Kind]
+    assert [ask(layer, "library", kind=kind) for kind in LibraryKind] == [{f"{kind}s": []} for kind in LibraryKind]
     matches_golden("\n\n".join(told) + "\n", HERE / "refused_texts.out")
 
 
 @pytest.mark.parametrize("name", ["..", "🤖", "Ünï cöde", "-c", "library:a", "a" * 200, "'; DROP TABLE revision; --"])
 def test_a_name_is_nothing_but_a_name(layer: TaskLayer, name: str) -> None:
-    for kind in Kind:
+    for kind in LibraryKind:
         ask(layer, "put", name=name, kind=kind, text=TEXTS[kind])
-        assert kept_text(layer.store, name, kind).text == TEXTS[kind]
+        assert latest_text(layer.store, name, kind).text == TEXTS[kind]
         ask(layer, "delete", name=name, kind=kind)
 
 
@@ -127,8 +127,8 @@ def test_the_longest_text_is_read_in_bounded_time(layer: TaskLayer) -> None:
 
 READS = """
 import sys
-from btlang.robots.bodies.body_file import read_body
-from btlang.robots.worlds.world_file import read_world
+from btlang.robots.body_file import read_body
+from btlang.robots.world_problem import read_world
 from btlang.text.source import Source
 
 world, robot = (Source(text, "text", roots=()) for text in sys.argv[1:])
@@ -186,7 +186,7 @@ def test_the_difference_of_long_texts_is_found_in_bounded_time() -> None:
     before = [str(number % 150) for number in range(50_000)]
     after = [*before[:10], *(str(number * 7 % 150) for number in range(50_000)), *before[10:]]
     began = time.monotonic()
-    answer = outdated(Put("a", "\n".join(after), 1), "mission", Revision("a", 2, "\n".join(before), "ada", 1.0))
+    answer = outdated_error(Put("a", "\n".join(after), 1), "mission", Revision("a", 2, "\n".join(before), "ada", 1.0))
     assert time.monotonic() - began < 5.0
     lines = answer.data["diff"].splitlines()
     assert lines[:2] == ["--- latest", "+++ yours"]
@@ -200,5 +200,5 @@ def test_the_difference_of_long_texts_is_found_in_bounded_time() -> None:
 def test_a_mission_is_read_in_the_newest_world(layer: TaskLayer) -> None:
     ask(layer, "put", name="garden", kind="world", text=GARDEN)
     ask(layer, "put", name="garden", kind="world", text=GARDEN.replace("shed", "pond"))
-    assert parse_tree("go to the pond", world=kept_text(layer.store, "garden", Kind.WORLD))
+    assert parse_tree("go to the pond", world=latest_text(layer.store, "garden", LibraryKind.WORLD))
     ask(layer, "delete", name="garden", kind="world")

@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
-from btlang.task.manager import Manager
-from btlang.task.recurrence import read_rule
-from btlang.task.store import Store, open_store
-from btlang.task.task import Missed, MissionText, Overlap, Restart, Schedule, State, Task
+from btlang.task.execution.manager import TaskManager
+from btlang.task.schedule.recurrence import read_rule
+from btlang.task.store.records import Missed, MissionText, Overlap, Restart, Schedule, Task, TaskState
+from btlang.task.store.task_store import TaskStore, open_store
 
 DAY = 86_400.0
 NINE = datetime(2026, 3, 2, 9, tzinfo=UTC).timestamp()
@@ -20,26 +20,26 @@ RULE = "every day at 9:00"
 
 
 @pytest.fixture
-def store(tmp_path: Path) -> Iterator[Store]:
+def store(tmp_path: Path) -> Iterator[TaskStore]:
     with open_store(str(tmp_path / "tasks.db")) as opened:
         yield opened
 
 
-def add_schedule(store: Store, now: float = NINE - 3600, **fields: Any) -> Schedule:
+def add_schedule(store: TaskStore, now: float = NINE - 3600, **fields: Any) -> Schedule:
     first = read_rule(RULE, "UTC").next(now)
     return store.add_schedule(Schedule(0, RULE, "UTC", MissionText("wave"), "ann", now, first, **fields))
 
 
-def states(store: Store) -> list[State]:
+def states(store: TaskStore) -> list[TaskState]:
     return [task.state for task in sorted(store.tasks(), key=lambda task: task.id)]
 
 
-def reasons(store: Store) -> list[str]:
+def reasons(store: TaskStore) -> list[str]:
     return [task.reason for task in sorted(store.tasks(), key=lambda task: task.id)]
 
 
-def test_a_task_is_made_when_its_time_has_come(store: Store) -> None:
-    manager, schedule = Manager(store), add_schedule(store, priority=3, labels=("tour",), within=600.0)
+def test_a_task_is_made_when_its_time_has_come(store: TaskStore) -> None:
+    manager, schedule = TaskManager(store), add_schedule(store, priority=3, labels=("tour",), within=600.0)
     manager.refresh(NINE - 1)
     assert store.tasks() == []
     assert manager.next_time(NINE - 1) == NINE
@@ -51,13 +51,13 @@ def test_a_task_is_made_when_its_time_has_come(store: Store) -> None:
     assert len(store.tasks()) == 1
     assert manager.next_time(NINE + 3) == NINE + 600
     manager.refresh(NINE + 601)
-    assert states(store) == [State.SKIPPED]
+    assert states(store) == [TaskState.SKIPPED]
     assert reasons(store)[0].startswith("it couldn't begin by ")
     assert manager.next_time(NINE + 601) == NINE + DAY
 
 
-def test_a_clock_that_is_set_back_brings_no_time_twice(store: Store) -> None:
-    manager = Manager(store)
+def test_a_clock_that_is_set_back_brings_no_time_twice(store: TaskStore) -> None:
+    manager = TaskManager(store)
     add_schedule(store)
     for now in (NINE + 1, NINE - 3600, NINE + 1, NINE + 5, NINE + DAY + 1):
         manager.refresh(now)
@@ -67,21 +67,21 @@ def test_a_clock_that_is_set_back_brings_no_time_twice(store: Store) -> None:
 @pytest.mark.parametrize(
     ("overlap", "expected"),
     [
-        (Overlap.SKIP, [State.QUEUED, State.SKIPPED]),
-        (Overlap.QUEUE, [State.QUEUED, State.QUEUED]),
-        (Overlap.REPLACE, [State.SKIPPED, State.QUEUED]),
+        (Overlap.SKIP, [TaskState.QUEUED, TaskState.SKIPPED]),
+        (Overlap.QUEUE, [TaskState.QUEUED, TaskState.QUEUED]),
+        (Overlap.REPLACE, [TaskState.SKIPPED, TaskState.QUEUED]),
     ],
 )
-def test_the_task_before_is_not_over(store: Store, overlap: Overlap, expected: list[State]) -> None:
-    manager = Manager(store)
+def test_the_task_before_is_not_over(store: TaskStore, overlap: Overlap, expected: list[TaskState]) -> None:
+    manager = TaskManager(store)
     add_schedule(store, overlap=overlap)
     manager.refresh(NINE)
     manager.refresh(NINE + DAY)
     assert states(store) == expected
 
 
-def test_one_under_way_is_named_where_another_replaces_it(store: Store) -> None:
-    manager = Manager(store)
+def test_one_under_way_is_named_where_another_replaces_it(store: TaskStore) -> None:
+    manager = TaskManager(store)
     add_schedule(store, overlap=Overlap.REPLACE)
     manager.refresh(NINE)
     claimed = manager.claim(NINE)
@@ -92,35 +92,35 @@ def test_one_under_way_is_named_where_another_replaces_it(store: Store) -> None:
 @pytest.mark.parametrize(
     ("missed", "expected"),
     [
-        (Missed.SKIP, [State.SKIPPED] * 3),
-        (Missed.ONCE, [State.SKIPPED, State.SKIPPED, State.QUEUED]),
-        (Missed.ALL, [State.QUEUED] * 3),
+        (Missed.SKIP, [TaskState.SKIPPED] * 3),
+        (Missed.ONCE, [TaskState.SKIPPED, TaskState.SKIPPED, TaskState.QUEUED]),
+        (Missed.ALL, [TaskState.QUEUED] * 3),
     ],
 )
-def test_times_that_were_missed(store: Store, missed: Missed, expected: list[State]) -> None:
-    manager = Manager(store)
+def test_times_that_were_missed(store: TaskStore, missed: Missed, expected: list[TaskState]) -> None:
+    manager = TaskManager(store)
     add_schedule(store, missed=missed, overlap=Overlap.QUEUE)
     manager.refresh(NINE + 2 * DAY + 3600)
     assert states(store) == expected
-    assert all("was missed" in task.reason for task in store.tasks() if task.state is State.SKIPPED)
+    assert all("was missed" in task.reason for task in store.tasks() if task.state is TaskState.SKIPPED)
     assert manager.next_time(NINE + 2 * DAY + 3600) == NINE + 3 * DAY
 
 
 @pytest.mark.parametrize(
     ("restart", "saved", "state", "kept"),
     [
-        (Restart.GIVE_UP, '{"now": 1}', State.ERROR, '{"now": 1}'),
-        (Restart.AGAIN, '{"now": 1}', State.QUEUED, ""),
-        (Restart.RESUME, '{"now": 1}', State.QUEUED, '{"now": 1}'),
-        (Restart.RESUME, '{"ended": true}', State.COMPLETED, '{"ended": true}'),
-        (Restart.RESUME, '{"ended": false}', State.FAILED, '{"ended": false}'),
+        (Restart.GIVE_UP, '{"now": 1}', TaskState.ERROR, '{"now": 1}'),
+        (Restart.AGAIN, '{"now": 1}', TaskState.QUEUED, ""),
+        (Restart.RESUME, '{"now": 1}', TaskState.QUEUED, '{"now": 1}'),
+        (Restart.RESUME, '{"ended": true}', TaskState.COMPLETED, '{"ended": true}'),
+        (Restart.RESUME, '{"ended": false}', TaskState.FAILED, '{"ended": false}'),
     ],
 )
-def test_what_was_under_way(store: Store, restart: Restart, saved: str, state: State, kept: str) -> None:
-    manager = Manager(store)
+def test_what_was_under_way(store: TaskStore, restart: Restart, saved: str, state: TaskState, kept: str) -> None:
+    manager = TaskManager(store)
     task = store.add(Task(0, MissionText("wave"), "ann", NINE, restart=restart))
     assert manager.claim(NINE) is not None
-    store.change(task.id, {State.STANDBY}, State.UNDERWAY, time=NINE)
+    store.change(task.id, {TaskState.STANDBY}, TaskState.UNDERWAY, time=NINE)
     store.amend(task.id, saved=saved)
     [after] = manager.recover(NINE + 60)
     assert (after.state, after.saved) == (state, kept)
@@ -129,16 +129,16 @@ def test_what_was_under_way(store: Store, restart: Restart, saved: str, state: S
 
 
 @pytest.mark.parametrize("restart", list(Restart))
-def test_one_that_had_not_yet_begun_to_go_on_stays_in_the_queue(store: Store, restart: Restart) -> None:
-    manager = Manager(store)
-    store.add(Task(0, MissionText("wave"), "ann", NINE, State.DELAYED, restart=restart, saved='{"now": 1}'))
+def test_one_that_had_not_yet_begun_to_go_on_stays_in_the_queue(store: TaskStore, restart: Restart) -> None:
+    manager = TaskManager(store)
+    store.add(Task(0, MissionText("wave"), "ann", NINE, TaskState.DELAYED, restart=restart, saved='{"now": 1}'))
     assert manager.claim(NINE) is not None
     [after] = manager.recover(NINE + 60)
-    assert (after.state, after.saved) == (State.QUEUED, '{"now": 1}')
+    assert (after.state, after.saved) == (TaskState.QUEUED, '{"now": 1}')
 
 
-def test_a_task_under_way_counts_with_the_priority_that_it_has_now(store: Store) -> None:
-    manager = Manager(store)
+def test_a_task_under_way_counts_with_the_priority_that_it_has_now(store: TaskStore) -> None:
+    manager = TaskManager(store)
     task = store.add(Task(0, MissionText("wave"), "ann", NINE, priority=2))
     claimed = manager.claim(NINE)
     assert claimed is not None
@@ -148,10 +148,10 @@ def test_a_task_under_way_counts_with_the_priority_that_it_has_now(store: Store)
     assert manager.is_more_urgent(claimed, NINE)
 
 
-@pytest.mark.parametrize("state", [State.QUEUED, State.DELAYED])
-def test_a_deadline_is_for_the_beginning_alone(store: Store, state: State) -> None:
+@pytest.mark.parametrize("state", [TaskState.QUEUED, TaskState.DELAYED])
+def test_a_deadline_is_for_the_beginning_alone(store: TaskStore, state: TaskState) -> None:
     """Who was interrupted, or cut off, may go on after it."""
-    manager = Manager(store)
+    manager = TaskManager(store)
     task = store.add(Task(0, MissionText("wave"), "ann", NINE, state, deadline=NINE + 60, started=NINE))
     assert manager.next_time(NINE) is None
     manager.refresh(NINE + 61)
@@ -159,8 +159,8 @@ def test_a_deadline_is_for_the_beginning_alone(store: Store, state: State) -> No
     assert (claimed and claimed.id) == task.id
 
 
-def test_why_a_task_waits(store: Store) -> None:
-    manager = Manager(store)
+def test_why_a_task_waits(store: TaskStore) -> None:
+    manager = TaskManager(store)
     first = store.add(Task(0, MissionText("wave"), "ann", NINE))
     second = store.add(Task(0, MissionText("wave"), "ann", NINE))
     later = store.add(Task(0, MissionText("wave"), "ann", NINE, earliest=NINE + 60))
@@ -173,22 +173,22 @@ def test_why_a_task_waits(store: Store) -> None:
 @pytest.mark.parametrize(
     ("state", "fields", "why"),
     [
-        (State.COMPLETED, {"reason": "done"}, ""),
-        (State.BLOCKED, {"reason": "no hands", "earliest": NINE + 60}, "no hands"),
-        (State.DELAYED, {"token": "t", "reason": "by ann"}, "it was interrupted: by ann"),
-        (State.DELAYED, {"token": "t"}, "it was interrupted"),
-        (State.DELAYED, {"reason": "cut off"}, "the robot is paused"),
-        (State.QUEUED, {"token": "t", "reason": "resumed"}, "the robot is paused"),
-        (State.QUEUED, {"earliest": NINE}, "the robot is paused"),
+        (TaskState.COMPLETED, {"reason": "done"}, ""),
+        (TaskState.BLOCKED, {"reason": "no hands", "earliest": NINE + 60}, "no hands"),
+        (TaskState.DELAYED, {"token": "t", "reason": "by ann"}, "it was interrupted: by ann"),
+        (TaskState.DELAYED, {"token": "t"}, "it was interrupted"),
+        (TaskState.DELAYED, {"reason": "cut off"}, "the robot is paused"),
+        (TaskState.QUEUED, {"token": "t", "reason": "resumed"}, "the robot is paused"),
+        (TaskState.QUEUED, {"earliest": NINE}, "the robot is paused"),
     ],
 )
-def test_why_a_task_of_this_state_waits(store: Store, state: State, fields: dict[str, Any], why: str) -> None:
+def test_why_a_task_of_this_state_waits(store: TaskStore, state: TaskState, fields: dict[str, Any], why: str) -> None:
     task = store.add(Task(0, MissionText("wave"), "ann", NINE, state, **fields))
-    assert Manager(store).why_waiting(task, NINE, "the robot is paused") == why
+    assert TaskManager(store).why_waiting(task, NINE, "the robot is paused") == why
 
 
-def test_which_task_is_first(store: Store) -> None:
-    manager = Manager(store)
+def test_which_task_is_first(store: TaskStore) -> None:
+    manager = TaskManager(store)
     assert manager.first(NINE) == 0
     waiting = store.add(Task(0, MissionText("wave"), "ann", NINE))
     assert manager.why_waiting(waiting, NINE, first=0) == "it's next"
@@ -199,8 +199,8 @@ def test_which_task_is_first(store: Store) -> None:
     assert manager.why_waiting(urgent, NINE) == f"task {waiting.id} comes first"
 
 
-def test_nothing_is_more_urgent_than_an_equal(store: Store) -> None:
-    manager = Manager(store)
+def test_nothing_is_more_urgent_than_an_equal(store: TaskStore) -> None:
+    manager = TaskManager(store)
     store.add(Task(0, MissionText("wave"), "ann", NINE, priority=1))
     assert (claimed := manager.claim(NINE)) is not None
     assert manager.is_more_urgent(claimed, NINE) is False
@@ -209,78 +209,78 @@ def test_nothing_is_more_urgent_than_an_equal(store: Store) -> None:
     assert manager.is_more_urgent(claimed.replace(id=99, priority=0), NINE) is True
 
 
-def test_an_emergency_stop_kills_what_was_under_way_alone(store: Store) -> None:
-    manager = Manager(store)
+def test_an_emergency_stop_kills_what_was_under_way_alone(store: TaskStore) -> None:
+    manager = TaskManager(store)
     task = store.add(Task(0, MissionText("wave"), "ann", NINE))
     assert manager.claim(NINE) is not None
     [again] = manager.recover(NINE + 1, "the stop was pressed")
-    assert again.state is State.QUEUED  # it hadn't begun
+    assert again.state is TaskState.QUEUED  # it hadn't begun
     assert manager.claim(NINE + 2) is not None
-    store.change(task.id, {State.STANDBY}, State.UNDERWAY, time=NINE)
+    store.change(task.id, {TaskState.STANDBY}, TaskState.UNDERWAY, time=NINE)
     [killed] = manager.recover(NINE + 3, "the stop was pressed")
-    assert (killed.state, killed.reason, killed.ended) == (State.KILLED, "the stop was pressed", NINE + 3)
+    assert (killed.state, killed.reason, killed.ended) == (TaskState.KILLED, "the stop was pressed", NINE + 3)
 
 
-def test_why_a_task_could_not_begin(store: Store) -> None:
-    manager = Manager(store)
-    for fields in ({}, {"state": State.BLOCKED, "reason": "no hands"}):
+def test_why_a_task_could_not_begin(store: TaskStore) -> None:
+    manager = TaskManager(store)
+    for fields in ({}, {"state": TaskState.BLOCKED, "reason": "no hands"}):
         store.add(Task(0, MissionText("wave"), "ann", NINE, deadline=NINE + 60, **fields))  # type: ignore[arg-type]
     manager.refresh(NINE + 61)
     assert [reason.rpartition(": ")[2] for reason in reasons(store)] == ["no time", "no hands"]
 
 
 @pytest.mark.parametrize(("seconds", "missed"), [(60.0, False), (60.1, True)])
-def test_one_minute_late_is_in_time(store: Store, seconds: float, missed: bool) -> None:
+def test_one_minute_late_is_in_time(store: TaskStore, seconds: float, missed: bool) -> None:
     add_schedule(store, missed=Missed.SKIP)
-    Manager(store).refresh(NINE + seconds)
-    assert states(store) == [State.SKIPPED if missed else State.QUEUED]
+    TaskManager(store).refresh(NINE + seconds)
+    assert states(store) == [TaskState.SKIPPED if missed else TaskState.QUEUED]
 
 
-def test_one_that_is_late_overlaps_one_in_time(store: Store) -> None:
+def test_one_that_is_late_overlaps_one_in_time(store: TaskStore) -> None:
     """What comes a minute late waits for the one before like what comes in time; what is made up for later doesn't."""
-    manager = Manager(store)
+    manager = TaskManager(store)
     add_schedule(store, missed=Missed.ALL, overlap=Overlap.SKIP)
     manager.refresh(NINE + DAY + 60)
-    assert states(store) == [State.QUEUED, State.SKIPPED]
+    assert states(store) == [TaskState.QUEUED, TaskState.SKIPPED]
 
 
-def test_a_clock_that_is_set_back_deletes_again(store: Store) -> None:
-    manager = Manager(store, keeps=DAY)
+def test_a_clock_that_is_set_back_deletes_again(store: TaskStore) -> None:
+    manager = TaskManager(store, keeps=DAY)
     manager.tidy(NINE)
-    over = store.add(Task(0, MissionText("wave"), "ann", NINE, State.COMPLETED, ended=NINE - 9 * DAY))
+    over = store.add(Task(0, MissionText("wave"), "ann", NINE, TaskState.COMPLETED, ended=NINE - 9 * DAY))
     manager.tidy(NINE)
     assert store.task(over.id) is not None
     manager.tidy(NINE - DAY)
     assert store.task(over.id) is None
 
 
-def test_old_tasks_are_deleted_once_a_day(store: Store) -> None:
-    manager = Manager(store, keeps=10 * DAY)
-    over = store.add(Task(0, MissionText("wave"), "ann", NINE - 20 * DAY, State.COMPLETED, ended=NINE - 11 * DAY))
+def test_old_tasks_are_deleted_once_a_day(store: TaskStore) -> None:
+    manager = TaskManager(store, keeps=10 * DAY)
+    over = store.add(Task(0, MissionText("wave"), "ann", NINE - 20 * DAY, TaskState.COMPLETED, ended=NINE - 11 * DAY))
     waiting = store.add(Task(0, MissionText("wave"), "ann", NINE - 20 * DAY))
-    recent = store.add(Task(0, MissionText("wave"), "ann", NINE, State.COMPLETED, ended=NINE - 9.5 * DAY))
+    recent = store.add(Task(0, MissionText("wave"), "ann", NINE, TaskState.COMPLETED, ended=NINE - 9.5 * DAY))
     manager.tidy(NINE)
     assert [store.task(each.id) is None for each in (over, waiting, recent)] == [True, False, False]
     manager.tidy(NINE + 0.9 * DAY)
     assert store.task(recent.id) is not None
     manager.tidy(NINE + DAY)
     assert (store.task(recent.id), store.task(waiting.id)) == (None, waiting)
-    Manager(store).tidy(NINE + 999 * DAY)
+    TaskManager(store).tidy(NINE + 999 * DAY)
     assert store.changes()
 
 
-def test_all_times_that_were_missed_are_made_up_for(store: Store) -> None:
+def test_all_times_that_were_missed_are_made_up_for(store: TaskStore) -> None:
     """Also where a task of a schedule doesn't wait for the one before: these don't overlap."""
-    manager = Manager(store)
+    manager = TaskManager(store)
     add_schedule(store, missed=Missed.ALL, overlap=Overlap.SKIP)
     manager.refresh(NINE + 3 * DAY + 3600)
-    assert states(store) == [State.QUEUED] * 4
+    assert states(store) == [TaskState.QUEUED] * 4
     manager.refresh(NINE + 4 * DAY)
-    assert states(store) == [*[State.QUEUED] * 4, State.SKIPPED]
+    assert states(store) == [*[TaskState.QUEUED] * 4, TaskState.SKIPPED]
 
 
-def test_who_waits_for_long_comes_before_a_stream_of_others(store: Store) -> None:
-    manager = Manager(store)
+def test_who_waits_for_long_comes_before_a_stream_of_others(store: TaskStore) -> None:
+    manager = TaskManager(store)
     patient = store.add(Task(0, MissionText("wave"), "ann", NINE))
     never = store.add(Task(0, MissionText("wave"), "ann", NINE, priority=-20))
     turns = []
@@ -293,11 +293,11 @@ def test_who_waits_for_long_comes_before_a_stream_of_others(store: Store) -> Non
             turns.append(minute)
     assert turns == [50]  # a task of ten minutes counts as one of priority
     assert (never_now := store.task(never.id)) is not None
-    assert (never_now.state, never_now.priority, never_now.bonus) == (State.QUEUED, -20, 10)
+    assert (never_now.state, never_now.priority, never_now.bonus) == (TaskState.QUEUED, -20, 10)
 
 
-def test_who_has_waited_interrupts_nobody(store: Store) -> None:
-    manager = Manager(store)
+def test_who_has_waited_interrupts_nobody(store: TaskStore) -> None:
+    manager = TaskManager(store)
     under_way = store.add(Task(0, MissionText("wave"), "ann", NINE, priority=3))
     assert (claimed := manager.claim(NINE)) is not None
     store.add(Task(0, MissionText("nod"), "ann", NINE))
@@ -306,7 +306,7 @@ def test_who_has_waited_interrupts_nobody(store: Store) -> None:
     assert not manager.is_more_urgent(claimed, NINE + DAY)
 
 
-def test_a_task_comes_right_before_another_one(store: Store) -> None:
+def test_a_task_comes_right_before_another_one(store: TaskStore) -> None:
     def order() -> list[int]:
         return [task.id for task in store.tasks()]
 

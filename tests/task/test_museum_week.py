@@ -11,9 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from btlang.task.report import report
-from btlang.task.store import Store, open_store
-from btlang.task.task import FINAL, MissionText, State, Task
+from btlang.task.commands.answers import write_report
+from btlang.task.store.records import FINAL, MissionText, Task, TaskState
+from btlang.task.store.task_store import TaskStore, open_store
 from tests.profiles import amount
 
 from .museum import DAY, HOUR
@@ -27,7 +27,7 @@ WISHES = (
 )
 
 
-def ask(store: Store, draw: random.Random, day: float) -> None:
+def ask(store: TaskStore, draw: random.Random, day: float) -> None:
     """Five visitors of a day."""
     for _ in range(5):
         at = day + draw.uniform(10, 17) * HOUR
@@ -49,7 +49,7 @@ def test_the_report_has_every_tour_and_why_one_was_not_given(tmp_path: Path) -> 
         begins = cut + 600
     live(tmp_path, begins, ends, "end")
     with open_store(str(tmp_path / "tasks.db")) as store:
-        lines = list(report(store, MONDAY, ends))
+        lines = list(write_report(store, MONDAY, ends))
         tours = store.tasks(label="tour")
         rest = [task for task in store.tasks() if "tour" not in task.labels]
     print("\n".join(lines))
@@ -59,10 +59,10 @@ def test_the_report_has_every_tour_and_why_one_was_not_given(tmp_path: Path) -> 
     assert len(rest) == 5 * days
     for task in (*tours, *rest):
         assert task.state in FINAL or (task.earliest or 0) > ends
-        assert task.reason or task.state not in FINAL or task.state is State.COMPLETED
+        assert task.reason or task.state not in FINAL or task.state is TaskState.COMPLETED
         told = any(f"task {task.id}, " in line for line in lines)
-        assert told is (task.state is not State.COMPLETED and (task.due or task.created) < ends)
-    assert sum(tour.state is State.COMPLETED for tour in tours) >= 2 * days
+        assert told is (task.state is not TaskState.COMPLETED and (task.due or task.created) < ends)
+    assert sum(tour.state is TaskState.COMPLETED for tour in tours) >= 2 * days
     assert any("there is no free way to the kitchen" in tour.reason for tour in tours)
 
 

@@ -15,9 +15,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from btlang.diagnostics.errors import MissionError
-from btlang.task.days import Days
-from btlang.task.recurrence import Recurrence, read_moment, read_past_moment, read_rule
-from btlang.task.rule import Rule
+from btlang.task.schedule.calendar import Days, Rule
+from btlang.task.schedule.recurrence import Recurrence, read_moment, read_past_moment, read_rule
 from tests.profiles import searches
 from tests.task.wall_clock import CHANGES, DAY, RULES, clock, is_on
 

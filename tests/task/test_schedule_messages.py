@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from btlang.diagnostics.errors import MissionError
-from btlang.task.recurrence import read_moment, read_past_moment, read_rule
+from btlang.task.schedule.recurrence import read_moment, read_past_moment, read_rule
 from tests.conftest import matches_golden
 from tests.profiles import searches
 
@@ -146,7 +146,7 @@ def test_unknown_zones(name: str, advice: str) -> None:
 
 
 def test_a_computer_without_zones(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("btlang.task.time_zones.available_timezones", set)
+    monkeypatch.setattr("btlang.task.schedule.calendar.available_timezones", set)
     with pytest.raises(MissionError, match="pip install tzdata"):
         read_rule("every day at 9:00", "Europe/Nowhere")
 

@@ -14,12 +14,12 @@ from pathlib import Path
 import pytest
 
 from btlang.diagnostics.errors import MissionError
-from btlang.task import migrations
-from btlang.task.backup import restore_backup
-from btlang.task.database import StoreError
-from btlang.task.sqlite import Sqlite
-from btlang.task.store import Store, open_store
-from btlang.task.task import Act, Change, Kind, Revision, State
+from btlang.task.store import migrations
+from btlang.task.store.backup import restore_backup
+from btlang.task.store.database import StoreError
+from btlang.task.store.records import Act, LibraryKind, Revision, TaskChange, TaskState
+from btlang.task.store.sqlite import Sqlite
+from btlang.task.store.task_store import TaskStore, open_store
 from tests.task.places import a_task, closed, execute_at, program
 from tests.task.test_store import FULL, PLAN, reason
 
@@ -90,7 +90,7 @@ def test_a_damaged_file(tmp_path: Path, damage: str) -> None:
         assert len(store.tasks()) == 40
 
 
-def test_other_tables(store: Store, place: str) -> None:
+def test_other_tables(store: TaskStore, place: str) -> None:
     store.close()
     execute_at(place, "ALTER TABLE act ADD COLUMN colour TEXT")
     assert why_not(place) == "its table 'act' has other columns than it should."
@@ -98,7 +98,7 @@ def test_other_tables(store: Store, place: str) -> None:
     assert why_not(place) == "its table 'act' is missing."
 
 
-def test_no_version(store: Store, place: str) -> None:
+def test_no_version(store: TaskStore, place: str) -> None:
     store.add(a_task())
     store.close()
     execute_at(place, "UPDATE version SET number = 0")
@@ -107,7 +107,7 @@ def test_no_version(store: Store, place: str) -> None:
     assert why_not(place) == "it has tables, but it isn't a store of btlang."
 
 
-def test_a_newer_store_is_left_alone(store: Store, place: str) -> None:
+def test_a_newer_store_is_left_alone(store: TaskStore, place: str) -> None:
     store.add(a_task())
     store.close()
     known = len(migrations.MIGRATIONS)
@@ -129,8 +129,8 @@ def test_version_1_is_read(place: str) -> None:
     with open_store(place) as store:
         assert store.tasks() == [a_task().replace(id=2), FULL.replace(id=1)]
         assert store.changes() == [
-            (1, Change(1, 1.25, State.BLOCKED, "submitted", "ada")),
-            (2, Change(2, 100.0, State.QUEUED, "", "ada")),
+            (1, TaskChange(1, 1.25, TaskState.BLOCKED, "submitted", "ada")),
+            (2, TaskChange(2, 100.0, TaskState.QUEUED, "", "ada")),
         ]
         assert store.schedules() == [PLAN.replace(id=1)]
         assert store.revisions("tour") == [
@@ -167,7 +167,7 @@ def test_an_older_store_is_migrated(place: str, monkeypatch: pytest.MonkeyPatch,
             assert len(store.tasks()) == 2
     before = Path(old).read_bytes()
     restored = str(tmp_path / "restored.db")
-    monkeypatch.setattr("btlang.task.backup.MIGRATIONS", migrations.MIGRATIONS)
+    monkeypatch.setattr("btlang.task.store.backup.MIGRATIONS", migrations.MIGRATIONS)
     restore_backup(old, restored)
     assert Path(old).read_bytes() == before
     with open_store(restored) as store:
@@ -191,13 +191,13 @@ def test_a_migration_that_fails_changes_nothing(place: str, monkeypatch: pytest.
         assert len(store.tasks()) == 2
 
 
-def test_a_backup_is_one_moment_of_a_store_in_use(store: Store, tmp_path: Path) -> None:
+def test_a_backup_is_one_moment_of_a_store_in_use(store: TaskStore, tmp_path: Path) -> None:
     ended = threading.Event()
 
     def work() -> None:
         while not ended.is_set():
             task = store.add(a_task())
-            store.change(task.id, [State.QUEUED], State.FAILED, time=1.0)
+            store.change(task.id, [TaskState.QUEUED], TaskState.FAILED, time=1.0)
 
     writer = threading.Thread(target=work)
     writer.start()
@@ -223,7 +223,7 @@ def test_a_backup_is_one_moment_of_a_store_in_use(store: Store, tmp_path: Path) 
     assert sizes[-1] < len(store.changes())
 
 
-def test_a_backup_can_be_read_where_nothing_can_be_written(store: Store, tmp_path: Path) -> None:
+def test_a_backup_can_be_read_where_nothing_can_be_written(store: TaskStore, tmp_path: Path) -> None:
     store.put_text("tour", "wave", "ada", 1.0)
     backup = tmp_path / "backup"
     store.backup(str(backup))
@@ -236,18 +236,20 @@ def test_a_backup_can_be_read_where_nothing_can_be_written(store: Store, tmp_pat
         assert copied.texts() == store.texts()
 
 
-def test_a_backup_has_every_revision(store: Store, tmp_path: Path) -> None:
+def test_a_backup_has_every_revision(store: TaskStore, tmp_path: Path) -> None:
     for number in range(1100):  # more than are copied at once
         store.put_text("tour", f"wait {number} s", "ada", 1.0)
-    store.put_text("tour", "start = { x = 1, y = 1 }", "ada", 1.0, kind=Kind.WORLD)
+    store.put_text("tour", "start = { x = 1, y = 1 }", "ada", 1.0, kind=LibraryKind.WORLD)
     backup, restored = str(tmp_path / "backup"), str(tmp_path / "restored.db")
     store.backup(backup)
     restore_backup(backup, restored)
     with open_store(restored) as copied:
-        assert [copied.revisions("tour", kind) for kind in Kind] == [store.revisions("tour", kind) for kind in Kind]
+        assert [copied.revisions("tour", kind) for kind in LibraryKind] == [
+            store.revisions("tour", kind) for kind in LibraryKind
+        ]
 
 
-def test_a_backup_overwrites_nothing(store: Store, place: str, tmp_path: Path) -> None:
+def test_a_backup_overwrites_nothing(store: TaskStore, place: str, tmp_path: Path) -> None:
     store.add(a_task())
     taken = tmp_path / "taken"
     taken.write_text("mine", encoding="utf-8")
@@ -265,7 +267,7 @@ def test_a_backup_overwrites_nothing(store: Store, place: str, tmp_path: Path) -
     assert len(store.tasks()) == 1
 
 
-def test_what_is_no_backup_is_not_restored(store: Store, place: str, tmp_path: Path) -> None:
+def test_what_is_no_backup_is_not_restored(store: TaskStore, place: str, tmp_path: Path) -> None:
     text, empty = tmp_path / "text", tmp_path / "empty"
     text.write_text("wave\n" * 200, encoding="utf-8")
     empty.touch()
@@ -304,7 +306,7 @@ def test_a_full_database(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
 
 
 def test_a_store_that_is_locked_for_too_long(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("btlang.task.sqlite.PATIENCE", 0.05)
+    monkeypatch.setattr("btlang.task.store.sqlite.PATIENCE", 0.05)
     place = str(tmp_path / "tasks.db")
     with open_store(place) as store, closed(sqlite3.connect(place, isolation_level=None)) as other:
         task = store.add(a_task())

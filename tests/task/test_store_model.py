@@ -11,9 +11,20 @@ from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, rule, run_state_machine_as_test
 
-from btlang.task.backup import restore_backup
-from btlang.task.store import open_store
-from btlang.task.task import FINAL, Act, Change, Kind, MissionText, Restart, Revision, Schedule, State, Task
+from btlang.task.store.backup import restore_backup
+from btlang.task.store.records import (
+    FINAL,
+    Act,
+    LibraryKind,
+    MissionText,
+    Restart,
+    Revision,
+    Schedule,
+    Task,
+    TaskChange,
+    TaskState,
+)
+from btlang.task.store.task_store import open_store
 from tests.profiles import amount
 from tests.task.places import new_place
 
@@ -22,9 +33,9 @@ SOMETIMES = st.none() | TIMES
 TEXTS = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"), max_size=6)
 LABELS = st.sampled_from(["lab", "la", 'a"b', "x, y"])
 IDS = st.integers(1, 5)
-STATES = st.sets(st.sampled_from(State), min_size=3) | st.just(set(State)) | st.sets(st.sampled_from(State))
+STATES = st.sets(st.sampled_from(TaskState), min_size=3) | st.just(set(TaskState)) | st.sets(st.sampled_from(TaskState))
 NAMES = st.sampled_from(["tour", "Tour", "zoo"])
-KINDS = st.sampled_from([Kind.MISSION, Kind.WORLD])
+KINDS = st.sampled_from([LibraryKind.MISSION, LibraryKind.WORLD])
 FIELDS = st.fixed_dictionaries(
     {},
     optional={
@@ -60,14 +71,14 @@ class Work(RuleBasedStateMachine):
         self.place = new_place(self.kind, Path(self.folder.name))
         self.store = open_store(self.place)
         self.tasks: dict[int, Task] = {}
-        self.changes: dict[int, Change] = {}
+        self.changes: dict[int, TaskChange] = {}
         self.schedules: dict[int, Schedule] = {}
         self.revisions: list[Revision] = []
         self.acts: list[Act] = []
         self.settings: dict[str, str] = {}
         self.counts = {"task": 0, "change": 0, "schedule": 0}
         for some in fields:
-            self.add_task(some, State.QUEUED, "", {}, 0.0)
+            self.add_task(some, TaskState.QUEUED, "", {}, 0.0)
 
     def teardown(self) -> None:
         if hasattr(self, "store"):
@@ -77,28 +88,36 @@ class Work(RuleBasedStateMachine):
     def note(self, task: Task, time: float, cause: str, person: str) -> None:
         self.tasks[task.id] = task
         self.counts["change"] += 1
-        self.changes[self.counts["change"]] = Change(task.id, time, task.state, cause, person)
+        self.changes[self.counts["change"]] = TaskChange(task.id, time, task.state, cause, person)
 
     def ready(self, task: Task, now: float) -> bool:
-        if task.state != State.QUEUED and (task.state != State.DELAYED or task.token):
+        if task.state != TaskState.QUEUED and (task.state != TaskState.DELAYED or task.token):
             return False
         in_time = task.started is not None or task.deadline is None or task.deadline >= now
         return (task.earliest or 0) <= now and in_time
 
-    @rule(fields=FIELDS, state=st.just(State.QUEUED) | st.sampled_from(State), text=TEXTS, values=VALUES, time=TIMES)
-    def add(self, fields: dict[str, Any], state: State, text: str, values: dict[str, Any], time: float) -> None:
+    @rule(
+        fields=FIELDS,
+        state=st.just(TaskState.QUEUED) | st.sampled_from(TaskState),
+        text=TEXTS,
+        values=VALUES,
+        time=TIMES,
+    )
+    def add(self, fields: dict[str, Any], state: TaskState, text: str, values: dict[str, Any], time: float) -> None:
         self.add_task(fields, state, text, values, time)
 
-    def add_task(self, fields: dict[str, Any], state: State, text: str, values: dict[str, Any], time: float) -> None:
+    def add_task(
+        self, fields: dict[str, Any], state: TaskState, text: str, values: dict[str, Any], time: float
+    ) -> None:
         task = Task(0, MissionText(text, values=values), text, time, state, **fields)
         self.counts["task"] += 1
         expected = task.replace(id=self.counts["task"])
         assert self.store.add(task, text) == expected
         self.note(expected, time, text, text)
 
-    @rule(id=IDS, before=STATES, state=st.sampled_from(State), time=TIMES, cause=TEXTS, fields=FIELDS)
+    @rule(id=IDS, before=STATES, state=st.sampled_from(TaskState), time=TIMES, cause=TEXTS, fields=FIELDS)
     def change(
-        self, id: int, before: set[State], state: State, time: float, cause: str, fields: dict[str, Any]
+        self, id: int, before: set[TaskState], state: TaskState, time: float, cause: str, fields: dict[str, Any]
     ) -> None:
         task = self.tasks.get(id)
         expected = None
@@ -122,13 +141,13 @@ class Work(RuleBasedStateMachine):
         expected = None
         if ready:
             attempts = ready[0].attempts + 1
-            expected = ready[0].replace(state=State.STANDBY, attempts=attempts, reason="its turn")
+            expected = ready[0].replace(state=TaskState.STANDBY, attempts=attempts, reason="its turn")
             self.note(expected, now, "its turn", "")
         assert self.store.claim(now) == expected
 
     @rule(now=TIMES)
     def wait(self, now: float) -> None:
-        queued = [task for task in sorted(self.tasks.values(), key=turn) if task.state is State.QUEUED]
+        queued = [task for task in sorted(self.tasks.values(), key=turn) if task.state is TaskState.QUEUED]
         unbegun = [task for task in queued if task.started is None]
         overdue = [task for task in unbegun if task.deadline is not None and task.deadline < now]
         assert self.store.overdue(now) == overdue
@@ -142,7 +161,7 @@ class Work(RuleBasedStateMachine):
         states=st.none() | STATES, label=st.just("") | LABELS, schedule=st.integers(0, 2), newest=st.booleans(),
         limit=st.none() | st.integers(0, 3),
     )  # fmt: skip
-    def ask(self, states: set[State] | None, label: str, schedule: int, newest: bool, limit: int | None) -> None:
+    def ask(self, states: set[TaskState] | None, label: str, schedule: int, newest: bool, limit: int | None) -> None:
         found = [
             task
             for task in sorted(self.tasks.values(), key=(lambda task: -task.id) if newest else turn)
@@ -182,12 +201,12 @@ class Work(RuleBasedStateMachine):
         due = [plan for plan in self.schedules.values() if plan.next is not None and plan.next <= now]
         assert self.store.due_schedules(now) == sorted(due, key=lambda plan: (plan.next, plan.id))
 
-    def known(self, name: str, kind: Kind) -> list[Revision]:
+    def known(self, name: str, kind: LibraryKind) -> list[Revision]:
         """The revisions of a text."""
         return [revision for revision in self.revisions if (revision.name, revision.kind) == (name, kind)]
 
     @rule(name=NAMES, text=st.sampled_from(["wave", "nod"]), time=TIMES, kind=KINDS)
-    def put(self, name: str, text: str, time: float, kind: Kind) -> None:
+    def put(self, name: str, text: str, time: float, kind: LibraryKind) -> None:
         known = self.known(name, kind)
         if not known or known[-1].deleted or known[-1].text != text:
             known.append(Revision(name, len(known) + 1, text, "ada", time, kind=kind))
@@ -195,7 +214,7 @@ class Work(RuleBasedStateMachine):
         assert self.store.put_text(name, text, "ada", time, kind=kind) == known[-1]
 
     @rule(name=NAMES, time=TIMES, kind=KINDS)
-    def delete(self, name: str, time: float, kind: Kind) -> None:
+    def delete(self, name: str, time: float, kind: LibraryKind) -> None:
         known = self.known(name, kind)
         there = bool(known) and not known[-1].deleted
         if there:
@@ -203,7 +222,7 @@ class Work(RuleBasedStateMachine):
         assert self.store.delete_text(name, "bo", time, kind) == there
 
     @rule(name=NAMES, number=st.integers(0, 4), kind=KINDS)
-    def look_up(self, name: str, number: int, kind: Kind) -> None:
+    def look_up(self, name: str, number: int, kind: LibraryKind) -> None:
         known = self.known(name, kind)
         found = [revision for revision in known if number in (0, revision.number)]
         assert self.store.text(name, number, kind) == (None if not found or found[-1].deleted else found[-1])
@@ -244,7 +263,7 @@ class Work(RuleBasedStateMachine):
         assert self.store.tasks() == sorted(self.tasks.values(), key=turn)
         assert dict(self.store.changes()) == self.changes
         assert self.store.schedules() == list(self.schedules.values())
-        for kind in Kind:
+        for kind in LibraryKind:
             latest = {revision.name: revision for revision in self.revisions if revision.kind is kind}
             assert self.store.texts(kind) == [latest[name] for name in sorted(latest) if not latest[name].deleted]
         assert self.store.acts() == self.acts[::-1]

@@ -11,10 +11,10 @@ from pathlib import Path
 import pytest
 
 from btlang.diagnostics.errors import MissionError
-from btlang.task.database import StoreError
-from btlang.task.postgres import Postgres
-from btlang.task.store import Store, open_store
-from btlang.task.task import State
+from btlang.task.store.database import StoreError
+from btlang.task.store.postgres import Postgres
+from btlang.task.store.records import TaskState
+from btlang.task.store.task_store import TaskStore, open_store
 from tests.task.places import a_task, connection, execute_at, new_place, server
 from tests.task.test_store import reason
 
@@ -25,7 +25,7 @@ def place(tmp_path: Path) -> str:
 
 
 @pytest.fixture
-def store(place: str) -> Iterator[Store]:
+def store(place: str) -> Iterator[TaskStore]:
     with open_store(place) as opened:
         yield opened
 
@@ -39,7 +39,7 @@ def cut() -> None:
     )
 
 
-def test_a_lost_connection_comes_back(store: Store) -> None:
+def test_a_lost_connection_comes_back(store: TaskStore) -> None:
     task = store.add(a_task())
     cut()
     assert store.task(task.id) == task
@@ -47,7 +47,7 @@ def test_a_lost_connection_comes_back(store: Store) -> None:
     assert store.add(a_task()).id == 2
 
 
-def test_a_connection_that_is_lost_in_between_undoes_all(store: Store) -> None:
+def test_a_connection_that_is_lost_in_between_undoes_all(store: TaskStore) -> None:
     def interrupted() -> None:
         with store._database.transaction() as execute:
             execute("INSERT INTO setting (name, value) VALUES ('a', 'b')")
@@ -60,7 +60,7 @@ def test_a_connection_that_is_lost_in_between_undoes_all(store: Store) -> None:
     assert (store.setting("a"), store.setting("c")) == ("", "")
 
 
-def test_an_ownership_ends_with_its_connection(store: Store, place: str) -> None:
+def test_an_ownership_ends_with_its_connection(store: TaskStore, place: str) -> None:
     first = store.add(a_task())
     store.own()
     with open_store(place) as other:
@@ -78,7 +78,7 @@ def test_an_ownership_ends_with_its_connection(store: Store, place: str) -> None
         other.own()
 
 
-def test_stores_in_two_schemas_have_two_owners(store: Store, tmp_path: Path) -> None:
+def test_stores_in_two_schemas_have_two_owners(store: TaskStore, tmp_path: Path) -> None:
     with open_store(new_place("postgres", tmp_path)) as other:
         store.own()
         other.own()
@@ -90,7 +90,7 @@ def test_stores_in_two_schemas_have_two_owners(store: Store, tmp_path: Path) -> 
     ("code", "told"),
     [("53100", "the disk is full."), ("42501", "the user may not do this."), ("22000", "colour is unknown.")],
 )
-def test_what_the_server_refuses(store: Store, place: str, code: str, told: str) -> None:
+def test_what_the_server_refuses(store: TaskStore, place: str, code: str, told: str) -> None:
     store.add(a_task())
     execute_at(place, (
         "CREATE FUNCTION refuse() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN"
@@ -102,12 +102,12 @@ def test_what_the_server_refuses(store: Store, place: str, code: str, told: str)
             call()
         assert reason(error) == told
     execute_at(place, "DROP TRIGGER refuse ON change")
-    assert [task.state for task in store.tasks()] == [State.QUEUED]
+    assert [task.state for task in store.tasks()] == [TaskState.QUEUED]
     assert store.add(a_task()).id == 2
 
 
 def test_a_store_that_is_locked_for_too_long(place: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("btlang.task.postgres.PATIENCE", 0.1)
+    monkeypatch.setattr("btlang.task.store.postgres.PATIENCE", 0.1)
     with open_store(place) as store, open_store(place) as other:
         task = store.add(a_task())
         with other._database.transaction() as execute:
@@ -118,7 +118,7 @@ def test_a_store_that_is_locked_for_too_long(place: str, monkeypatch: pytest.Mon
         assert store.amend(task.id, priority=1) == task.replace(priority=1)
 
 
-def test_a_task_that_is_locked_is_not_overlooked(store: Store) -> None:
+def test_a_task_that_is_locked_is_not_overlooked(store: TaskStore) -> None:
     """Another one is claimed meanwhile; where there's no other one, `claim` waits."""
     first, second = store.add(a_task()), store.add(a_task())
     with ThreadPoolExecutor(1) as thread:

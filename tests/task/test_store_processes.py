@@ -16,8 +16,8 @@ from pathlib import Path
 import pytest
 
 from btlang.diagnostics.errors import MissionError
-from btlang.task.store import Store, open_store
-from btlang.task.task import Act, State
+from btlang.task.store.records import Act, TaskState
+from btlang.task.store.task_store import TaskStore, open_store
 from tests.profiles import amount
 from tests.task.places import a_task, program
 
@@ -37,7 +37,7 @@ def line(started: subprocess.Popen[str]) -> str:
     return started.stdout.readline().strip()
 
 
-def test_no_task_is_claimed_twice(store: Store, place: str) -> None:
+def test_no_task_is_claimed_twice(store: TaskStore, place: str) -> None:
     """By threads of this process and other processes."""
     wanted = {store.add(a_task(earliest=float(at % 3), priority=at % 2)).id for at in range(MANY)}
     others = [program("claim", place, stdin=subprocess.PIPE) for _ in range(4)]
@@ -55,11 +55,11 @@ def test_no_task_is_claimed_twice(store: Store, place: str) -> None:
         list(threads.map(claim, range(8)))
     claimed += [int(printed) for other in others for printed in lines(other)]
     assert sorted(claimed) == sorted(wanted)
-    assert {task.state for task in store.tasks()} == {State.STANDBY}
+    assert {task.state for task in store.tasks()} == {TaskState.STANDBY}
     assert {task.attempts for task in store.tasks()} == {1}
 
 
-def test_threads_change_and_read(store: Store) -> None:
+def test_threads_change_and_read(store: TaskStore) -> None:
     """What one of them reads is never half of what another one writes, and nobody who reads on misses a change."""
     ended = threading.Event()
     seen: list[int] = []
@@ -67,7 +67,7 @@ def test_threads_change_and_read(store: Store) -> None:
     def work(_: int) -> None:
         for _ in range(15):
             task = store.add(a_task())
-            store.change(task.id, [State.QUEUED], State.SKIPPED, time=1.0, ended=1.0)
+            store.change(task.id, [TaskState.QUEUED], TaskState.SKIPPED, time=1.0, ended=1.0)
 
     def read() -> None:
         while True:
@@ -89,7 +89,7 @@ def test_threads_change_and_read(store: Store) -> None:
 
 
 @pytest.mark.long
-def test_threads_do_everything(store: Store) -> None:
+def test_threads_do_everything(store: TaskStore) -> None:
     """Few tasks for many threads: none of them waits for one that waits for it."""
 
     newest = [store.add(a_task()).id]
@@ -104,9 +104,9 @@ def test_threads_do_everything(store: Store) -> None:
                 case 1 | 2:
                     store.claim(200.0)
                 case 3:
-                    store.change(one, [State.STANDBY], State.QUEUED, time=1.0)
+                    store.change(one, [TaskState.STANDBY], TaskState.QUEUED, time=1.0)
                 case 4:
-                    store.change(one, list(State), State.FAILED, time=1.0)
+                    store.change(one, list(TaskState), TaskState.FAILED, time=1.0)
                 case 5:
                     store.amend(one, priority=draw.randrange(9))
                 case 6:
@@ -120,13 +120,13 @@ def test_threads_do_everything(store: Store) -> None:
 
     with ThreadPoolExecutor(8) as threads:
         list(threads.map(work, range(8)))
-    last: dict[int, State] = {}
+    last: dict[int, TaskState] = {}
     for _, change in store.changes():
         last[change.task] = change.state
     assert last == {task.id: task.state for task in store.tasks()}
 
 
-def test_threads_put_texts(store: Store) -> None:
+def test_threads_put_texts(store: TaskStore) -> None:
     with ThreadPoolExecutor(6) as threads:
         put = list(threads.map(lambda at: store.put_text("tour", f"wait {at} s", "ada", 1.0).number, range(12)))
     assert sorted(put) == list(range(1, 13))
@@ -164,7 +164,7 @@ def test_a_kill_loses_nothing_that_was_accepted(place: str) -> None:
 
 
 @pytest.mark.parametrize("how", ["own", "own_and_fork"])
-def test_an_ownership_ends_with_its_process(store: Store, place: str, how: str) -> None:
+def test_an_ownership_ends_with_its_process(store: TaskStore, place: str, how: str) -> None:
     """Also where a child process of the owner goes on."""
     owner = program(how, place)
     said = line(owner)
@@ -185,7 +185,7 @@ def test_an_ownership_ends_with_its_process(store: Store, place: str, how: str) 
         lines(owner)
 
 
-def own_soon(store: Store) -> None:
+def own_soon(store: TaskStore) -> None:
     """A server needs a moment until it notices the end of a process."""
     for _ in range(200):
         try:
@@ -196,7 +196,7 @@ def own_soon(store: Store) -> None:
 
 
 @pytest.mark.filterwarnings("ignore:.*fork:DeprecationWarning")
-def test_a_child_process_has_connections_of_its_own(store: Store) -> None:
+def test_a_child_process_has_connections_of_its_own(store: TaskStore) -> None:
     task = store.add(a_task())
     store.own()
     [connection] = store._database._idle
@@ -204,7 +204,7 @@ def test_a_child_process_has_connections_of_its_own(store: Store) -> None:
     if not child:
         done = 1
         try:
-            store.change(task.id, [State.QUEUED], State.FAILED, time=1.0)
+            store.change(task.id, [TaskState.QUEUED], TaskState.FAILED, time=1.0)
             try:
                 store.own()
             except MissionError:  # its parent is the owner
@@ -213,7 +213,7 @@ def test_a_child_process_has_connections_of_its_own(store: Store) -> None:
             os._exit(done)
     assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
     store.own()
-    assert [found.state for found in store.tasks()] == [State.FAILED]
+    assert [found.state for found in store.tasks()] == [TaskState.FAILED]
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="how large a file may grow is limited as on Linux")

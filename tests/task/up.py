@@ -14,13 +14,12 @@ import pytest
 
 from btlang.api import parse_tree
 from btlang.diagnostics.errors import MissionError
-from btlang.house_rules import house_rules
 from btlang.session import Session
-from btlang.task.house import read_schedules
-from btlang.task.missions import MissionReader
-from btlang.task.paths import socket_path
-from btlang.task.store import open_store
-from btlang.task.task import MissionText, State
+from btlang.task.commands.client import socket_path
+from btlang.task.execution.missions import MissionReader, read_house_rules
+from btlang.task.layer import read_schedules
+from btlang.task.store.records import MissionText, TaskState
+from btlang.task.store.task_store import open_store
 from tests.ros.declared import Peer
 from tests.ros.domains import free_domain
 from tests.task.layers import robot_up, submit, wait_for, wait_until
@@ -56,7 +55,7 @@ def robot_for(code: str, patch: pytest.MonkeyPatch) -> Iterator[None]:
                 wait_until(lambda: (state := layer.executor.robot_state) is not None and state.battery == 0)
             if code == "BT192":
                 number = submit(layer, "wait 20 h")
-                wait_for(layer, number, State.UNDERWAY)
+                wait_for(layer, number, TaskState.UNDERWAY)
                 run = layer.executor.run
                 assert run is not None
                 run.call(lambda: run.nodes.blackboard.set("seen", object()))
@@ -137,7 +136,7 @@ def read_week(path: str) -> str:
 def read_rules(path: str) -> str:
     """What is wrong with a file of house rules, "" for nothing."""
     try:
-        house_rules(MissionReader().read(MissionText("", file=path)))
+        read_house_rules(MissionReader().read(MissionText("", file=path)))
     except MissionError as error:
         return str(error)
     return ""

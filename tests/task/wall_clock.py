@@ -9,8 +9,7 @@ from zoneinfo import ZoneInfo
 
 from hypothesis import strategies as st
 
-from btlang.task.days import LAST, Days
-from btlang.task.rule import Rule
+from btlang.task.schedule.calendar import LAST, Days, Rule
 from btlang.text.time_of_day import EVERY_DAY
 
 MINUTE, DAY = timedelta(minutes=1), timedelta(days=1)

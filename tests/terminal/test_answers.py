@@ -47,6 +47,6 @@ def test_wrong_answers_are_told(text: str) -> None:
 
 def test_answers_go_by_words_of_the_question() -> None:
     given = WorldInput({"tea": ["no", "yes"], "*": ["pardon?"]})
-    assert [given._scripted(question) for question in ("tea?", "coffee?", "more tea?", "tea again?")] == [
+    assert [given._take_answer(question) for question in ("tea?", "coffee?", "more tea?", "tea again?")] == [
         "no", "pardon?", "yes", "yes",
     ]  # fmt: skip

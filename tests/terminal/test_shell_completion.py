@@ -11,11 +11,12 @@ from pathlib import Path
 import pytest
 
 from btlang.cli import main
-from btlang.cli_options import verb_parsers
-from btlang.shell_completion import SHELLS
+from btlang.cli.completion import SHELLS
+from btlang.cli.parser import verb_parser
+from btlang.cli.verbs import VERBS as TABLE
 from tests.terminal.emulator import Terminal
 
-VERBS = list(verb_parsers())
+VERBS = list(TABLE)
 OFFERS = [
     ("btc ch", ["check"]),
     ("btc help expl", ["explain"]),
@@ -49,9 +50,9 @@ def script(request: pytest.FixtureRequest, tmp_path: Path, capsys: pytest.Captur
 def test_every_verb_and_option_is_in_every_script(script: tuple[str, Path]) -> None:
     shell, path = script
     text = path.read_text(encoding="utf-8")
-    for verb, (_, parser) in verb_parsers().items():
+    for verb in VERBS:
         assert verb in text
-        for action in parser._actions:
+        for action in verb_parser(TABLE[verb])._actions:
             names = [name.lstrip("-") if shell == "fish" else name for name in action.option_strings]
             assert [name for name in names if name not in text] == []
 

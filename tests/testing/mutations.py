@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btlang.api import Mission
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.node import Node
 

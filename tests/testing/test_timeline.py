@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from btlang.run.controls import Controls
 from btlang.run.events import PeriodPassed
 from btlang.testing.observations import Observations
-from btlang.testing.script import Script
-from btlang.testing.test import ALWAYS, BEFORE, FINALLY, FOR, HOLDS, WITHIN, Step
+from btlang.testing.runner import Script
+from btlang.testing.test import ALWAYS, BEFORE, FINALLY, FOR, HOLDS, WITHIN, ScriptStep
 from btlang.tree.node import Node, Tree
 from tests.profiles import searches
 from tests.testing.files import mission_test
@@ -24,7 +24,7 @@ FIRST, SECOND = Tree(Node("First")), Tree(Node("Second"))
 class Told(Script):
     """A script whose conditions are true as two lists say, a value for each period."""
 
-    def __init__(self, steps: Sequence[Step], first: Sequence[bool], second: Sequence[bool]) -> None:
+    def __init__(self, steps: Sequence[ScriptStep], first: Sequence[bool], second: Sequence[bool]) -> None:
         test = mission_test("wave").replace(steps=tuple(steps))
         super().__init__(test, Observations({}), None, Controls(), None)  # type: ignore[arg-type]
         self.histories = {id(FIRST): first, id(SECOND): second}
@@ -40,7 +40,7 @@ class Told(Script):
         return self.broken is None
 
 
-def expected(step: Step, since: int, first: Sequence[bool], second: Sequence[bool]) -> int | None:
+def expected(step: ScriptStep, since: int, first: Sequence[bool], second: Sequence[bool]) -> int | None:
     """The period in which a line is over that begins in one, None where it does not hold."""
     last = len(first) - 1
     due = since + round(step.seconds / PERIOD)
@@ -56,12 +56,14 @@ def expected(step: Step, since: int, first: Sequence[bool], second: Sequence[boo
 
 bools = st.lists(st.booleans(), min_size=12, max_size=12)
 kinds = st.sampled_from([HOLDS, WITHIN, FOR, BEFORE])
-lines = st.builds(lambda kind, periods: Step(kind, SPAN, FIRST, periods * PERIOD, SECOND), kinds, st.integers(0, 5))
+lines = st.builds(
+    lambda kind, periods: ScriptStep(kind, SPAN, FIRST, periods * PERIOD, SECOND), kinds, st.integers(0, 5)
+)
 
 
 @searches(100, 20000)
 @given(st.lists(lines, min_size=1, max_size=4), bools, bools)
-def test_lines_hold_as_the_formulas_say(steps: list[Step], first: list[bool], second: list[bool]) -> None:
+def test_lines_hold_as_the_formulas_say(steps: list[ScriptStep], first: list[bool], second: list[bool]) -> None:
     at: int | None = 0
     for step in steps:
         seconds = 0.0 if step.kind == BEFORE else step.seconds
@@ -74,8 +76,8 @@ def test_lines_hold_as_the_formulas_say(steps: list[Step], first: list[bool], se
 
 @searches(40, 5000)
 @given(lines, bools, bools)
-def test_what_holds_throughout(step: Step, first: list[bool], second: list[bool]) -> None:
-    always, final = Step(ALWAYS, SPAN, SECOND), Step(FINALLY, SPAN, SECOND)
+def test_what_holds_throughout(step: ScriptStep, first: list[bool], second: list[bool]) -> None:
+    always, final = ScriptStep(ALWAYS, SPAN, SECOND), ScriptStep(FINALLY, SPAN, SECOND)
     assert Told([always], first, second).play() == all(second)
     assert Told([final], first, second).play() == second[-1]
     step = step.replace(seconds=0.0) if step.kind == BEFORE else step

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from btlang.diagnostics.errors import MissionError
-from btlang.mission_vocabulary import world_vocabulary
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.text.source import Source
 from btlang.text.words import split
 from btlang.vocabulary import cache

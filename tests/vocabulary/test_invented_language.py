@@ -15,9 +15,9 @@ import pytest
 
 from btlang.diagnostics.reading import read_source
 from btlang.frontends.mission.reader import read_mission
-from btlang.mission_vocabulary import world_vocabulary
 from btlang.passes import compile_mission
 from btlang.printer.mission import english
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.robots.worlds.world_file import world_names
 from btlang.text.source import Source
 from btlang.tree.node import Node, Tree

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from btlang.mission_vocabulary import world_vocabulary
+from btlang.robots.mission_vocabulary import world_vocabulary
 
 
 def test_nothing_can_be_set() -> None:

@@ -9,7 +9,7 @@ import pytest
 import btlang
 from btlang.api import parse_tree
 from btlang.engine.status import FAILURE, SKIPPED, SUCCESS
-from btlang.mission_vocabulary import world_vocabulary
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.vocabulary.items import items
 from btlang.vocabulary.language_tables import EXPLAINED, ROLES
 from btlang.vocabulary.listing import help_on, listing, overview

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from btlang.mission_vocabulary import world_vocabulary
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.vocabulary.value_type import format_number
 
 VOCABULARY = world_vocabulary()

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from btlang.task.missions import MissionReader
-from btlang.task.task import State
+from btlang.task.execution.missions import MissionReader
+from btlang.task.store.records import TaskState
 from hatch_build import build_page
 from tests.task.layers import layer_in, submit, wait_for
 from tests.web.packages import ROOT, WEB
@@ -42,7 +42,7 @@ def fail_yesterday(folder: Path, world: str) -> None:
     """A robot with this folder did a mission yesterday, which failed and was recorded."""
     recordings, begins = folder / "recordings", time.time() - 86_400
     with layer_in(folder, reader=MissionReader((), world), recordings=str(recordings), begins=begins) as layer:
-        wait_for(layer, submit(layer, YESTERDAY), State.FAILED)
+        wait_for(layer, submit(layer, YESTERDAY), TaskState.FAILED)
     for recording in recordings.iterdir():
         os.utime(recording, (begins, begins))
 

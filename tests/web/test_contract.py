@@ -13,7 +13,7 @@ import pytest
 
 from btlang.engine.status import IDLE, NAMES
 from btlang.run.events import LOGGED, Event, StatusesChanged
-from btlang.run.json_log import as_json, described
+from btlang.run.logs import as_json, describe_event
 from tests.server.test_robot_view import CASES, UNKNOWN, slowly, view_of
 from tests.web.packages import WEB, installed, node
 
@@ -24,10 +24,10 @@ VALUES = {"string": "cup", "integer": 3, "number": 2.5, "boolean": True, "object
 
 def examples(kind: type[Event]) -> Iterator[dict[str, Any]]:
     """An event with a value for each field, and one that has null or the default wherever that may be."""
-    fields = {name: schema for name, schema in described(kind)["properties"].items() if name != "event"}
+    fields = {name: schema for name, schema in describe_event(kind)["properties"].items() if name != "event"}
     common = {"t": 1.0, "run": "r", "number": 0, "wall": 2.0, "event": kind.tag}
     yield common | {name: VALUES[kinds(schema)[0]] for name, schema in fields.items()}
-    required = {name: fields[name] for name in described(kind)["required"] if name != "event"}
+    required = {name: fields[name] for name in describe_event(kind)["required"] if name != "event"}
     yield common | {
         name: None if "null" in kinds(schema) else VALUES[kinds(schema)[0]] for name, schema in required.items()
     }
@@ -90,8 +90,8 @@ def test_every_event_has_words(made: dict[str, Any], language: str) -> None:
 @pytest.mark.parametrize("language", TEXTS)
 def test_texts_of_events_name_fields(language: str) -> None:
     """A text with a field that may be null, or left out as its default, is only for events that have it."""
-    fields = {kind.tag: described(kind) for kind in LOGGED_KINDS}
-    statuses = {name: described(LOGGED[0]) for name in NAMES[:IDLE]}
+    fields = {kind.tag: describe_event(kind) for kind in LOGGED_KINDS}
+    statuses = {name: describe_event(LOGGED[0]) for name in NAMES[:IDLE]}
     texts = {key: text for key, text in TEXTS[language].items() if key.startswith("log.")}
     assert {key.split(".")[1] for key in texts} == fields.keys() | statuses.keys()
     for key, text in texts.items():
@@ -113,7 +113,7 @@ def test_a_field_may_be_a_number_or_none() -> None:
         distance: float | None = None
         names: tuple[str, ...] = ()
 
-    described_fields = described(Measured)["properties"]
+    described_fields = describe_event(Measured)["properties"]
     assert described_fields["distance"] == {"type": ["number", "null"], "default": None}
     assert described_fields["names"] == {"type": "array", "items": {"type": "string"}, "default": ()}
     assert as_json(Measured(0.0, "r", 0, 0.0, 1.23456789), str)["distance"] == 1.234568

@@ -17,7 +17,7 @@ from btlang.frontends.btcpp.file import SPOKEN_NAME, XmlFile
 from btlang.frontends.btcpp.reader import MAIN, read_xml
 from btlang.frontends.btcpp.scan import Note, scanned
 from btlang.frontends.btcpp.spelling import KINDS, MAIN_TREE, SPELL, TO_4, is_editors, is_xml_name
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import NOWHERE, Source
 from btlang.tree.alignment import Alignment
 from btlang.tree.catalogue import CATALOGUE, SUBTREE

@@ -11,7 +11,7 @@ from btlang.backends.btcpp.markup import Markers
 from btlang.frontends.btcpp.fragments import Notes
 from btlang.frontends.btcpp.layout import Layout
 from btlang.frontends.btcpp.scan import Document, Note
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False

@@ -15,7 +15,7 @@ from btlang.engine.instance import blackboard_key
 from btlang.engine.script.tokens import ScriptError, Tokens
 from btlang.engine.script.values import literal
 from btlang.passes.scripts import script
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.tree.catalogue import CATALOGUE, SEQUENCE, SUBTREE
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import children_first, fold

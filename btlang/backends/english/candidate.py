@@ -12,7 +12,7 @@ from btlang.backends.english.type_inference import Around
 from btlang.passes.lower import lower_one
 from btlang.passes.lowered import Lowered
 from btlang.passes.scope import Scope
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.tree import ast
 from btlang.tree.node import Node
 from btlang.vocabulary.references import keys_in, plain

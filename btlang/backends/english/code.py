@@ -9,7 +9,7 @@ import re
 from collections.abc import Mapping, Sequence
 
 from btlang.passes.scripts import OPERATORS
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.tree.node import Node
 from btlang.vocabulary.references import choice_by, plain
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from btlang.frontends.btcpp.origin import Markup, TreeOrigin, XmlOrigin
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.tree.node import Node, Tree
 
 _OPEN, _CLOSE = "<!--", "-->"

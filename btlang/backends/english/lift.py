@@ -18,7 +18,7 @@ from btlang.passes.scope import Scope
 from btlang.printer.phrase import leaf_words
 from btlang.printer.printer import Printer
 from btlang.printer.sentence import PRINTERS
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import NOWHERE, Source
 from btlang.text.words import split
 from btlang.tree import ast

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Container, Iterator
 
 from btlang.backends.english.code import Computed, computed
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.tree.catalogue import SUBTREE
 from btlang.tree.node import Node, Tree
 

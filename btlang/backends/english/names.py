@@ -8,7 +8,7 @@ from btlang.backends.english.loops import Loop, find_loops
 from btlang.backends.english.type_inference import Around, TypeInference, parameters
 from btlang.frontends.mission.symbols.definitions import find_definitions
 from btlang.frontends.mission.symbols.phrases import Phrases
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import Source
 from btlang.text.words import split
 from btlang.tree import ast

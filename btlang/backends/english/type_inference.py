@@ -13,7 +13,7 @@ from btlang.frontends.mission.symbols.given import untyped
 from btlang.frontends.mission.symbols.prefixes import find_prefixes
 from btlang.printer.naming import spelt
 from btlang.printer.phrase import value_of
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import Source
 from btlang.text.words import split
 from btlang.tree.catalogue import CATALOGUE, SUBTREE

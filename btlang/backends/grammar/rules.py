@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator
 
-from btlang.record import Record
+from btlang.support.record import Record
 
 
 class Text(Record):

@@ -14,7 +14,7 @@ from btlang.engine.conditions import is_of_editors
 from btlang.engine.instance import EngineState, NodeInstance
 from btlang.engine.leaves.leaf import LeafBinding
 from btlang.printer.phrase import phrase_of
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import NOWHERE
 from btlang.tree.catalogue import CATALOGUE, SUBTREE, Port, zone_names
 from btlang.tree.node import Node, Tree

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from struct import Struct
 
-from btlang.record import Record
+from btlang.support.record import Record
 
 TICKS = 4096
 """Ticks of a turn. In the middle of it, at 2048, a joint is at 0 degrees."""

@@ -14,7 +14,7 @@ from btlang.devices.dynamixel.control_table import STATE
 from btlang.devices.dynamixel.protocol import OVERHEAD
 from btlang.devices.dynamixel.servo import WATCHDOG_SET, Servo, ServoCommands, ServoRestarted, read_all
 from btlang.devices.kinds import Command, JointTarget, Reading
-from btlang.record import Record
+from btlang.support.record import Record
 
 _SILENCE = 0.15  # seconds without an answer after which a servo is no longer asked with the others
 _BLAMES = 3  # ... if it was the first that didn't answer as often, since those behind it wait for its answer

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from btlang.record import Record
+from btlang.support.record import Record
 
 BROADCAST = 0xFE
 HIGHEST_ID = 252

@@ -10,7 +10,7 @@ from btlang.devices.dynamixel import control_table as table
 from btlang.devices.dynamixel.client import ServoClient
 from btlang.devices.dynamixel.protocol import HIGHEST_ID
 from btlang.devices.kinds import JointState, JointTarget
-from btlang.record import Record
+from btlang.support.record import Record
 
 _HIGHEST_BAUD = 4_500_000
 WATCHDOG_SET = round(0.2 / table.WATCHDOG_UNIT)

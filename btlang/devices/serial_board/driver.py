@@ -24,7 +24,7 @@ from btlang.devices.serial_board.messages import (
     command_size,
     read_answer,
 )
-from btlang.record import Record
+from btlang.support.record import Record
 
 _SEARCHED = "board "
 _BOARD = {"baud": 115_200, "rate": 50.0, "board": ""}

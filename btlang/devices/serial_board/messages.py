@@ -22,7 +22,7 @@ from btlang.devices.kinds import (
     Wheels,
     WheelSpeeds,
 )
-from btlang.record import Record
+from btlang.support.record import Record
 
 KIND_NUMBERS = {
     "range": 1, "drive": 2, "imu": 3, "battery": 4, "button": 5, "joint": 6, "light": 7, "display": 8,

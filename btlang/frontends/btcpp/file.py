@@ -13,7 +13,7 @@ from btlang.frontends.btcpp.nodes import NodeReader
 from btlang.frontends.btcpp.origin import Element, Markup, TreeOrigin
 from btlang.frontends.btcpp.scan import Document, Note
 from btlang.frontends.btcpp.spelling import IN_NO_ID, KINDS, MODEL
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import Span
 from btlang.tree.catalogue import SUBTREE
 from btlang.tree.model import NodeModel

@@ -15,7 +15,7 @@ from btlang.frontends.btcpp.models import ModelReader
 from btlang.frontends.btcpp.origin import Element, XmlOrigin
 from btlang.frontends.btcpp.scan import scanned
 from btlang.frontends.btcpp.spelling import MODEL
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import Source
 from btlang.tree.comments import KEPT
 from btlang.tree.model import NodeModel

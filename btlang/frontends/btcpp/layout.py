@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 
 from btlang.frontends.btcpp.scan import Document
-from btlang.record import Record
+from btlang.support.record import Record
 
 _MARKUP = re.compile(r"(?P<note><!--.*?-->|<\?.*?\?>)|<!\[CDATA\[.*?\]\]>|<!.*?>|(?P<tag></?)[^>]*>", re.DOTALL)
 _ATTRIBUTE = re.compile(r"""\s*([^\s"'=<>/]+)\s*=\s*("[^"]*"|'[^']*')""")

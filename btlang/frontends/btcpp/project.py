@@ -11,7 +11,7 @@ from btlang.frontends.btcpp.files import XmlFiles, same_id
 from btlang.frontends.btcpp.reader import MAIN, empty_file, no_tree
 from btlang.frontends.btcpp.scopes import Scopes
 from btlang.frontends.btcpp.spelling import MAIN_TREE
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import Span
 from btlang.tree.model import NodeModel
 from btlang.tree.node import Node

@@ -11,7 +11,7 @@ from xml.parsers import expat
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.frontends.btcpp.repair import Repaired, is_odd, repaired
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import Source, Span
 
 TYPE_CHECKING = False

@@ -24,7 +24,7 @@ from btlang.frontends.mission.grouping.grouping import Grouped, group
 from btlang.frontends.mission.symbols.prefixes import find_prefixes
 from btlang.frontends.mission.token import Called, Header, Listed, NodeCall, Token
 from btlang.frontends.mission.tokens.lexer import Lexer
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import Source, Span
 from btlang.text.spelling import distance, respellings
 from btlang.text.words import END_OF_STATEMENT, Words

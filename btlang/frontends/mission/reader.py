@@ -15,7 +15,7 @@ from btlang.frontends.mission.symbols.includes import Included
 from btlang.frontends.mission.symbols.names import Load
 from btlang.frontends.mission.tokens.lexer import Lexer
 from btlang.frontends.mission.whole_rules import whole_rules, with_rules_first
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import Source, Span
 from btlang.tree.asked import with_answers
 from btlang.tree.ast import Ast, Definition, Nothing, Program

@@ -25,7 +25,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Sequence
 
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import Span
 from btlang.vocabulary.entry import Entry
 

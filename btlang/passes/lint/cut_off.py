@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
 from btlang.passes.lint.endings import SKIPPED, SUCCESS, Ends, ends_of
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.tree.catalogue import CATALOGUE, ON_FAILURE, ON_SUCCESS, SUBTREE
 from btlang.tree.node import Node
 

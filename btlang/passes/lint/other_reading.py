@@ -11,7 +11,7 @@ from functools import cached_property, partial
 from itertools import pairwise
 
 from btlang.passes.lint.gaps import Gaps, balanced
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import Span
 from btlang.tree import ast
 from btlang.vocabulary.lexicon import Lexicon

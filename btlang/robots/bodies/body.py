@@ -6,11 +6,11 @@ import os
 from collections.abc import Mapping
 from math import cbrt, pi, sqrt
 
-from btlang.record import Record
 from btlang.robots.bodies.gesture import BEARINGS, Gesture, Step, angle_of
 from btlang.robots.geometry import Pose
 from btlang.speech.engine import Settings
 from btlang.speech.recogniser import RecogniserSettings
+from btlang.support.record import Record
 from btlang.vocabulary.capabilities import POSTURE
 
 TYPE_CHECKING = False

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from btlang.record import Record
+from btlang.support.record import Record
 
 BEARING = "bearing"
 """In a posture, the angle towards the target of the robot."""

@@ -9,11 +9,11 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from btlang.record import Record
 from btlang.robots.bodies.body import Body, Capsule, Joint, Vector
 from btlang.robots.bodies.body_file import BodyError
 from btlang.robots.bodies.joint_tables import BASE
 from btlang.robots.motion.kinematics import Array
+from btlang.support.record import Record
 from btlang.text.source import Source
 
 ROOT_LINK = "base_link"

@@ -8,9 +8,9 @@ from math import ceil
 import numpy as np
 import numpy.typing as npt
 
-from btlang.record import Record
 from btlang.robots.bodies.body import Joint
 from btlang.robots.motion.kinematics import Array
+from btlang.support.record import Record
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

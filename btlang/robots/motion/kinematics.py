@@ -8,8 +8,8 @@ from math import dist
 import numpy as np
 import numpy.typing as npt
 
-from btlang.record import Record
 from btlang.robots.bodies.body import Body, Joint, Vector
+from btlang.support.record import Record
 
 Array = npt.NDArray[np.float64]
 _TINY = 1e-12

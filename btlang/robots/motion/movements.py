@@ -8,10 +8,10 @@ from typing import Protocol
 
 import numpy as np
 
-from btlang.record import Record
 from btlang.robots.bodies.gesture import Gesture
 from btlang.robots.motion.course import CourseSegment, JointLimits, MotionState, on_quintic, quintic, to_state
 from btlang.robots.motion.kinematics import Array
+from btlang.support.record import Record
 
 _LOOKS = 25  # at each quintic
 _ROUNDS = 30

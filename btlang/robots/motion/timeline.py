@@ -8,7 +8,6 @@ from math import ceil, floor, inf
 
 import numpy as np
 
-from btlang.record import Record
 from btlang.robots.bodies.body import Body
 from btlang.robots.motion.course import (
     PERIOD,
@@ -26,6 +25,7 @@ from btlang.robots.motion.guard.trajectories import TrajectoryCheck
 from btlang.robots.motion.kinematics import Array, Kinematics
 from btlang.robots.motion.movements import Movement, Tail, rest_at, stay_at
 from btlang.robots.robot import RobotError
+from btlang.support.record import Record
 
 _EXACT = 1e-6
 _SLOWED = 1.02  # times as long: less is not worth a word

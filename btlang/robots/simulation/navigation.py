@@ -6,7 +6,6 @@ from collections.abc import Iterable
 from itertools import pairwise
 from math import cos, dist, inf, radians, sqrt
 
-from btlang.interrupts import interrupts_later
 from btlang.robots.bodies.body import Body, SpeedLimits
 from btlang.robots.geometry import Point, Pose, wrap
 from btlang.robots.motion.guard.guard import Cause, Guard
@@ -16,6 +15,7 @@ from btlang.robots.simulation.faults import Faults
 from btlang.robots.simulation.surroundings import Surroundings
 from btlang.robots.worlds.obstacles import Obstacles
 from btlang.robots.worlds.world import Place, Thing, World, said
+from btlang.support.interrupts import interrupts_later
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from btlang.record import Record
 from btlang.robots.bodies.body import Body
 from btlang.robots.bodies.gesture import Gesture
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.robot import RobotError
 from btlang.robots.simulation.robot import SimulatedRobot
 from btlang.robots.worlds.world import World
+from btlang.support.record import Record
 
 STEP = 0.02
 """Seconds between two angles of a rehearsal."""

@@ -24,7 +24,7 @@ from btlang.robots.simulation.parts import make_simulated_parts, stations
 from btlang.robots.simulation.surroundings import Surroundings
 from btlang.robots.worlds.obstacles import Obstacles
 from btlang.robots.worlds.world import Place, World, said
-from btlang.run.standstill import Standstill
+from btlang.run.outcome import Standstill
 from btlang.text.time_of_day import DAY, weekday_after
 from btlang.vocabulary.capabilities import part_of
 

@@ -6,9 +6,9 @@ from collections.abc import Iterable, Sequence
 from math import cos, hypot, radians, sin
 from random import Random
 
-from btlang.record import Record
 from btlang.robots.geometry import Point
 from btlang.robots.worlds.world import Person, Stop
+from btlang.support.record import Record
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -6,9 +6,9 @@ from collections.abc import Iterable, Mapping
 from itertools import pairwise
 from random import Random
 
-from btlang.record import Record
 from btlang.robots.geometry import Point, Pose, Segment, contains
 from btlang.robots.worlds.likeness import Parts, head_of, of_person, of_thing, wears
+from btlang.support.record import Record
 from btlang.text.time_of_day import DAY, USUAL_START
 from btlang.vocabulary.references import HOME, PARTS
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from btlang.record import Record
 from btlang.robots.worlds.world import Door, Person, Stop, Visits, World, WorldFault, WorldObject
 from btlang.robots.worlds.world_tables import ANYWHERE
+from btlang.support.record import Record
 from btlang.text.time_of_day import USUAL_START, WEEKDAYS, shown
 from btlang.text.toml_writing import toml_value
 

@@ -12,12 +12,12 @@ from rclpy.action import ActionClient
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 
-from btlang.record import Record
 from btlang.ros.bridge.conversion import as_data, fill_message, type_of
 from btlang.ros.bridge.replies import BridgeError, answer, reason_of
 from btlang.ros.bridge.topics import full
 from btlang.ros.graph import absent, is_ready, types_of
 from btlang.ros.lease import Lease
+from btlang.support.record import Record
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

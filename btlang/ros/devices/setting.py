@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import pi
 
-from btlang.record import Record
+from btlang.support.record import Record
 
 COMMANDS = "command"
 """The name of the topic for commands, below that of the readings."""

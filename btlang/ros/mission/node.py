@@ -13,7 +13,6 @@ from std_srvs.srv import Trigger
 from btlang.api import Mission
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_included
-from btlang.record import Record
 from btlang.robots.registry import connector
 from btlang.ros.mission.server import LABEL, MissionServer, create_services
 from btlang.ros.mission.topics import (
@@ -27,15 +26,15 @@ from btlang.ros.mission.topics import (
     TreeTopic,
     report_of,
 )
-from btlang.run.lines import Lines
+from btlang.run.logs import PlainLines
+from btlang.support.record import Record
 from btlang.task import messages
-from btlang.task.emergency import shut_latch
-from btlang.task.follower import Follower
-from btlang.task.house import furnished_layer
-from btlang.task.layer import TaskLayer
+from btlang.task.execution.emergency import shut_latch
+from btlang.task.execution.missions import MissionReader
+from btlang.task.layer import TaskLayer, make_robot_layer
+from btlang.task.live.feed import TaskFollower
 from btlang.task.messages import Answer, Command
-from btlang.task.missions import MissionReader
-from btlang.task.task import ACTIVE, FINAL, WAITING, Change, MissionText, State, Task
+from btlang.task.store.records import ACTIVE, FINAL, WAITING, MissionText, Task, TaskChange, TaskState
 from btlang.vocabulary.shipped import ENGLISH
 
 TYPE_CHECKING = False
@@ -95,7 +94,7 @@ class Setup(Record):
         """Return the task layer of the robot, made with further arguments. Raises MissionError."""
         named = {"sim_time": self.sim_time, "namespace": self.namespace, "name": f"{self.name}_robot"}
         robot = connector(self.robot, self.over, **named)
-        return furnished_layer(robot, reader, speed=self.speed, **self.layer, **options)
+        return make_robot_layer(robot, reader, speed=self.speed, **self.layer, **options)
 
 
 def robot_name(namespace: str, name: str) -> str:
@@ -133,7 +132,7 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
         super().__init__(name, **options)
         self._setup, self._down = setup, down
         self._layer: TaskLayer | None = None
-        self._follower: Follower | None = None
+        self._follower: TaskFollower | None = None
         self._mission: MissionText | None = None
         self._latest: MissionReport | None = None
         self._seconds: dict[int, float] = {}
@@ -162,7 +161,7 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
             self._topics.complain(str(error))
             return _FAILURE
         self._end_tasks(WAITING, "its node ended before it did")
-        self._follower = Follower(self._layer.store, self._on_change, self._topics.complain)
+        self._follower = TaskFollower(self._layer.store, self._on_change, self._topics.complain)
         self._topics.tasks(self.answer(messages.List(limit=_MOST)))
         return _SUCCESS
 
@@ -263,7 +262,7 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
         if self._layer is not None:
             yield from self._layer.feed.watch(*wanted)
 
-    def _end_tasks(self, states: frozenset[State], reason: str) -> None:
+    def _end_tasks(self, states: frozenset[TaskState], reason: str) -> None:
         """End the tasks that don't outlive the node's work: those of goals, and its own."""
         assert self._layer is not None
         for label in (LABEL, _OWN):
@@ -289,11 +288,11 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
             self._topics.status(news)
 
         return [
-            Lines(mission.label, mission.is_action, self._topics.log),
+            PlainLines(mission.label, mission.is_action, self._topics.log),
             MissionProgress(run.snapshot, changed, reached),
         ]
 
-    def _on_change(self, changes: Sequence[Change]) -> None:
+    def _on_change(self, changes: Sequence[TaskChange]) -> None:
         """Publish a change of tasks, in the thread of the follower."""
         layer = self._layer
         if layer is None:

@@ -15,13 +15,13 @@ from std_msgs.msg import String
 
 from btlang.api import Mission
 from btlang.engine.status import NAMES
-from btlang.record import Record
 from btlang.ros.node import LATCHED
 from btlang.run.bus import INLINE
 from btlang.run.events import Ended, PeriodPassed, StatusesChanged
-from btlang.task.executor import NOTHING_TO_DO
+from btlang.support.record import Record
+from btlang.task.execution.executor import NOTHING_TO_DO
 from btlang.task.messages import Answer
-from btlang.task.task import State, Task
+from btlang.task.store.records import Task, TaskState
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 
 _PAUSE = 0.1  # seconds of real time between two snapshots of all nodes
-_OUTCOMES = {State.COMPLETED: "success", State.FAILED: "failure", State.ERROR: "failure"}
+_OUTCOMES = {TaskState.COMPLETED: "success", TaskState.FAILED: "failure", TaskState.ERROR: "failure"}
 _PHRASES = {"success": "succeeded", "failure": "failed", "skipped": "had nothing to do", "stopped": "was stopped"}
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
 _OF_A_TASK = ("id", "state", "priority", "mission", "person", "labels", "waits")
@@ -117,7 +117,7 @@ class MissionReport(Record):
 
 def report_of(task: Task, seconds: float) -> MissionReport:
     """Return the report of a task that is over."""
-    if task.state is State.COMPLETED and task.reason == NOTHING_TO_DO:
+    if task.state is TaskState.COMPLETED and task.reason == NOTHING_TO_DO:
         return MissionReport("skipped", "", seconds)
     return MissionReport(_OUTCOMES.get(task.state, "stopped"), task.reason, seconds)
 

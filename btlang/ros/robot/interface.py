@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from btlang.record import Record
 from btlang.robots.bodies.body import Body
 from btlang.robots.preflight import needs_of
+from btlang.support.record import Record
 from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False

@@ -16,7 +16,6 @@ from rclpy.node import Node
 from unique_identifier_msgs.msg import UUID
 
 from btlang.engine.leaves.leaf import NotThere
-from btlang.record import Record
 from btlang.robots.bodies.body import TOLERANCE
 from btlang.robots.geometry import Point, Pose, wrap
 from btlang.robots.robot import RobotError
@@ -28,6 +27,7 @@ from btlang.ros.lease import Lease
 from btlang.ros.messages import pose_of, stamped_pose
 from btlang.ros.node import ExecutorThread
 from btlang.ros.subscriptions import pose_fault
+from btlang.support.record import Record
 
 _SHOWS = 1.0  # seconds after a success in which the pose shows it
 _SEEN = 0.3  # seconds after which odometry shows what the robot does

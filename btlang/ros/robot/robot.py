@@ -38,7 +38,7 @@ from btlang.ros.robot.services import Services
 from btlang.ros.robot.speech import RosEars, RosSpeech
 from btlang.ros.robot.zones import RosZones
 from btlang.ros.subscriptions import SubscriptionCache
-from btlang.run.standstill import Standstill
+from btlang.run.outcome import Standstill
 from btlang.text.time_of_day import DAY, local, weekday_after
 
 TYPE_CHECKING = False

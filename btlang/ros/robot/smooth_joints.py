@@ -11,7 +11,6 @@ from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from trajectory_msgs.msg import JointTrajectory
 
-from btlang.record import Record
 from btlang.robots.bodies.body import Body
 from btlang.robots.bodies.gesture import Gesture, joints_of
 from btlang.robots.motion.course import PERIOD, CourseSegment, JointLimits, MotionState, between, plan_brake, samples
@@ -24,6 +23,7 @@ from btlang.robots.robot import RobotError, joint_of
 from btlang.ros.messages import JointRange, motion, stamp
 from btlang.ros.robot.joints import TRAJECTORY, JointStates, on_wire
 from btlang.ros.subscriptions import SubscriptionCache
+from btlang.support.record import Record
 
 _AHEAD = 0.05
 """Seconds ahead that are settled: the time to plan and send a new trajectory before it begins."""

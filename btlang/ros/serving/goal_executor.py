@@ -13,8 +13,8 @@ from btlang.engine.status import RUNNING, SUCCESS
 from btlang.printer.phrase import phrase_of
 from btlang.robots.command_gate import RobotProxy
 from btlang.ros.serving.names import WORD
-from btlang.run.runner import traced_engine
-from btlang.run.standstill import standstill_of
+from btlang.run.outcome import standstill_of
+from btlang.run.runner import trace_engine
 from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False
@@ -78,7 +78,7 @@ class LeafGoal:
         """Begin with the next `tick`. The goal is over if the leaf can't run."""
         connection, vocabulary = self._connection, self._vocabulary
         try:
-            self.engine = traced_engine(
+            self.engine = trace_engine(
                 Tree(self._node),
                 lambda node_id: bind_leaf(node_id, vocabulary, connection.bind),
                 bus=connection.bus,

@@ -15,11 +15,11 @@ from rclpy.action.server import ServerGoalHandle
 from rclpy.node import Node
 from rclpy.task import Future as RosFuture
 
-from btlang.record import Record
 from btlang.robots.robot import RobotError
 from btlang.robots.simulation.robot import SimulatedRobot
 from btlang.ros.lease import Leases
 from btlang.ros.node import LATCHED
+from btlang.support.record import Record
 
 _OFF = "the simulated robot is shutting down"
 COMMANDS = 10

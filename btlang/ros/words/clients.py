@@ -14,13 +14,13 @@ from rclpy.clock import Clock, ClockType
 from rclpy.duration import Duration
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
-from btlang.record import Record
 from btlang.ros.clocks import wait_until
 from btlang.ros.graph import full_name, is_ready, no_listener, no_publisher, no_server
 from btlang.ros.lease import Lease
 from btlang.ros.messages import type_name
 from btlang.ros.node import ExecutorThread
 from btlang.ros.subscriptions import Latest, MessageGate, NodeClock, latest_of
+from btlang.support.record import Record
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -8,11 +8,10 @@ from collections.abc import Callable, Sequence
 
 from btlang.engine.compile import outline
 from btlang.run.events import PeriodPassed
-from btlang.run.lines import Lines
 from btlang.run.live import frame
 from btlang.run.live.selection import LEAST_HEIGHT
-from btlang.run.shape import Shape
-from btlang.run.snapshot import State
+from btlang.run.logs import PlainLines
+from btlang.run.snapshot import RunState, Shape
 from btlang.text.escaping import one_line
 
 TYPE_CHECKING = False
@@ -25,7 +24,7 @@ if TYPE_CHECKING:
     from btlang.tree.node import Node, Tree
 
     class Map(Protocol):
-        """See btlang.pictures.terminal_map.TerminalMap."""
+        """A map of a world in the cells of a terminal; see btlang.pictures.terminal_map.TerminalMap."""
 
         def note(self, robot: RobotState | None) -> None: ...
 
@@ -34,7 +33,7 @@ if TYPE_CHECKING:
         def lines(self, robot: RobotState | None, width: int, height: int) -> list[frame.Line]: ...
 
     class Viewed(Protocol):
-        """What the live view asks of a mission."""
+        """The part of a mission that the live view needs."""
 
         @property
         def tree(self) -> Tree: ...
@@ -50,7 +49,9 @@ _MOST_WAITING = 50_000  # events; a terminal may be slower than the run, or be h
 
 
 class Board:
-    """`note` may be called from any thread and takes no time; all else is for one thread, that which draws.
+    """The state of a run and the lines about it, for the live view.
+
+    `note` may be called from any thread and takes no time; all else is for one thread, that which draws.
 
     `changes` grows with each event. Raises EngineError for a tree that cannot be compiled.
     """
@@ -59,13 +60,13 @@ class Board:
         nodes, parents = outline(mission.tree)
         span = mission.tree.root.span
         self.changes = 0
-        self.state = State(Shape(parents), nodes)
+        self.state = RunState(Shape(parents), nodes)
         self._title = one_line(os.path.basename(span.source.name)) if span is not None else "mission"
         self.signs = signs
-        self._words = frame.Words(nodes, mission.label)
+        self._words = frame.ViewWords(nodes, mission.label)
         self._above: list[str] = []
-        self._lines: Callable[[Event], None] = Lines(mission.label, mission.is_action, self._above.append)
-        self._waiting: deque[Event | str | State] = deque(maxlen=_MOST_WAITING)
+        self._lines: Callable[[Event], None] = PlainLines(mission.label, mission.is_action, self._above.append)
+        self._waiting: deque[Event | str | RunState] = deque(maxlen=_MOST_WAITING)
         self._noted = self._taken = self._lost = 0  # events
         self._period: PeriodPassed | None = None
         self._begun = False
@@ -73,7 +74,7 @@ class Board:
         self.hides_map = False
 
     def note(self, event: Event | str) -> None:
-        """Keeps an event, or a line that was printed."""
+        """Keep an event, or a line that was printed."""
         if isinstance(event, PeriodPassed):
             self._period, self._begun = event, True
         else:
@@ -81,15 +82,15 @@ class Board:
             self._noted += 1
         self.changes += 1
 
-    def jump(self, state: State) -> None:
-        """The run goes on from another state; what has been noted before is still written."""
+    def jump(self, state: RunState) -> None:
+        """Go on from another state; what has been noted before is still written."""
         self._waiting.append(state)
         self._noted += 1
         self._begun = True
         self.changes += 1
 
     def take(self) -> list[str]:
-        """Brings the state up to date; returns the lines of what happened since the last time."""
+        """Bring the state up to date; return the lines of what happened since the last time."""
         noted = self._noted  # before the count, so that an event that comes just now is not taken for lost
         count = len(self._waiting)
         lost = noted - self._taken - self._lost - count
@@ -110,7 +111,9 @@ class Board:
     def frame(
         self, width: int, height: int, doing: str, keys: Sequence[tuple[str, str]], explained: bool = False
     ) -> list[frame.Line]:
-        """At most `height` lines (7 or more) while the run goes on. `doing` says what it does, "" that it has ended.
+        """Return at most `height` lines (7 or more) while the run goes on.
+
+        `doing` says what it does, "" that it has ended.
 
         `keys` are what frame.keys_line says; `explained` adds what the signs mean, as far as there is room. A run that
         ended before it began leaves nothing to show.
@@ -129,13 +132,13 @@ class Board:
         return [frame.header(self._title, state, doing, signs), *shown, *below]
 
     def _beside(self, width: int, rows: int) -> list[Line]:
-        """The tree, and the map to the right of it."""
+        """Return the tree, and the map to the right of it."""
         columns, lines = self._map_size(width * _MAP_PART // 100, rows)
         left = width - columns - _APART if columns else width
         return frame.side_by_side(self._tree(left, rows), self._map(columns, lines), left + _APART)
 
     def _above_each_other(self, width: int, rows: int) -> list[Line]:
-        """The tree, and the map in the rows that it leaves, or in half of them."""
+        """Return the tree, and the map in the rows that it leaves, or in half of them."""
         tree = self._tree(width, rows)
         columns, lines = self._map_size(width, max(rows // 2, rows - len(tree)))
         if len(tree) > rows - lines:
@@ -151,11 +154,11 @@ class Board:
     def _map_size(self, width: int, height: int) -> tuple[int, int]:
         return self.map.size(width, height) if self.map is not None and not self.hides_map else (0, 0)
 
-    def _take(self, event: Event | str | State) -> None:
+    def _take(self, event: Event | str | RunState) -> None:
         if isinstance(event, str):
             self._above.append(event)
             return
-        if isinstance(event, State):
+        if isinstance(event, RunState):
             self._above.append(f"         ({event.now:.1f} s)")
             self.state, self._period = event, None
             return

@@ -9,11 +9,11 @@ from rich.cells import cell_len, set_cell_size
 
 from btlang.engine.nodes.decorators import WAS_TRUE
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
-from btlang.record import Record
 from btlang.run.live.selection import LEAST_HEIGHT, Row, choose_rows
-from btlang.run.overruns import are_many
+from btlang.run.pace import are_many
 from btlang.run.robot_state import RobotState
-from btlang.run.snapshot import HALTED, SUSPENDED, State
+from btlang.run.snapshot import HALTED, SUSPENDED, RunState
+from btlang.support.record import Record
 from btlang.text.escaping import one_line
 from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.node import Node
@@ -33,7 +33,7 @@ _MEANINGS = {
 }  # fmt: skip
 _LABELS = {IDLE: "dim", RUNNING: "bold", FAILURE: "red", SKIPPED: "dim", SUSPENDED: "bold"}
 SIGNALS = (("Ctrl-C", "stop"), *((("Ctrl-\\", "emergency stop"),) if hasattr(signal, "SIGQUIT") else ()))
-"""What works without keys."""
+"""The keys that work everywhere, as signals."""
 
 
 class Signs(Record):
@@ -49,18 +49,18 @@ UNICODE = Signs("✗✓▶–·■‖", ("├── ", "└── ", "│   "), 
 ASCII = Signs("x+>-.!=", ("|-- ", "`-- ", "|   "), "...", " - ")
 
 
-class Words:
+class ViewWords:
     """The words for the nodes of a tree, each looked up once: id or command, and the sentence of what has children."""
 
     def __init__(self, nodes: Sequence[Node], label: Callable[[Node], str], parents: Sequence[int] = ()) -> None:
         self._nodes = nodes
-        self.asked = _asked(nodes, parents)
+        self.asked = _is_asked(nodes, parents)
         """Whether a node is in a condition of the node above, whose failure is an answer and no mistake."""
         self._label = label
         self._known: dict[int, tuple[str, str]] = {}
 
     def of(self, index: int) -> tuple[str, str]:
-        """What a node is called, and the sentence it came from, "" where that says no more."""
+        """Return what a node is called, and the sentence it came from, "" where that says no more."""
         found = self._known.get(index)
         if found is None:
             node = self._nodes[index]
@@ -73,7 +73,7 @@ class Words:
         return found
 
 
-def _asked(nodes: Sequence[Node], parents: Sequence[int]) -> list[bool]:
+def _is_asked(nodes: Sequence[Node], parents: Sequence[int]) -> list[bool]:
     asked = [False] * len(nodes)
     for index, parent in enumerate(parents):
         if parent >= 0:
@@ -83,19 +83,19 @@ def _asked(nodes: Sequence[Node], parents: Sequence[int]) -> list[bool]:
 
 
 def _heads_a_block(node: Node, line: str) -> bool:
-    """Whether the first line of a node's text is about all of it: `repeat 3 times:`."""
+    """Return whether the first line of a node's text is about all of it: `repeat 3 times:`."""
     inner, outer = node.children[0].span, node.span
     return line.endswith(":") and not (inner is not None and outer is not None and inner.start == outer.start)
 
 
-def header(title: str, state: State, doing: str, signs: Signs) -> Line:
-    """Mission file, time, and what the run is doing."""
+def header(title: str, state: RunState, doing: str, signs: Signs) -> Line:
+    """Return mission file, time, and what the run is doing."""
     style = {"running": "bold cyan", "paused": "bold yellow", "emergency stop": "bold red"}.get(doing, "bold")
     return ((title, "bold"), (f"{signs.apart}{state.now:.1f} s{signs.apart}", "dim"), (doing, style))
 
 
-def tree_lines(state: State, words: Words, height: int, width: int, over: bool, signs: Signs) -> list[Line]:
-    """At most `height` lines, but at least 3, none wider than `width`. `over` says that the run has ended."""
+def tree_lines(state: RunState, words: ViewWords, height: int, width: int, over: bool, signs: Signs) -> list[Line]:
+    """Return at most `height` lines, but at least 3, none wider than `width`. `over` says that the run has ended."""
     rows = choose_rows(state.shape, state.statuses, max(height, LEAST_HEIGHT))
     step = 4 if min(state.shape.depth, height) * 4 <= width // 2 else 2  # the same throughout a run
     heads = _heads([row.depth for row in rows], step, signs)
@@ -107,7 +107,7 @@ def tree_lines(state: State, words: Words, height: int, width: int, over: bool, 
             head = signs.more + head[len(head) - width // 2 + len(signs.more) :]
         if row.node < 0:
             counts = f"{signs.more} " + ", ".join(f"{count} {kind}" for kind, count in row.left_out)
-            lines.append(((head, "dim"), (fitted(counts, width - len(head), signs), "dim italic")))
+            lines.append(((head, "dim"), (fit_text(counts, width - len(head), signs), "dim italic")))
             continue
         sentence = words.of(row.node)[1]
         shown = sentence if sentence not in sentences else ""
@@ -117,7 +117,7 @@ def tree_lines(state: State, words: Words, height: int, width: int, over: bool, 
 
 
 def side_by_side(left: Sequence[Line], right: Sequence[Line], column: int) -> list[Line]:
-    """The lines of one beside those of another one, which begin at a column."""
+    """Return the lines of one beside those of another one, which begin at a column."""
     lines: list[Line] = []
     for at in range(max(len(left), len(right))):
         line = left[at] if at < len(left) else ()
@@ -127,8 +127,8 @@ def side_by_side(left: Sequence[Line], right: Sequence[Line], column: int) -> li
     return lines
 
 
-def robot_line(state: State, signs: Signs) -> Line:
-    """Pose, battery, what it holds, its last words."""
+def robot_line(state: RunState, signs: Signs) -> Line:
+    """Return pose, battery, what it holds, its last words."""
     robot = state.robot or RobotState()
     parts: list[str] = []
     if robot.pose is not None:
@@ -144,8 +144,8 @@ def robot_line(state: State, signs: Signs) -> Line:
     return (("robot ", "dim"), (signs.apart.join(parts) or "-", ""))
 
 
-def counts_line(state: State, signs: Signs) -> Line:
-    """Ticks, and overruns if there are many."""
+def counts_line(state: RunState, signs: Signs) -> Line:
+    """Tick, and overruns if there are many."""
     ticks = (("ticks ", "dim"), (str(state.ticks), ""))
     if not are_many(state.overruns, state.ticks):
         return ticks
@@ -153,7 +153,7 @@ def counts_line(state: State, signs: Signs) -> Line:
 
 
 def legend_lines(width: int, signs: Signs) -> list[Line]:
-    """What the signs in front of the nodes mean."""
+    """Return what the signs in front of the nodes mean."""
     lines: list[Line] = [()]
     for status, meaning in _MEANINGS.items():
         piece = ((f"{signs.statuses[status]} ", _STYLES[status]), (f"{meaning}  ", "dim"))
@@ -164,7 +164,7 @@ def legend_lines(width: int, signs: Signs) -> list[Line]:
 
 
 def keys_line(paused: bool, keys: Sequence[tuple[str, str]], signs: Signs) -> Line:
-    """What each key does."""
+    """Return what each key does."""
     pieces: list[tuple[str, str]] = []
     for key, deed in keys:
         deed = "resume" if paused and deed == "pause" else deed
@@ -174,14 +174,14 @@ def keys_line(paused: bool, keys: Sequence[tuple[str, str]], signs: Signs) -> Li
 
 
 def prompt_line(question: str, typed: str, width: int, signs: Signs) -> Line:
-    """What the robot asks, and the answer so far."""
+    """Return what the robot asks, and the answer so far."""
     answer = f" {typed}_"
-    asked = fitted(one_line(question), max(8, width - len(answer) - 1), signs)
+    asked = fit_text(one_line(question), max(8, width - len(answer) - 1), signs)
     return ((asked, "bold yellow"), (answer[-width:], "bold"))
 
 
 def _node(
-    state: State, words: Words, row: Row, sentence: str, width: int, over: bool, signs: Signs
+    state: RunState, words: ViewWords, row: Row, sentence: str, width: int, over: bool, signs: Signs
 ) -> list[tuple[str, str]]:
     node = row.node
     status = state.statuses[node]
@@ -191,9 +191,9 @@ def _node(
     end = _seconds(state, node, status) + (f"  ({row.inside} node{'s' * (row.inside > 1)})" if row.inside else "")
     note, note_style = _note(state, row, words, status)
     room = width - 2 - cell_len(end) - min(cell_len(note), width // 2)
-    name = fitted(name, room, signs)
-    sentence = fitted(f"  {sentence}", room - cell_len(name), signs) if sentence else ""
-    note = fitted(note, width - 2 - cell_len(name + sentence + end), signs)
+    name = fit_text(name, room, signs)
+    sentence = fit_text(f"  {sentence}", room - cell_len(name), signs) if sentence else ""
+    note = fit_text(note, width - 2 - cell_len(name + sentence + end), signs)
     is_answer = status == FAILURE and words.asked[node]
     styles = ("dim", "dim") if is_answer else (_STYLES[status], _LABELS.get(status, ""))
     pieces = [(signs.statuses[status] + " ", styles[0]), (name, styles[1])]
@@ -201,8 +201,8 @@ def _node(
     return pieces
 
 
-def _note(state: State, row: Row, words: Words, status: int) -> tuple[str, str]:
-    """What is to be said of the end of a node, with its style."""
+def _note(state: RunState, row: Row, words: ViewWords, status: int) -> tuple[str, str]:
+    """Return what is to be said of the end of a node, with its style."""
     if status == FAILURE:
         reason = one_line(_reason(state, row, words))
         return (f"  {reason}" if reason else ""), "dim" if words.asked[row.node] else "red"
@@ -210,8 +210,8 @@ def _note(state: State, row: Row, words: Words, status: int) -> tuple[str, str]:
     return ("  halted" if status == HALTED and is_leaf else ""), "yellow"
 
 
-def _seconds(state: State, node: int, status: int) -> str:
-    """The time in a status that lasts, or the time that the node took."""
+def _seconds(state: RunState, node: int, status: int) -> str:
+    """Return the time in a status that lasts, or the time that the node took."""
     began = state.started.get(node)
     if began is None or status in (IDLE, SKIPPED):
         return ""
@@ -219,8 +219,8 @@ def _seconds(state: State, node: int, status: int) -> str:
     return f"  {until - began:.1f} s" if status == RUNNING or until > began else ""
 
 
-def _reason(state: State, row: Row, words: Words) -> str:
-    """Why a node failed; where it is folded up, which leaf in it failed and why."""
+def _reason(state: RunState, row: Row, words: ViewWords) -> str:
+    """Return why a node failed; where it is folded up, which leaf in it failed and why."""
     node, shape = row.node, state.shape
     while row.inside and (failed := [child for child in shape.children(node) if state.statuses[child] == FAILURE]):
         node = failed[-1]
@@ -232,7 +232,7 @@ def _reason(state: State, row: Row, words: Words) -> str:
 
 
 def _heads(depths: list[int], step: int, signs: Signs) -> list[str]:
-    """The branches in front of each row, drawn from the last row up.
+    """Return the branches in front of each row, drawn from the last row up.
 
     Not by rich.tree: it has no narrow branches, and takes 5 ms for 48 rows of a frame (this: 0.04 ms).
     """
@@ -249,8 +249,8 @@ def _heads(depths: list[int], step: int, signs: Signs) -> list[str]:
     return heads
 
 
-def fitted(text: str, width: int, signs: Signs) -> str:
-    """The text, its end replaced by an ellipsis where it is wider."""
+def fit_text(text: str, width: int, signs: Signs) -> str:
+    """Return the text, its end replaced by an ellipsis where it is wider."""
     if cell_len(text) <= width:
         return text
     room = width - len(signs.more)
@@ -258,6 +258,6 @@ def fitted(text: str, width: int, signs: Signs) -> str:
 
 
 def _zero(value: float, digits: int) -> str:
-    """Without the sign of a zero that comes from rounding."""
+    """Return a number without the sign of a zero that comes from rounding."""
     text = f"{value:.{digits}f}"
     return text.removeprefix("-") if not text.strip("-0.") else text

@@ -1,13 +1,14 @@
-"""Single keys of a terminal, read in a thread of their own."""
+"""Single keys of a terminal, read in a thread of their own, and Ctrl-Z, which gives the terminal back first."""
 
 from __future__ import annotations
 
 import os
 import re
 import select
+import signal
 import threading
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 
 try:
     import termios
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from typing import Any
 
 GONE = ""
-"""In place of a key: the terminal is gone."""
+"""A value in place of a key: the terminal is gone."""
 LEFT, RIGHT = "left", "right"
 """The arrow keys that are handed on."""
 _KEY = re.compile(r"\x1b(?:[\[O][0-?]*[ -/]*[@-~]?|.)?|.", re.DOTALL)  # one, or an arrow key or the like
@@ -29,7 +30,7 @@ _PATIENCE = 0.2  # seconds until a process in the background looks again
 
 
 class Keys:
-    """Calls `pressed` with each key between `begin` and `end`; those of Ctrl-C and Ctrl-Z stay signals.
+    """A thread that calls `pressed` with each key between `begin` and `end`; those of Ctrl-C and Ctrl-Z stay signals.
 
     Raises OSError where the terminal cannot be read key by key.
     """
@@ -48,7 +49,7 @@ class Keys:
         self._thread = threading.Thread(target=self._read, name="btlang keys", daemon=True)
 
     def begin(self) -> None:
-        """Keys come at once and are not shown. May be called again, after a stop of the process."""
+        """Let keys come at once without being shown. May be called again, after a stop of the process."""
         if self.in_front and not self._ended:
             with suppress(termios.error):  # the terminal is gone
                 tty.setcbreak(self._descriptor, termios.TCSANOW)
@@ -56,13 +57,13 @@ class Keys:
             self._thread.start()
 
     def restore(self) -> None:
-        """Restores the modes of the terminal."""
+        """Restore the modes of the terminal."""
         if self.in_front:
             with suppress(termios.error):
                 termios.tcsetattr(self._descriptor, termios.TCSANOW, self._modes)
 
     def end(self) -> None:
-        """Restores the terminal, and reads no further key."""
+        """Restore the terminal, and read no further key."""
         self._ended = True
         try:
             self.restore()
@@ -75,7 +76,7 @@ class Keys:
 
     @property
     def in_front(self) -> bool:
-        """Whether this process may use the terminal; one in the background would be stopped."""
+        """Return whether this process may use the terminal; one in the background would be stopped."""
         try:
             return os.tcgetpgrp(self._descriptor) == os.getpgrp()
         except OSError:  # not the terminal that controls this process, so nothing would stop it
@@ -101,3 +102,28 @@ class Keys:
                     self._pressed(key)
                 elif key in _ARROWS:
                     self._pressed(_ARROWS[key])
+
+
+@contextmanager
+def stoppable(leave: Callable[[], object], come_back: Callable[[], object]) -> Iterator[None]:
+    """Call `leave` before the process is stopped and `come_back` when it goes on, from the main thread.
+
+    In another thread, or where there are no such signals, it does nothing.
+    """
+    if not hasattr(signal, "SIGTSTP") or threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def stop(*_: object) -> None:
+        leave()
+        os.kill(os.getpid(), signal.SIGSTOP)
+
+    def go_on(*_: object) -> None:
+        come_back()
+
+    before = {signal.SIGTSTP: signal.signal(signal.SIGTSTP, stop), signal.SIGCONT: signal.signal(signal.SIGCONT, go_on)}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

@@ -1,14 +1,86 @@
-"""Which nodes of a tree are shown where there is no room for all: a pure function of shape, statuses and height."""
+"""Which nodes of a tree are shown where there is no room for all: a pure function of shape, statuses and rows."""
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Iterator, Sequence
 
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
-from btlang.record import Record
-from btlang.run.live.choice import Choice, hidden_from
-from btlang.run.shape import Shape
-from btlang.run.snapshot import HALTED, SUSPENDED
+from btlang.run.snapshot import HALTED, SUSPENDED, Shape
+from btlang.support.record import Record
+
+
+def first_visible(shape: Shape, before: int, following: int) -> int:
+    """Return the first node that needs a row of its own; what is below a folded node needs none."""
+    if before < 0:
+        return 0
+    end = shape.ends[before]
+    return end if end <= following else before + 1
+
+
+class NodeChoice:
+    """A choice of nodes that are shown, in preorder; it never needs more rows than there are."""
+
+    def __init__(self, shape: Shape, height: int) -> None:
+        self.nodes: list[int] = []
+        self.room = height - 1  # one row stands for all nodes, as long as none is shown
+        self._shape = shape
+
+    def __contains__(self, node: int) -> bool:
+        at = bisect_left(self.nodes, node)
+        return at < len(self.nodes) and self.nodes[at] == node
+
+    @property
+    def full(self) -> bool:
+        return self.room <= 0
+
+    def add(self, node: int) -> bool:
+        """Show a node where its row, and those for what is then left out around it, fit; else do nothing."""
+        at = bisect_left(self.nodes, node)
+        following = self.nodes[at] if at < len(self.nodes) else len(self._shape)
+        if following == node:
+            return True
+        before = self.nodes[at - 1] if at else -1
+        cost = 1 + self._gap(before, node) + self._gap(node, following) - self._gap(before, following)
+        if cost > self.room:
+            return False
+        self.nodes.insert(at, node)
+        self.room -= cost
+        return True
+
+    def add_all(self, nodes: Sequence[int]) -> bool:
+        """Add all of them or none.
+
+        They are the children of a node that is shown folded up: each needs a row, no more.
+        """
+        if len(nodes) > self.room:
+            return False
+        at = bisect_left(self.nodes, nodes[0])
+        self.nodes[at:at] = nodes
+        self.room -= len(nodes)
+        return True
+
+    def folded(self, node: int) -> bool:
+        """Return whether nothing below a node that is shown is shown."""
+        at = bisect_left(self.nodes, node) + 1
+        return at == len(self.nodes) or self.nodes[at] >= self._shape.ends[node]
+
+    def without_small_gaps(self) -> list[int]:
+        """Return the nodes, and in place of each row that would stand for a single one, that one."""
+        nodes: list[int] = []
+        before = -1
+        for following in (*self.nodes, len(self._shape)):
+            start = first_visible(self._shape, before, following)
+            if start < following and (self._shape.ends[start] == following or start + 1 == following):
+                nodes.append(start)
+            nodes.append(following)
+            before = following
+        return nodes[:-1]
+
+    def _gap(self, before: int, following: int) -> int:
+        """Return the rows for what is left out between two nodes that are shown: 1 or 0."""
+        return int(first_visible(self._shape, before, following) < following)
+
 
 LEAST_HEIGHT = 3
 
@@ -32,14 +104,14 @@ class Row(Record):
 
 
 def choose_rows(shape: Shape, statuses: bytearray, height: int) -> list[Row]:
-    """At most `height` (3 or more) rows, in the order of the tree; every node is in one of them.
+    """Choose at most `height` (3 or more) rows, in the order of the tree; every node is in one of them.
 
-    In the order of their importance: the deepest of what runs, the root, all else that runs with what is above it,
-    the siblings around it, what failed, is to come or is done. What is finished is folded up first.
+    In the order of their importance: the deepest of what runs, the root, all else that runs with what is above it, the
+    siblings around it, what failed, is to come or is done. What is finished is folded up first.
     """
     if len(shape) <= height:
         return _rows(shape, statuses, range(len(shape)))
-    choice = Choice(shape, height)
+    choice = NodeChoice(shape, height)
     tips = focus(shape, statuses, height)
     for node in (*tips[:1], 0, *tips[1:]):
         choice.add(node)
@@ -55,7 +127,9 @@ def choose_rows(shape: Shape, statuses: bytearray, height: int) -> list[Row]:
 
 
 def focus(shape: Shape, statuses: bytearray, most: int) -> list[int]:
-    """What matters most, the deepest first: the running (else suspended) leaves, else the leaf that failed the tree."""
+    """Return what matters most, the deepest first: the running (else suspended) leaves, else the leaf that failed the
+    tree.
+    """
     for status in (RUNNING, SUSPENDED):
         tips = list(_tips(shape, statuses, status))
         if tips:
@@ -71,7 +145,7 @@ def focus(shape: Shape, statuses: bytearray, most: int) -> list[int]:
 
 
 def _tips(shape: Shape, statuses: bytearray, status: int) -> Iterator[int]:
-    """The nodes of a status that have none of it below."""
+    """Yield the nodes of a status that have none of it below."""
     node = statuses.find(status)
     while node >= 0:
         following = statuses.find(status, node + 1)
@@ -81,7 +155,7 @@ def _tips(shape: Shape, statuses: bytearray, status: int) -> Iterator[int]:
 
 
 def _upward(shape: Shape, tips: Sequence[int], most: int) -> Iterator[int]:
-    """What is above the tips, the nearest first, as far as there can be room for it."""
+    """Yield what is above the tips, the nearest first, as far as there can be room for it."""
     nodes = list(tips)
     for _ in range(most):
         nodes = [shape.parents[node] for node in nodes if shape.parents[node] > 0]
@@ -89,8 +163,8 @@ def _upward(shape: Shape, tips: Sequence[int], most: int) -> Iterator[int]:
         yield from nodes
 
 
-def _around(shape: Shape, choice: Choice) -> Iterator[int]:
-    """The siblings of what is shown, nearer ones first, where their parent is shown."""
+def _around(shape: Shape, choice: NodeChoice) -> Iterator[int]:
+    """Yield the siblings of what is shown, nearer ones first, where their parent is shown."""
     rings = [(node, node) for node in reversed(choice.nodes) if node and shape.parents[node] in choice]
     while rings:
         wider: list[tuple[int, int]] = []
@@ -106,8 +180,8 @@ def _around(shape: Shape, choice: Choice) -> Iterator[int]:
         rings = wider
 
 
-def _unfold(shape: Shape, statuses: bytearray, choice: Choice) -> None:
-    """Opens branches while there is room: failed ones, those to come, the others; at last a part of a long one."""
+def _unfold(shape: Shape, statuses: bytearray, choice: NodeChoice) -> None:
+    """Open branches while there is room: failed ones, those to come, the others; at last a part of a long one."""
     order = {FAILURE: 0, IDLE: 1, RUNNING: 1}
     long: list[int] = []
     nodes = list(choice.nodes)
@@ -138,7 +212,7 @@ def _rows(shape: Shape, statuses: bytearray, nodes: Sequence[int]) -> list[Row]:
     rows: list[Row] = []
     around: list[int] = []  # nodes that are shown and that the present place is below
     for at, node in enumerate((*nodes, len(shape))):
-        start = hidden_from(shape, nodes[at - 1] if at else -1, node)
+        start = first_visible(shape, nodes[at - 1] if at else -1, node)
         if start < node:
             _leave(shape, around, start)
             rows.append(Row(-1, len(around), 0, _counts(shape, statuses, start, node)))

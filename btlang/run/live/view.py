@@ -9,15 +9,13 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack, suppress
 
-from btlang.record import Record
 from btlang.run.bus import INLINE
 from btlang.run.events import PeriodPassed
 from btlang.run.live import frame
 from btlang.run.live.board import Board
-from btlang.run.live.capture import captured
-from btlang.run.live.keys import GONE, Keys
-from btlang.run.live.screen import Screen
-from btlang.run.live.stopping import stoppable
+from btlang.run.live.keys import GONE, Keys, stoppable
+from btlang.run.live.screen import LiveScreen, capture_output
+from btlang.support.record import Record
 from btlang.text.output import is_unicode
 
 TYPE_CHECKING = False
@@ -28,7 +26,7 @@ if TYPE_CHECKING:
     from btlang.run.controls import Controls
     from btlang.run.events import Event
     from btlang.run.live.board import Map, Viewed
-    from btlang.run.snapshot import State
+    from btlang.run.snapshot import RunState
     from btlang.run.world_input import WorldInput
 
 
@@ -45,7 +43,7 @@ _OTHER_LINES = 6  # one row in so many shows what happened, above the frame
 
 
 class ViewKey(Record):
-    """What a key does: how it is shown, what it does in words, and what each key calls (see Keys)."""
+    """A key: how it is shown, what it does in words, and what each key calls (see Keys)."""
 
     shown: str
     does: str
@@ -53,7 +51,7 @@ class ViewKey(Record):
 
 
 def usual_keys(controls: Controls) -> list[ViewKey]:
-    """The keys of a run that goes on; the pause comes first."""
+    """Return the keys of a run that goes on; the pause comes first."""
     return [
         ViewKey("space", "pause", {" ": controls.toggle}),
         ViewKey("s", "step", {"s": controls.step}),
@@ -92,7 +90,7 @@ class LiveView:
         self._type_ahead = type_ahead
         self._controls = controls
         self._output = output
-        self._screen = Screen(output, lambda: os.get_terminal_size(output.fileno()))
+        self._screen = LiveScreen(output, lambda: os.get_terminal_size(output.fileno()))
         own = [ViewKey("m", _MAP, {"m": self._hide_map}), ViewKey("?", "legend", {"?": self._explain})]
         used = [*(usual_keys(controls) if keys is None else keys), *own]
         self._shown_keys = [(key.shown, key.does) for key in used]
@@ -116,21 +114,21 @@ class LiveView:
 
     @property
     def unicode(self) -> bool:
-        """Whether the terminal has more than the signs of ASCII."""
+        """Return whether the terminal has more than the signs of ASCII."""
         return self._board.signs is frame.UNICODE
 
     def show_map(self, world: Map | None) -> None:
-        """Shows the world beside the tree, or below it, while the mission runs; m hides and shows it."""
+        """Show the world beside the tree, or below it, while the mission runs; m hides and shows it."""
         self._board.map = world
 
     def __call__(self, event: Event) -> None:
-        """Notes an event."""
+        """Note an event."""
         self._board.note(event)
         if isinstance(event, PeriodPassed) and time.monotonic() >= self._due:
             self._wake.set()
 
-    def jump(self, state: State) -> None:
-        """The run goes on from another state."""
+    def jump(self, state: RunState) -> None:
+        """Go on from another state of the run."""
         self._board.jump(state)
         self._wake.set()
 
@@ -144,7 +142,7 @@ class LiveView:
             exits.callback(self._finish)
             exits.callback(sys.setswitchinterval, sys.getswitchinterval())
             sys.setswitchinterval(_SWITCH)
-            exits.enter_context(captured(self._output, self._board.note))
+            exits.enter_context(capture_output(self._output, self._board.note))
             exits.enter_context(stoppable(self._leave, self._come_back))
             self._thread.start()
             self._exits = exits.pop_all()
@@ -177,7 +175,7 @@ class LiveView:
             self._due = now + rest
 
     def _draw(self) -> None:
-        """Draws a frame where there is anything new."""
+        """Draw a frame where there is anything new."""
         width, height = self._screen.size()
         doing = self._doing()
         question = self._question
@@ -194,7 +192,7 @@ class LiveView:
         self._screen.draw(above, lines)
 
     def _keys_shown(self, doing: str) -> Sequence[tuple[str, str]]:
-        """As frame.keys_line takes it."""
+        """Return the keys as frame.keys_line takes them."""
         if self._keys is None:
             return frame.SIGNALS
         typing = self._type_ahead is not None and doing != "paused"
@@ -235,17 +233,17 @@ class LiveView:
 
     @property
     def _question(self) -> str:
-        """What the robot asks and somebody at this keyboard can answer."""
+        """Return what the robot asks and somebody at this keyboard can answer."""
         return self._world_input.question if self._world_input is not None and self._keys is not None else ""
 
     def _takes_answers(self) -> bool:
-        """Whether keys are an answer: also when the question has just gone, so that its rest stops no robot."""
+        """Return whether keys are an answer: also when the question has just gone, so that its rest stops no robot."""
         now = time.monotonic()
         self._asked = now if self._question else self._asked
         return now - self._asked < _GRACE or bool(self._typed)
 
     def _answer(self, key: str) -> None:
-        """A key of the answer; Enter sends it."""
+        """Take a key of the answer; Enter sends it."""
         if key in "\r\n":
             if self._typed and self._question and self._world_input is not None:
                 self._world_input.type(self._typed)
@@ -276,7 +274,7 @@ class LiveView:
         self._board.hides_map = not self._board.hides_map
 
     def _leave(self) -> None:
-        """Gives the terminal back for as long as the process is stopped."""
+        """Give the terminal back for as long as the process is stopped."""
         with self._drawing:
             self._left = True
             self._screen.leave()

@@ -54,4 +54,4 @@ function save(name: string, content: Blob | string): void {
 }
 
 /** A text as the content of a file. */
-export const plain = (text: string): Blob => new Blob([text], { type: "text/plain;charset=utf-8" });
+export const textBlob = (text: string): Blob => new Blob([text], { type: "text/plain;charset=utf-8" });

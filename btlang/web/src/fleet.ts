@@ -103,7 +103,7 @@ const unknown = () => ({
 
 export interface Robot extends ReturnType<typeof unknown> {}
 
-/** One robot, as its messages have it: the same as `RobotView` in btlang/server/robot_view.py, with a log and a path. */
+/** One robot, as its messages have it: the same as `RobotView` in btlang/server/live/robot_view.py, with a log and a path. */
 export class Robot {
   up = false;
   /** The server says that it can't reach it. */
@@ -207,7 +207,7 @@ export class Fleet {
   }
 
   /** There is no connection: what was known may no longer be true. */
-  lose(): void {
+  disconnect(): void {
     for (const robot of this.robots.values()) this.tell(robot, "offline", null);
   }
 

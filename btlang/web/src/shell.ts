@@ -73,7 +73,7 @@ export class Shell {
 
   private connected(online: boolean): void {
     fill(this.cut, online ? "" : t("offline"));
-    if (!online) this.fleet.lose();
+    if (!online) this.fleet.disconnect();
   }
 
   private stopped(): string[] {

@@ -8,7 +8,7 @@ from btlang.frontends.mission.symbols.names import Names
 from btlang.frontends.mission.symbols.phrases import Phrases
 from btlang.frontends.mission.tokens import lexer as lexing
 from btlang.frontends.mission.tokens.lexer import Lexer
-from btlang.mission_vocabulary import world_vocabulary
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.text.source import Source
 from btlang.text.words import split
 

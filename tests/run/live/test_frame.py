@@ -13,9 +13,9 @@ from btlang.run.live.frame import (
     ASCII,
     SIGNALS,
     UNICODE,
-    Words,
+    ViewWords,
     counts_line,
-    fitted,
+    fit_text,
     header,
     keys_line,
     legend_lines,
@@ -24,8 +24,7 @@ from btlang.run.live.frame import (
 )
 from btlang.run.live.view import usual_keys
 from btlang.run.robot_state import RobotState
-from btlang.run.shape import Shape
-from btlang.run.snapshot import HALTED, SUSPENDED, Doing, State
+from btlang.run.snapshot import HALTED, SUSPENDED, Doing, RunState, Shape
 from btlang.text.source import Source, Span
 from btlang.tree.node import Node
 
@@ -45,14 +44,14 @@ def named(node: Node) -> str:
     return node.name
 
 
-def made(outline: str) -> tuple[State, Words]:
+def made(outline: str) -> tuple[RunState, ViewWords]:
     """A tree whose nodes are named by the lines."""
     shape = shape_of(outline)
     nodes = [Node("Id", name=line.strip()) for line in outline.splitlines()]
-    return State(shape, [Node("Sequence")] * len(shape)), Words(nodes, named)
+    return RunState(shape, [Node("Sequence")] * len(shape)), ViewWords(nodes, named)
 
 
-def lines(state: State, words: Words, height: int = 24, width: int = 40, over: bool = False) -> list[str]:
+def lines(state: RunState, words: ViewWords, height: int = 24, width: int = 40, over: bool = False) -> list[str]:
     return [text(line).rstrip() for line in tree_lines(state, words, height, width, over, UNICODE)]
 
 
@@ -109,8 +108,8 @@ def test_sentences() -> None:
     whole = Node("Sequence", (repeat,), span=Span(source, 0, 46))
     named_again = Node("Sequence", (wave,), name="wave", span=wave.span)
     nodes = [whole, repeat, body, both, both, wave, named_again]
-    state = State(shape_of("a\n b\n  c\n   d\n    e\n     f\n b"), nodes)
-    assert lines(state, Words(nodes, lambda node: node.name or node.id), width=60) == [
+    state = RunState(shape_of("a\n b\n  c\n   d\n    e\n     f\n b"), nodes)
+    assert lines(state, ViewWords(nodes, lambda node: node.name or node.id), width=60) == [
         "· Sequence",
         "├── · Repeat  repeat 2 times:",
         "│   └── · Sequence",
@@ -167,7 +166,7 @@ def test_the_legend_explains_every_sign_in_any_width() -> None:
 
 def test_an_answer_of_a_condition_is_not_red() -> None:
     nodes = [Node("IfThenElse"), Node("Inverter"), Node("BatteryFull"), Node("Wave")]
-    state, words = State(Shape([-1, 0, 1, 0]), nodes), Words(nodes, lambda node: node.id, [-1, 0, 1, 0])
+    state, words = RunState(Shape([-1, 0, 1, 0]), nodes), ViewWords(nodes, lambda node: node.id, [-1, 0, 1, 0])
     state.statuses[:] = bytes([SKIPPED, FAILURE, SUCCESS, FAILURE])
     state.reasons = {1: "it is true", 3: "the arm is stuck"}
     shown = tree_lines(state, words, 10, 80, False, UNICODE)
@@ -183,17 +182,17 @@ def test_a_terminal_without_unicode() -> None:
 
 
 def test_wide_characters_are_counted_as_wide() -> None:
-    assert fitted("日本語", 6, UNICODE) == "日本語"
-    assert fitted("日本語", 5, UNICODE) == "日本…"
-    assert fitted("abc", 0, UNICODE) == ""
+    assert fit_text("日本語", 6, UNICODE) == "日本語"
+    assert fit_text("日本語", 5, UNICODE) == "日本…"
+    assert fit_text("abc", 0, UNICODE) == ""
 
 
 @given(SHAPES, st.integers(3, 30), st.integers(30, 120), st.text(max_size=50), st.booleans())
 def test_whatever_the_tree_the_lines_fit(shape: object, height: int, width: int, name: str, over: bool) -> None:
-    state = State(shape, [Node("Sequence")] * len(shape))  # type: ignore[arg-type]
+    state = RunState(shape, [Node("Sequence")] * len(shape))  # type: ignore[arg-type]
     state.statuses[:] = bytes(index % 7 for index in range(len(state.statuses)))
     state.started = dict.fromkeys(range(len(state.statuses)), 0.0)
-    words = Words([Node("Id", name=name)] * len(state.statuses), named)
+    words = ViewWords([Node("Id", name=name)] * len(state.statuses), named)
     for line in tree_lines(state, words, height, width, over, UNICODE):
         assert cell_len(text(line)) <= width
         assert "\n" not in text(line)

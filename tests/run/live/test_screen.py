@@ -6,7 +6,7 @@ import io
 import os
 import re
 
-from btlang.run.live.screen import Screen
+from btlang.run.live.screen import LiveScreen
 
 Line = tuple[tuple[str, str], ...]
 
@@ -23,9 +23,9 @@ class Output(io.StringIO):
         return re.sub(r"\x1b\[(\?2026[hl]|[0-9;]*m)", "", text)
 
 
-def made(columns: int = 20, rows: int = 10) -> tuple[Screen, Output, list[int]]:
+def made(columns: int = 20, rows: int = 10) -> tuple[LiveScreen, Output, list[int]]:
     output, size = Output(), [columns, rows]
-    return Screen(output, lambda: os.terminal_size((size[0], size[1]))), output, size
+    return LiveScreen(output, lambda: os.terminal_size((size[0], size[1]))), output, size
 
 
 def frame(*lines: str) -> list[Line]:

@@ -7,8 +7,7 @@ from hypothesis import strategies as st
 
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SUCCESS
 from btlang.run.live.selection import LEAST_HEIGHT, Row, choose_rows, focus
-from btlang.run.shape import Shape
-from btlang.run.snapshot import HALTED, SUSPENDED
+from btlang.run.snapshot import HALTED, SUSPENDED, Shape
 
 from .trees import SHAPES, shape_of
 

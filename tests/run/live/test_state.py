@@ -6,8 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
-from btlang.run.shape import Shape
-from btlang.run.snapshot import HALTED, SUSPENDED, State
+from btlang.run.snapshot import HALTED, SUSPENDED, RunState, Shape
 from btlang.tree.node import Node
 
 from .trees import Run
@@ -69,7 +68,7 @@ def test_times() -> None:
 
 def test_depth_does_not_matter() -> None:
     depth = 10_000
-    state = State(Shape(range(-1, depth - 1)), [Node("Sequence")] * depth)
+    state = RunState(Shape(range(-1, depth - 1)), [Node("Sequence")] * depth)
     for t in range(3):
         for status in (RUNNING, SUCCESS):
             for index in range(depth - 1, -1, -1):

@@ -17,9 +17,9 @@ import pytest
 import btlang
 from btlang.api import Mission
 from btlang.engine.status import SUCCESS
-from btlang.mission_vocabulary import world_vocabulary
-from btlang.run.live.capture import Capture
+from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.run.live.keys import Keys
+from btlang.run.live.screen import Capture
 from btlang.run.live.view import LiveView
 from btlang.tree.node import Node, Tree
 from tests.profiles import amount

@@ -12,8 +12,7 @@ from btlang.engine.engine import Engine
 from btlang.engine.leaves.leaf import LeafBinding
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
 from btlang.run.events import StatusesChanged
-from btlang.run.shape import Shape
-from btlang.run.snapshot import State
+from btlang.run.snapshot import RunState, Shape
 from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False
@@ -49,7 +48,7 @@ class Run:
     def __init__(self, root: Node) -> None:
         self.clock = Clock()
         self.nodes, self.parents = outline(Tree(root))
-        self.state = State(Shape(self.parents), self.nodes)
+        self.state = RunState(Shape(self.parents), self.nodes)
         self.latest: dict[int, int] = {}
         self.positions: dict[str, int] = {}
         self.engine = Engine(Tree(root), self._bind, clock=self.clock, listener=self._changed)

@@ -17,7 +17,7 @@ from btlang.frontends.mission.reader import lexed
 from btlang.frontends.mission.symbols.includes import ROLE
 from btlang.frontends.mission.symbols.prefixes import SEPARATORS
 from btlang.frontends.mission.token import CORRELATIVES, Token, go_on
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import Source
 from btlang.text.spelling import nearest
 from btlang.vocabulary.continuations import Begun, begun, meanings, values_on, ways_on

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from functools import cache, lru_cache
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.enumeration import joined
 from btlang.text.source import Span
 from btlang.text.words import Words

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.words import Words
 from btlang.vocabulary.entry import MANNER, RECIPIENT, UNMARKED
 from btlang.vocabulary.reading_context import ReadingContext

@@ -16,7 +16,7 @@ from btlang.frontends.mission.grouping import constraints, lists, operands, oper
 from btlang.frontends.mission.grouping.conditions import CONDITION_FORMS, STARTS_OPERAND, after_condition
 from btlang.frontends.mission.grouping.scan import Scan, Unit
 from btlang.frontends.mission.token import CORRELATIVES, QUANTIFIERS, RULES, Token
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import Source
 from btlang.vocabulary.language_tables import CONNECTIVES
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.grouping.stack import StackEntry
 from btlang.frontends.mission.token import RULES, Header, Token, begins_condition
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import Source, Span
 
 ENDS = frozenset(("newline", "semi", "close", "dedent", "end", "stop"))

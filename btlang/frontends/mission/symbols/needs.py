@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import Span
 from btlang.text.words import Words, statements
 from btlang.vocabulary.lexicon import Lexicon

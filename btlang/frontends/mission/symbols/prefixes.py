@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from btlang.record import Record
+from btlang.support.record import Record
 from btlang.text.source import Span
 from btlang.text.words import Words
 from btlang.vocabulary.language_tables import NOT_ALONE

@@ -6,7 +6,6 @@ from collections.abc import Callable
 from enum import Enum
 from math import copysign, cos, degrees, inf, isfinite, isnan, radians, sqrt
 
-from btlang.record import Record
 from btlang.robots.bodies.body import Body
 from btlang.robots.geometry import Pose, wrap
 from btlang.robots.motion.guard.readings import (
@@ -22,6 +21,7 @@ from btlang.robots.motion.guard.regions import Regions, WalkingPeople, safe_amon
 from btlang.robots.motion.guard.tracking import STANDS, OdometryCheck
 from btlang.robots.robot import RobotError
 from btlang.robots.zones import Zones
+from btlang.support.record import Record
 
 FASTEST, FASTEST_TURN = 20.0, degrees(30.0)
 """Metres and degrees a second that no robot exceeds."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from math import inf
 
-from btlang.record import Record
 from btlang.robots.geometry import Pose
+from btlang.support.record import Record
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ import { called } from "../tasks/queue";
 import { Scene, type Film } from "./scene";
 import { Timeline } from "./timeline";
 
-/** See btlang/recording/side_by_side.py. */
+/** See btlang/recording/film.py. */
 export interface Compared {
   films: [Film, Film];
   stories: string[];

@@ -2,7 +2,7 @@
 import { address } from "../address";
 import { request } from "../api";
 import { fill, h } from "../dom";
-import { downloads, pictures, plain, type Offer } from "../download";
+import { downloads, pictures, textBlob, type Offer } from "../download";
 import { called, command, type Task } from "../tasks/queue";
 import { moment, t, type Key } from "../texts";
 import type { Context, View } from "../view";
@@ -57,13 +57,13 @@ function openFilm({ me }: Context, robot: string, name: string, at: number): Vie
     const xml = async (): Promise<Blob> => {
       const answer = await request("GET", `/api/trees${of}`);
       if (!answer.ok) throw new Error(answer.text);
-      return plain(answer.xml);
+      return textBlob(answer.xml);
     };
     const problem = h("p", { class: "problem", role: "alert", lang: "en" });
     const offers = (): Offer[] => [
       { key: "download.mcap", ending: "mcap", content: async () => `/api/recordings${of}` },
       { key: "download.xml", ending: "xml", content: xml },
-      ...(film.text ? [{ key: "download.english", ending: "txt", content: async () => plain(film.text) } as const] : []),
+      ...(film.text ? [{ key: "download.english", ending: "txt", content: async () => textBlob(film.text) } as const] : []),
       ...pictures(player.scene.tree),
     ];
     const began = Number(film.about["wall"]) || 0;

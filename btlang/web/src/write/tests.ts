@@ -3,7 +3,7 @@ import { fill, h } from "../dom";
 import type { Film } from "../look_back/player";
 import { t } from "../texts";
 import { Editor, smallest } from "./editor";
-import { Keeping } from "./keeping";
+import { SavedMission } from "./saved_mission";
 import { play } from "./play";
 import type { Store } from "./store";
 import { problemOf, type Message, type Reader } from "./understood";
@@ -40,7 +40,7 @@ export class Tests {
   private problem = h("p", { class: "problem", role: "alert", lang: "en" });
   private results = h("ol", { class: "results", "aria-live": "polite" });
   private editor: Editor;
-  private keeping: Keeping;
+  private saved: SavedMission;
   private loaded = false;
   private example: string; // what somebody begins with who has no tests
 
@@ -54,14 +54,14 @@ export class Tests {
     this.editor = new Editor("", t("tests.text"), {
       reader: { service: async () => ({}) }, // what missions are asked about, tests aren't
       readOnly: true,
-      changed: () => this.keeping.changed(),
+      changed: () => this.saved.changed(),
       moved: () => undefined,
       keys: [
         { key: "Mod-s", run: () => void this.keep() },
         { key: "Mod-Enter", run: () => void this.run() },
       ],
     });
-    this.keeping = new Keeping(store, this.editor, { told: () => this.tell(), failed: (problem) => this.fail(problem) });
+    this.saved = new SavedMission(store, this.editor, { told: () => this.tell(), failed: (problem) => this.fail(problem) });
     const tools = h(
       "div",
       { class: "doing" },
@@ -82,17 +82,17 @@ export class Tests {
   }
 
   close(): void {
-    this.keeping.keepDraft();
+    this.saved.keepDraft();
     this.editor.close();
   }
 
   private async load(): Promise<void> {
     try {
-      await this.keeping.load();
+      await this.saved.load();
     } catch (error) {
       return this.fail((error as Error).message);
     }
-    const { draft, kept } = this.keeping;
+    const { draft, kept } = this.saved;
     kept.text ||= this.example;
     const before = draft.read();
     this.editor.apply([smallest("", before?.text ?? kept.text)]);
@@ -106,11 +106,11 @@ export class Tests {
   private async keep(): Promise<void> {
     if (!this.mayWrite || !this.loaded) return;
     fill(this.state, t("write.saving"));
-    await this.keeping.save();
+    await this.saved.save();
   }
 
   private tell(): void {
-    if (this.loaded) fill(this.state, this.keeping.state);
+    if (this.loaded) fill(this.state, this.saved.state);
   }
 
   private fail(problem: string): void {

@@ -2,7 +2,7 @@
 import { address } from "../address";
 import { may, type RequestError } from "../api";
 import { fill, h, set } from "../dom";
-import { downloads, pictures, plain, type Offer } from "../download";
+import { downloads, pictures, textBlob, type Offer } from "../download";
 import { libraryOf } from "../tasks/library";
 import { command } from "../tasks/queue";
 import { askSchedule } from "../tasks/schedule";
@@ -11,7 +11,7 @@ import { TreeView } from "../tree/tree_view";
 import type { Context, View } from "../view";
 import { ask } from "./ask";
 import { Editor, smallest } from "./editor";
-import { Keeping } from "./keeping";
+import { SavedMission } from "./saved_mission";
 import { merge } from "./merge";
 import { play } from "./play";
 import { FileStore, LibraryStore, type Kept, type Store } from "./store";
@@ -66,7 +66,7 @@ class Desk {
   private editor: Editor;
   private edits: TreeEdits;
   private tests: Tests;
-  private keeping: Keeping;
+  private saved: SavedMission;
   private nodes: SaidNode[] = [];
   private understood = "";
   private sort = "english";
@@ -74,8 +74,8 @@ class Desk {
   private closed = false;
   private unwatch: () => void;
   private leaving = (event: BeforeUnloadEvent): void => {
-    this.keeping.keepDraft();
-    if (this.keeping.isChanged) event.preventDefault();
+    this.saved.keepDraft();
+    if (this.saved.isChanged) event.preventDefault();
   };
 
   constructor(
@@ -103,7 +103,7 @@ class Desk {
         { key: "Alt-Enter", run: () => void this.attempt() },
       ],
     });
-    this.keeping = new Keeping(store, this.editor, { told: () => this.tell(), failed: (problem) => this.fail(problem) });
+    this.saved = new SavedMission(store, this.editor, { told: () => this.tell(), failed: (problem) => this.fail(problem) });
     this.edits = new TreeEdits(this.tree, this.editor, this.reader, (text) => this.fail(text), () => this.mayWrite);
     const mission = { name: store.name, text: () => this.editor.text, show: (start: number, end: number) => this.showWords(start, end) };
     this.tests = new Tests(tests, mission, this.reader, this.mayWrite);
@@ -131,7 +131,7 @@ class Desk {
       this.mayWrite && h("button", { type: "button", title: "F2", onclick: () => this.rename() }, t("write.rename")),
       this.mayWrite && h("button", { type: "button", title: "Ctrl+Z", onclick: () => this.editor.undo() }, t("write.undo")),
       this.mayWrite && h("button", { type: "button", title: "Ctrl+Y", onclick: () => this.editor.redo() }, t("write.redo")),
-      downloads(() => [this.keeping.name.replace(/\.\w+$/, ""), Date.now() / 1000], () => this.offers(), (problem) => this.fail(problem)),
+      downloads(() => [this.saved.name.replace(/\.\w+$/, ""), Date.now() / 1000], () => this.offers(), (problem) => this.fail(problem)),
       this.outline,
     );
     const head = h("div", { class: "head" }, h("div", { class: "now" }, this.title, this.state), tools);
@@ -147,7 +147,7 @@ class Desk {
 
   private close(): void {
     this.closed = true;
-    this.keeping.keepDraft();
+    this.saved.keepDraft();
     this.unwatch();
     this.context.presence.write("", false);
     removeEventListener("beforeunload", this.leaving);
@@ -157,17 +157,17 @@ class Desk {
     this.tree.close();
   }
 
-  // -- keeping
+  // -- saving
 
   private async load(): Promise<void> {
     try {
-      const { text } = await this.keeping.load();
+      const { text } = await this.saved.load();
       if (/^\s*[<{]/.test(text)) await this.inEnglish(text);
     } catch (error) {
       return this.loadLater(error as RequestError);
     }
     if (this.closed) return;
-    const { draft, kept, name } = this.keeping;
+    const { draft, kept, name } = this.saved;
     fill(this.title, name);
     this.fail("");
     this.editor.apply([smallest("", kept.text)]);
@@ -182,21 +182,21 @@ class Desk {
   private async inEnglish(text: string): Promise<void> {
     const answer = await this.reader.service("english", text, {});
     if (!answer.ok || answer.sort === "english") return;
-    const tree = this.keeping.name;
-    const copy = await this.keeping.loadEnglish();
-    this.keeping.kept = { ...copy, text: copy.revision ? copy.text : answer.text, tree, copy: this.keeping.name };
+    const tree = this.saved.name;
+    const copy = await this.saved.loadEnglish();
+    this.saved.kept = { ...copy, text: copy.revision ? copy.text : answer.text, tree, copy: this.saved.name };
   }
 
   /** As soon as the robot is back. */
   private loadLater(error: RequestError): void {
-    this.fail(this.keeping.draft.read() ? `${error.message} ${t("write.draft_waits")}` : error.message);
+    this.fail(this.saved.draft.read() ? `${error.message} ${t("write.draft_waits")}` : error.message);
     const passes = error.status === 0 || error.status === 404 || error.status >= 500; // 404: a server that has just begun knows no robot
     if (passes) setTimeout(() => this.closed || void this.load(), AGAIN);
   }
 
   /** A draft of an earlier visit. */
   private offer(draft: Kept): void {
-    const { kept } = this.keeping;
+    const { kept } = this.saved;
     const take = (): void => {
       fill(this.offered);
       if (draft.revision === kept.revision) this.editor.text = draft.text;
@@ -204,7 +204,7 @@ class Desk {
     };
     const drop = (): void => {
       fill(this.offered);
-      this.keeping.draft.clear();
+      this.saved.draft.clear();
     };
     fill(this.offered, h("span", {}, t("write.draft")), h("button", { type: "button", class: "primary", onclick: take }, t("write.take_draft")), h("button", { type: "button", onclick: drop }, t("write.drop_draft")));
   }
@@ -212,14 +212,14 @@ class Desk {
   private async keep(): Promise<void> {
     if (!this.mayWrite) return;
     fill(this.state, t("write.saving"));
-    await this.keeping.save();
+    await this.saved.save();
   }
 
   private tell(): void {
-    const { tree, copy, problem } = this.keeping.kept;
-    fill(this.state, this.keeping.state);
+    const { tree, copy, problem } = this.saved.kept;
+    fill(this.state, this.saved.state);
     fill(this.origin, tree && (copy ? t("write.of_tree", { tree, copy }) : t("write.onto_tree", { tree })), problem && h("span", { class: "problem", lang: "en" }, problem));
-    this.context.presence.write(this.keeping.name, this.keeping.isChanged);
+    this.context.presence.write(this.saved.name, this.saved.isChanged);
   }
 
   /** Who else has it open, before anybody saves. */
@@ -233,7 +233,7 @@ class Desk {
   private changed(text: string): void {
     this.tree.element.ariaBusy = "true";
     this.reader.read(text);
-    this.keeping.changed();
+    this.saved.changed();
   }
 
   private check(text: string, messages: Message[], compiles: boolean, sort: string): void {
@@ -315,9 +315,9 @@ class Desk {
     const xml = async (): Promise<Blob> => {
       const answer = await this.reader.service("xml", this.editor.text, {});
       if (!answer.ok) throw new Error(problemOf(answer));
-      return plain(answer.xml);
+      return textBlob(answer.xml);
     };
-    const said: Offer = { key: "download.english", ending: "txt", content: async () => plain(this.editor.text) };
+    const said: Offer = { key: "download.english", ending: "txt", content: async () => textBlob(this.editor.text) };
     return [...(this.sort === "english" ? [said] : []), { key: "download.xml", ending: "xml", content: xml }, ...pictures(this.tree)];
   }
 
@@ -340,8 +340,8 @@ class Desk {
 
   /** Lets the robot do it later, as it's kept. */
   private schedule(): void {
-    if (this.keeping.isChanged || !this.keeping.kept.revision) return this.fail(t("write.save_first"));
-    askSchedule(this.context, this.keeping.name, (rule) => fill(this.state, t("submit.scheduled", { rule })));
+    if (this.saved.isChanged || !this.saved.kept.revision) return this.fail(t("write.save_first"));
+    askSchedule(this.context, this.saved.name, (rule) => fill(this.state, t("submit.scheduled", { rule })));
   }
 
   private fail(problem: string): void {

@@ -1,0 +1,267 @@
+"""The verb `robot`: brings a robot up with its task layer, and sends commands to one that is up."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import sys
+import threading
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from functools import partial
+from urllib.parse import parse_qs, urlsplit
+
+from btlang.cli.parser import check_act, check_count
+from btlang.cli.task import print_answer
+from btlang.components.words import words_of
+from btlang.diagnostics.errors import MissionError
+from btlang.robots.ears import read_answers
+from btlang.robots.registry import connector, runs_in_real_time
+from btlang.run.controls import emergency_signal
+from btlang.task import messages
+from btlang.task.commands.client import USUAL_NAME, RobotClient, data_folder, emergency_stop
+from btlang.task.commands.companion import companions, require_companions
+from btlang.task.commands.socket_server import SocketServer
+from btlang.task.commands.store_handlers import latest_text
+from btlang.task.execution.manager import DAY
+from btlang.task.execution.missions import MissionReader
+from btlang.task.layer import KEPT, TaskLayer, keep_ticks_in_time, make_robot_layer
+from btlang.task.store.backup import restore_backup
+from btlang.task.store.records import LibraryKind
+from btlang.task.store.task_store import open_store
+from btlang.text.escaping import one_line
+from btlang.text.output import pass_on, show
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    import argparse
+    from typing import Any
+
+    from btlang.robots.registry import Connector
+    from btlang.text.source import Source
+
+_UNIT = """{note}[Unit]
+Description=The robot '{name}' (btlang)
+After=network.target
+
+[Service]
+ExecStart={command}
+WorkingDirectory={folder}
+Restart=on-failure
+KillSignal=SIGTERM
+TimeoutStopSec=30
+
+[Install]
+WantedBy=default.target
+"""
+
+_SECRET = """# The password of the store is in this file: let nobody else read it (chmod 600).
+# Or leave it out of the URL, and write it into ~/.pgpass, where PostgreSQL looks for it.
+"""
+_LIBRARY = "library:"
+_FLEET_ACTS = ("invite", "revoke", "invited")  # about a server's robots elsewhere
+_CONTROL = re.compile(r"[\0-\x1f\x7f]")
+_PLAIN = re.compile(r"[\w@%+=:,./-]+", re.ASCII)
+
+
+def run_act(options: argparse.Namespace) -> int:
+    """Do what the act says; return the exit code. Raises MissionError."""
+    act = options.act
+    given = check_act(options)
+    for each, other in (("host", "serve"), ("port", "serve"), ("code", "join")) if act != "stop" else ():
+        if each in given and other not in given:
+            raise messages.wrong(act, f"{options.flags[each]} needs {options.flags[other]}")
+    check_count(options)
+    if act in _FLEET_ACTS:
+        from btlang.cli.users import change_invitations
+
+        return change_invitations(options)
+    if act == "up":
+        return _up(options)
+    if act in ("check", "show", "urdf", "import"):
+        from btlang.cli.robot_file import read_robot_file
+
+        return read_robot_file(act, options.item[0])
+    if act == "unit":
+        pass_on(_unit(options))
+        return 0
+    if act in ("backup", "restore"):
+        return _copy(options)
+    if act == "stop":
+        for line in emergency_stop(options.name, options.reason):
+            show(line)
+        with (
+            suppress(MissionError),
+            RobotClient(options.name) as client,
+        ):  # the robot stands already; this is for the trail
+            client.send(messages.EmergencyStop(options.reason))
+        return 0
+    if act == "say" and not options.item:
+        raise messages.wrong(act, "it needs a text")
+    commands: dict[str, Callable[[], messages.Command]] = {
+        "down": messages.Down, "status": messages.Status, "report": partial(messages.Report, options.since),
+        "release": messages.Release, "pause": messages.Pause, "resume": messages.Resume,
+        "step": messages.Step, "say": partial(messages.Say, " ".join(options.item)), "visitor": messages.InviteVisitor,
+    }  # fmt: skip
+    with RobotClient(options.name) as client:
+        return print_answer(client.send(commands[act]()), options.json)
+
+
+def layer_options(options: argparse.Namespace, name: str) -> dict[str, Any]:
+    """Return what the options TASK_LAYER settle for the TaskLayer of a robot."""
+    folder = data_folder(name)
+    recordings = None if options.no_recordings else options.record or os.path.join(folder, "recordings")
+    return {
+        "folder": folder, "store": options.store or os.path.join(folder, "tasks.db"), "rules": options.rules,
+        "schedules": options.schedules,
+        "durable": options.durable, "recordings": recordings,
+        "keeps": KEPT if options.keep is None else options.keep * DAY,
+        "answers": options.answers and read_answers(options.answers),
+    }  # fmt: skip
+
+
+def _up(options: argparse.Namespace) -> int:
+    """Bring a robot up until `btc robot down`, Ctrl-C or SIGTERM."""
+    name, ended = options.name or USUAL_NAME, threading.Event()
+    layer: TaskLayer
+    server = SocketServer(
+        name,
+        lambda data, person: layer.handle(data, person),
+        lambda person: layer.stop(person),
+        lambda *wanted: layer.feed.watch(*wanted),
+    )
+    try:  # the name is ours before the store and the robot are touched
+        require_companions(options)
+        kept = layer_options(options, name)
+        robot, world = _from_library(options, kept)
+        if options.speed != "real" and runs_in_real_time(robot.body, robot.over, options.simulate):
+            options.refuse(f"the robot runs in real time over {robot.over}, so it takes no --speed")
+        words = [] if options.robot.startswith(_LIBRARY) else words_of(robot.body)
+        reader = MissionReader(
+            [*words, *options.keywords],
+            world,
+            include_root=options.include_root,
+            allowed_keywords=options.allow_keywords,
+        )
+        trouble, down = (lambda text: show(one_line(text), sys.stderr)), ended.set
+        layer = make_robot_layer(robot, reader, **kept, speed=options.speed, trouble=trouble, down=down)
+    except BaseException:
+        server.close()
+        raise
+    with emergency_signal(partial(layer.stop, "the keyboard"), layer.disable):
+        try:
+            try:
+                for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+                    signal.signal(number, lambda *_: ended.set())
+                layer.start()
+                server.start()
+                keep_ticks_in_time()
+                show(f"The robot '{name}' is up. Give it work with: btc task add")
+                if layer.emergency.is_latched:
+                    show(
+                        f"It is stopped: {layer.emergency.reason}. To let it move: btc robot release", stream=sys.stderr
+                    )
+                with companions(options, name, show) as code:
+                    while not code and not ended.wait(1.0):
+                        pass
+            finally:
+                server.close()
+        finally:
+            ended_well = layer.close()
+    show(f"The robot '{name}' is down.")
+    return code or (0 if ended_well else 1)
+
+
+def _from_library(options: argparse.Namespace, kept: Mapping[str, Any]) -> tuple[Connector, str | Source | None]:
+    """Read the robot and the world that options name, which may be in the robot's own library."""
+    robot, world = options.robot, options.world
+    over, named = options.over or ("devices" if options.simulate else None), {}
+    if options.simulate:
+        named["simulate"] = options.simulate
+    if any(each is not None and each.startswith(_LIBRARY) for each in (robot, world)):
+        os.makedirs(kept["folder"], mode=0o700, exist_ok=True)
+        with open_store(kept["store"]) as store:
+            robot = (
+                latest_text(store, robot.removeprefix(_LIBRARY), LibraryKind.ROBOT)
+                if robot.startswith(_LIBRARY)
+                else robot
+            )
+            if world is not None and world.startswith(_LIBRARY):
+                world = latest_text(store, world.removeprefix(_LIBRARY), LibraryKind.WORLD)
+    chosen = connector(robot, over, **named)
+    return chosen, world or chosen.body.world or None
+
+
+def _unit(options: argparse.Namespace) -> str:
+    """Write a unit of systemd that brings the robot up with these options."""
+    words = [sys.executable, "-m", "btlang", "robot", "up"]
+    for option in (
+        "name",
+        "robot",
+        "over",
+        "world",
+        "rules",
+        "schedules",
+        "store",
+        "record",
+        "include_root",
+        "join",
+        "code",
+        "answers",
+    ):
+        value = getattr(options, option)
+        if value and value != "simulated":
+            words += [f"--{option.replace('_', '-')}", os.path.abspath(value) if os.path.exists(value) else value]
+    for option, names in (("--keywords", options.keywords), ("--allow-keywords", options.allow_keywords)):
+        for each in names:
+            words += [option, os.path.abspath(each) if os.path.exists(each) else each]
+    for each in options.simulate:
+        words += ["--simulate", each]
+    words += [] if options.speed == "real" else ["--speed", str(options.speed)]
+    words += [] if options.keep is None else ["--keep", f"{options.keep:g}"]
+    words += ["--serve", "--host", options.host, "--port", str(options.port)] if options.serve else []
+    words += ["--durable"] * options.durable + ["--no-recordings"] * options.no_recordings
+    folder = os.getcwd()
+    for word in (*words, folder):
+        if _CONTROL.search(word):  # behind the end of a line would be another setting
+            raise messages.wrong("unit", f"'{one_line(word)}' can't stand in a unit")
+    return _UNIT.format(
+        note=_SECRET if _has_password(options.store) else "",
+        name=options.name or USUAL_NAME,
+        command=" ".join(map(_quote, words)),
+        folder=folder.replace("%", "%%"),
+    )
+
+
+def _quote(word: str) -> str:
+    """Quote a word of a command line for systemd."""
+    plain = word.replace("\\", "\\\\").replace('"', '\\"').replace("%", "%%").replace("$", "$$")
+    return plain if _PLAIN.fullmatch(word) else f'"{plain}"'
+
+
+def _has_password(store: str) -> bool:
+    """Return whether the place of a store has a password: in its user, or as a parameter."""
+    try:
+        parts = urlsplit(store)
+        return parts.password is not None or "password" in parse_qs(parts.query)
+    except ValueError:
+        return "password" in store
+
+
+def _copy(options: argparse.Namespace) -> int:
+    """Back up the store, or restore one."""
+    if len(options.item) != 1:
+        raise messages.wrong(options.act, "it needs a file")
+    [path] = options.item
+    folder = data_folder(options.name or USUAL_NAME)
+    os.makedirs(folder, mode=0o700, exist_ok=True)
+    place = options.store or os.path.join(folder, "tasks.db")
+    if options.act == "restore":
+        restore_backup(path, place)
+        show(f"Restored {path}.")
+    else:
+        with open_store(place) as store:
+            store.backup(path)
+        show(f"Wrote {path}.")
+    return 0

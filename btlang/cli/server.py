@@ -1,0 +1,165 @@
+"""The verb `serve`: a server for the robots that are up on this computer."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import socket
+import ssl
+import sys
+import threading
+from contextlib import suppress
+from ipaddress import ip_address
+
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.reading import reason_of
+from btlang.robots.files import socket_folder
+from btlang.support.user_dirs import user_dir
+from btlang.task.commands.companion import require_server
+from btlang.text.output import show
+from btlang.text.source import NOWHERE
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    import argparse
+
+    from btlang.server.accounts.accounts import Accounts
+    from btlang.server.accounts.certificate import Certificate
+
+_ADMINISTRATOR = "admin"
+_NICE = 5  # robots on this computer come first
+
+
+def server_folder() -> str:
+    """Return the folder of the users, the certificate and the server's secret."""
+    return os.path.join(user_dir("data"), "server")
+
+
+def control_path() -> str:
+    """Return the path of the Unix socket over which `btc user` notifies a running server."""
+    return os.path.join(socket_folder(), "server.control")
+
+
+def notify_changes() -> None:
+    """Make a running server check again who may log in; do nothing if there is none."""
+    with suppress(OSError), socket.socket(socket.AF_UNIX) as connection:
+        connection.settimeout(2.0)
+        connection.connect(control_path())
+        connection.recv(1)
+
+
+def serve(options: argparse.Namespace) -> int:
+    """Serve until SIGINT or SIGTERM; return the exit code. Raises MissionError."""
+    require_server()
+    from btlang.ros.available import require_package
+    from btlang.server.accounts.accounts import Accounts
+    from btlang.server.http.app import Api
+    from btlang.server.http.listener import load_key, open_listener
+    from btlang.server.http.listener import serve as serve_listener
+
+    if (options.cert is None) != (options.key is None):
+        options.refuse("--cert and --key go together")
+    if options.no_tls and options.cert is not None:
+        options.refuse("--no-tls needs no certificate")
+    if options.ros:
+        require_package("rclpy")
+    if options.no_tls and not _is_loopback(options.host):
+        raise _refuse(options, "without TLS it listens on this computer alone")
+    accounts = Accounts(server_folder())
+    if not accounts.users() and not _is_loopback(options.host):
+        reason = f"there are no users yet; make one first: btc user add {_ADMINISTRATOR} --role administrator"
+        raise _refuse(options, reason)
+    certificate = None if options.no_tls else _certificate(options)
+    listener = open_listener(options.host, options.port)
+    password = _first_password(accounts)
+    port = listener.getsockname()[1]
+    _write_listener(certificate, port)
+    scheme = "http" if certificate is None else "https"
+
+    def ready() -> None:
+        show(f"The server is up: {scheme}://{_format_host(options.host)}:{port}")
+        if certificate is not None:
+            show(f"Fingerprint (SHA-256): {certificate.fingerprint}")
+        if password:
+            show(f"Log in as '{_ADMINISTRATOR}' with the password {password}")
+            show(f"It is shown this once. For another one: btc user passwd {_ADMINISTRATOR}")
+
+    os.nice(_NICE)
+    if options.until_eof:
+        threading.Thread(target=_end_at_eof, daemon=True).start()
+    try:
+        serve_listener(
+            Api(accounts, load_key(server_folder()), ros=options.ros), listener, certificate, control_path(), ready
+        )
+    except (OSError, ssl.SSLError) as error:
+        raise _refuse(options, reason_of(error)) from None
+    finally:
+        accounts.close()
+    return 0
+
+
+def _end_at_eof() -> None:
+    sys.stdin.read()
+    os.kill(os.getpid(), signal.SIGTERM)
+
+
+def _is_loopback(host: str) -> bool:
+    try:
+        return ip_address(host).is_loopback
+    except ValueError:
+        return host == "localhost"
+
+
+def _certificate(options: argparse.Namespace) -> Certificate:
+    from btlang.server.accounts.certificate import Certificate, fingerprint_of, load_certificate
+    from btlang.server.http.listener import tls
+
+    try:
+        if options.cert is None:
+            return load_certificate(server_folder(), options.host)
+        given = Certificate(options.cert, options.key, fingerprint_of(options.cert))
+        tls(given)
+        return given
+    except (OSError, ssl.SSLError) as error:
+        raise _refuse(options, f"its certificate can't be used: {reason_of(error)}") from None
+    except ValueError:
+        raise _refuse(options, "its certificate can't be read: it must be in PEM") from None
+
+
+def listener_path() -> str:
+    """Return the file in which a server with TLS writes its pin and port, for `btc robot invite`."""
+    return os.path.join(server_folder(), "door.json")
+
+
+def _write_listener(certificate: Certificate | None, port: int) -> None:
+    """Write the pin and the port for `btc robot invite`, which is another process."""
+    from btlang.server.accounts.certificate import pin_of, write_private
+
+    with suppress(FileNotFoundError):
+        os.unlink(listener_path())
+    if certificate is not None:
+        known = {"pin": pin_of(certificate.certificate).hex(), "port": port}
+        write_private(listener_path(), json.dumps(known).encode())
+
+
+def _first_password(accounts: Accounts) -> str:
+    """Add an administrator if there is no user, and return the password; return "" if there is one."""
+    from btlang.server.accounts.accounts import UserRole
+    from btlang.server.accounts.passwords import hash_password, random_password
+
+    if accounts.users():
+        return ""
+    password = random_password()
+    accounts.add(_ADMINISTRATOR, UserRole.ADMINISTRATOR, hash_password(password))
+    return password
+
+
+def _refuse(options: argparse.Namespace, reason: str) -> MissionError:
+    place = f"{_format_host(options.host)}:{options.port}"
+    return MissionError([diagnostic("BT201", NOWHERE, place=place, reason=reason)])
+
+
+def _format_host(host: str) -> str:
+    return f"[{host}]" if ":" in host else host

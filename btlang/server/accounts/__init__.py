@@ -1,0 +1,1 @@
+"""Who may use the server: users, sessions, tokens, passwords and the certificate."""

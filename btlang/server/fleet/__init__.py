@@ -1,0 +1,1 @@
+"""Robots of other computers, which join a server."""

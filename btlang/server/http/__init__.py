@@ -1,0 +1,1 @@
+"""The server's HTTP side: routes, access, the API's description and the process that listens."""

@@ -1,0 +1,390 @@
+"""The server's routes: log-in, commands to robots, the library, and the WebSocket."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
+from contextlib import AsyncExitStack, asynccontextmanager, suppress
+from functools import partial
+
+from starlette.applications import Starlette
+from starlette.requests import Request
+from starlette.responses import FileResponse, PlainTextResponse, Response
+from starlette.routing import BaseRoute, Route, WebSocketRoute
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from starlette.websockets import WebSocket
+
+from btlang.diagnostics.errors import MissionError
+from btlang.editing.words import Words
+from btlang.server.accounts.accounts import LONGEST, NEEDED, Accounts, Identity
+from btlang.server.fleet.fleet import Fleet
+from btlang.server.fleet.joining import Joins
+from btlang.server.http.access import COOKIE, Access, AccessError, JsonResponse, address_of, json_object, text_in
+from btlang.server.http.openapi import LIBRARY, VERSION, document
+from btlang.server.http.pages import page_routes
+from btlang.server.live.clients import ClientProtocol
+from btlang.server.live.robot_feeds import RobotFeed, RobotFeeds, metrics
+from btlang.server.live.rosbridge import Rosbridge
+from btlang.server.live.sockets import Sockets
+from btlang.server.page.processes import ASKED, TRIES, Checker, arguments_of, comparison, film, tree
+from btlang.server.page.recordings import (
+    RecordingResponse,
+    fetch,
+    in_file,
+    list_recordings,
+    list_recordings_elsewhere,
+    path_of,
+)
+from btlang.task import messages
+from btlang.task.messages import Answer, Command, read_command
+from btlang.task.store.database import StoreError
+from btlang.task.store.records import LibraryKind
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+MOST_HEAD = 16 * 1024  # bytes
+_MOST_FETCHING = 2  # recordings of robots elsewhere that are shown at a time: each is copied
+_HEADERS = {
+    b"content-security-policy": b"default-src 'none'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'",
+    b"x-frame-options": b"DENY",
+    b"x-content-type-options": b"nosniff",
+    b"referrer-policy": b"no-referrer",
+    b"cross-origin-resource-policy": b"same-origin",
+    b"cross-origin-opener-policy": b"same-origin",
+    b"cache-control": b"no-store",
+}
+
+
+class Api:
+    """The API of the server: what its routes do.
+
+    `ros` are the names of the ROS 2 graph that are allowed. Texts are read with `words`, if they are given, in place of
+    those of a robot.
+    """
+
+    def __init__(
+        self,
+        accounts: Accounts,
+        key: str,
+        robots: RobotFeeds | None = None,
+        ros: Sequence[str] = (),
+        words: Words | None = None,
+        cookie: str = COOKIE,
+    ) -> None:
+        self.accounts, self.robots, self.words = accounts, robots or RobotFeeds(), words
+        self.access, self.checker, self.trials = Access(accounts, key, cookie), Checker(), Checker()
+        self.sockets, self.clients = Sockets(self.access), ClientProtocol(self.robots, self.send)
+        self.rosbridge = Rosbridge(self.access, ros) if ros else None
+        self._fetching = asyncio.Semaphore(_MOST_FETCHING)
+        self.joins = Joins(Fleet(accounts.database), self.robots, self.access)
+
+    def app(self) -> ASGIApp:
+        """Return the ASGI application."""
+        return _Headers(Starlette(routes=self.routes(), lifespan=self._life, exception_handlers={404: _not_found}))
+
+    def routes(self) -> list[BaseRoute]:
+        """Return all routes."""
+        return [
+            self._route("/api/login", self._log_in, "POST"),
+            self._route("/api/logout", self._log_out, "POST"),
+            self._route("/api/me", self._me, "GET"),
+            self._route("/api/robots", self._robots, "GET"),
+            self._route("/api/stop", self._stop, "POST"),
+            self._route("/api/commands", self._command, "POST"),
+            *(route for path, kind in LIBRARY.items() for route in self._library(path, kind)),
+            *(self._route(f"/api/{kind}", partial(self._text, kind), "POST") for kind in ASKED),
+            self._route("/api/recordings", self._recordings, "GET"),
+            self._route("/api/recordings/{name}", self._recording, "GET"),
+            self._route("/api/films/{name}", partial(self._show_film, film, ()), "GET"),
+            self._route("/api/trees/{name}", partial(self._show_film, tree, ()), "GET"),
+            self._route("/api/comparisons/{name}", partial(self._show_film, comparison, ("with",)), "GET"),
+            self._route("/api/urdf", self._urdf, "GET"),
+            self._route("/metrics", self._metrics, "GET"),
+            Route("/openapi.json", lambda request: JsonResponse(document())),
+            *page_routes(self.access),
+            Route("/live", _word("live")),
+            Route("/ready", _word("ready")),
+            WebSocketRoute("/api/ws", partial(self.sockets.serve, self.clients)),
+            WebSocketRoute(
+                "/api/rosbridge",
+                _no_socket if self.rosbridge is None else partial(self.sockets.serve, self.rosbridge),
+            ),
+            WebSocketRoute("/api/join", self.joins.serve),
+        ]
+
+    async def check(self) -> None:
+        """Send away who may no longer be here: the accounts have changed."""
+        await self.sockets.check()
+        await self.joins.check()
+
+    async def send(self, identity: Identity, robot: str, command: Command, address: str) -> Answer:
+        """Return a command to a robot, by somebody who may. Raises AccessError."""
+        if not identity.role.covers(NEEDED[type(command)]):
+            await self.access.note(identity.user, address, command.tag, "refused")
+            raise AccessError(403, f"Only {NEEDED[type(command)]}s may do this.")
+        feed = self.feed(robot)
+        try:
+            if isinstance(command, messages.EmergencyStop):
+                await feed.stop()  # at once; what follows says who, and why
+            return await feed.send(command, identity.user)
+        except ConnectionError as error:
+            raise AccessError(503, str(error)) from None
+
+    def feed(self, robot: str) -> RobotFeed:
+        """Return the feed of a robot.
+
+        Raises AccessError (404, 409) if there is no such robot, or several where none was named.
+        """
+        feed = self.robots.get(robot)
+        if feed is None and robot:
+            raise AccessError(404, f"There's no robot '{robot}'.")
+        if feed is None:
+            up = [feed.name for feed in self.robots.feeds.values() if feed.is_up]
+            raise AccessError(409, f"Say which robot: {', '.join(up)}." if up else "No robot is up.")
+        return feed
+
+    @asynccontextmanager
+    async def _life(self, app: Starlette) -> AsyncIterator[None]:
+        await self.joins.check()
+        following = asyncio.create_task(self.robots.follow())
+        try:
+            yield
+        finally:
+            following.cancel()
+            with suppress(asyncio.CancelledError):
+                await following
+            self.access.close()
+            self.checker.close()
+            self.trials.close()
+            if self.rosbridge is not None:
+                await self.rosbridge.close()
+
+    def _route(self, path: str, do: Callable[[Request], Awaitable[Response]], method: str) -> Route:
+        async def answered(request: Request) -> Response:
+            try:
+                return await do(request)
+            except AccessError as error:
+                headers = {"retry-after": f"{error.wait + 1:.0f}"} if error.wait else None
+                return JsonResponse({"ok": False, "text": error.reason, "code": ""}, error.status, headers)
+            except StoreError:  # whose text has paths
+                text = "The server can't read or write its data: the disk may be full."
+                return JsonResponse({"ok": False, "text": text, "code": ""}, 503)
+            except MissionError as error:
+                first = error.diagnostics[0]
+                return JsonResponse({"ok": False, "text": str(error), "code": first.code}, 400)
+
+        return Route(path, answered, methods=[method])
+
+    async def _who(self, request: Request) -> Identity:
+        return await self.access.identify(request.headers, changes=request.method not in ("GET", "HEAD"))
+
+    async def _log_in(self, request: Request) -> Response:
+        data = await json_object(request)
+        address = address_of(request)
+        identity, secret = await self.access.log_in(text_in(data, "name"), text_in(data, "password"), address)
+        return self._logged_in(identity, secret)
+
+    def _logged_in(self, identity: Identity, secret: str) -> Response:
+        response = JsonResponse(self._describe(identity))
+        response.set_cookie(value=secret, max_age=int(LONGEST), **self._cookie)
+        return response
+
+    @property
+    def _cookie(self) -> dict[str, Any]:
+        """Return the name of the cookie: over plain HTTP, browsers take none of the name that needs TLS."""
+        name = self.access.cookie
+        return {"key": name, "secure": name == COOKIE, "httponly": True, "samesite": "strict"}
+
+    async def _log_out(self, request: Request) -> Response:
+        identity = await self._who(request)
+        data = await json_object(request)
+        ended = "" if data.get("everywhere") is True else identity.id
+        await asyncio.to_thread(self.accounts.log_out, identity.user, ended)
+        await self.sockets.check()
+        response = JsonResponse({"ok": True})
+        response.delete_cookie(**self._cookie)
+        return response
+
+    async def _me(self, request: Request) -> Response:
+        return JsonResponse(self._describe(await self._who(request)))
+
+    async def _robots(self, request: Request) -> Response:
+        await self._who(request)
+        feeds = self.robots.feeds.values()
+        listed = [
+            {"name": each.name, "up": each.is_up, "seen": each.seen, "elsewhere": each.is_elsewhere} for each in feeds
+        ]
+        return JsonResponse({"robots": listed})
+
+    async def _stop(self, request: Request) -> Response:
+        identity = await self._who(request)
+        data = await json_object(request)
+        robot, reason = data.get("robot", ""), data.get("reason", "")
+        command = messages.EmergencyStop(reason if isinstance(reason, str) else "")
+        return _answer(await self.send(identity, str(robot), command, address_of(request)))
+
+    async def _command(self, request: Request) -> Response:
+        identity = await self._who(request)
+        data = await json_object(request)
+        robot = data.pop("robot", "")
+        return _answer(await self.send(identity, str(robot), read_command(data), address_of(request)))
+
+    async def _text(self, kind: str, request: Request) -> Response:
+        identity = await self._who(request)
+        data = await json_object(request)
+        text, robot = text_in(data, "text"), str(data.get("robot", ""))
+        arguments = arguments_of(kind, data, text)
+        words = self.words or (self.feed(robot).words if robot or self.robots.feeds else Words())
+        if "world" in data:
+            name = text_in(data, "world")
+            if not name:
+                raise AccessError(400, "'world' must be the name of a world.")
+            command = messages.Library(name, LibraryKind.WORLD.value, revision=0)
+            found = await self.send(identity, robot, command, address_of(request))
+            if not found.ok:
+                return _answer(found)
+            try:
+                words = words.in_world(name, str(found.data["worlds"][0]["text"]))
+            except (LookupError, TypeError):  # a robot may say anything
+                raise AccessError(503, f"The robot didn't send the world '{name}'.") from None
+        page = str(data.get("page", "")) if identity.is_session else None  # a program doesn't type
+        checker = self.trials if kind in TRIES else self.checker
+        written = await checker.answer(kind, text, words, arguments, identity.user, page)
+        return Response(written, media_type="application/json")
+
+    async def _recordings(self, request: Request) -> Response:
+        feed = await self._recorder(request)
+        found = await (
+            list_recordings_elsewhere(feed.read)
+            if feed.is_elsewhere
+            else asyncio.to_thread(list_recordings, feed.recordings)
+        )
+        return JsonResponse({"ok": True, "recordings": found})
+
+    async def _recording(self, request: Request) -> Response:
+        feed, name = await self._recorder(request), request.path_params["name"]
+        if feed.is_elsewhere:
+            return RecordingResponse(await fetch(feed.read, name))
+        path = await asyncio.to_thread(path_of, feed.recordings, name)
+        return FileResponse(path, media_type="application/octet-stream")
+
+    async def _show_film(self, show: Callable[..., bytes], others: tuple[str, ...], request: Request) -> Response:
+        """Return what a page shows of a recording, and of the `others` that the query names."""
+        feed = await self._recorder(request)
+        names = [request.path_params["name"], *(request.query_params.get(other, "") for other in others)]
+        async with AsyncExitStack() as stack:
+            if feed.is_elsewhere:
+                await stack.enter_async_context(self._fetching)  # a copy may be large
+            paths = [await stack.enter_async_context(self._file(feed, name, request)) for name in names]
+            return Response(await self.trials.shown(show, *paths), media_type="application/json")
+
+    @asynccontextmanager
+    async def _file(self, feed: RobotFeed, name: str, request: Request) -> AsyncIterator[str]:
+        if not feed.is_elsewhere:
+            yield await asyncio.to_thread(path_of, feed.recordings, name)
+            return
+
+        async def is_wanted() -> bool:
+            return not await request.is_disconnected()
+
+        async with in_file(await fetch(feed.read, name), is_wanted) as path:
+            yield path
+
+    async def _recorder(self, request: Request) -> RobotFeed:
+        """Return the robot whose recordings are asked for."""
+        await self._who(request)
+        feed = self.feed(request.query_params.get("robot", ""))
+        if feed.is_elsewhere and not feed.is_up:
+            raise AccessError(503, f"The robot '{feed.name}' isn't up: its recordings are on its own computer.")
+        return feed
+
+    async def _urdf(self, request: Request) -> Response:
+        answer = await self._sent(request, messages.Urdf())
+        return Response(str(answer.data.get("urdf")), media_type="application/xml") if answer.ok else _answer(answer)
+
+    async def _metrics(self, request: Request) -> Response:
+        await self._who(request)
+        return PlainTextResponse(metrics(self.robots.feeds.values(), len(self.sockets)))
+
+    def _library(self, path: str, kind: LibraryKind) -> list[Route]:
+        return [
+            self._route(path, partial(self._list, kind), "GET"),
+            self._route(f"{path}/{{name:path}}", partial(self._list, kind), "GET"),
+            self._route(f"{path}/{{name:path}}", partial(self._put, kind), "PUT"),
+            self._route(f"{path}/{{name:path}}", partial(self._delete, kind), "DELETE"),
+        ]
+
+    async def _list(self, kind: LibraryKind, request: Request) -> Response:
+        return await self._of_library(request, messages.Library(request.path_params.get("name", ""), kind.value))
+
+    async def _put(self, kind: LibraryKind, request: Request) -> Response:
+        identity = await self._who(request)
+        data = await json_object(request)
+        revision = data.get("revision")
+        if revision is not None and not isinstance(revision, int):
+            raise AccessError(400, "'revision' must be a number.")
+        command = messages.Put(request.path_params["name"], text_in(data, "text"), revision, kind.value)
+        robot = request.query_params.get("robot", "")
+        return _answer(await self.send(identity, robot, command, address_of(request)))
+
+    async def _delete(self, kind: LibraryKind, request: Request) -> Response:
+        return await self._of_library(request, messages.Delete(request.path_params["name"], kind.value))
+
+    async def _of_library(self, request: Request, command: Command) -> Response:
+        return _answer(await self._sent(request, command))
+
+    async def _sent(self, request: Request, command: Command) -> Answer:
+        robot = request.query_params.get("robot", "")
+        return await self.send(await self._who(request), robot, command, address_of(request))
+
+    def _describe(self, identity: Identity) -> dict[str, Any]:
+        described = {"ok": True, "user": identity.user, "role": identity.role, "version": VERSION}
+        return {**described, "csrf": self.access.csrf(identity)} if identity.is_session else described
+
+
+class _Headers:
+    """The middleware that adds headers to every answer, also to one that went wrong, and limits the head of a
+    request.
+    """
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        async def said(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                given = list(message.get("headers", ()))
+                known = {name for name, _ in given}
+                own = [(name, value) for name, value in _HEADERS.items() if name not in known]
+                message = {**message, "headers": [*given, *own]}
+            await send(message)
+
+        head = [text for header in scope.get("headers", ()) for text in header]
+        too_long = sum(map(len, head)) > MOST_HEAD  # the limit of h11 is for what comes in parts
+        await (_too_long if too_long else self._app)(scope, receive, said)
+
+
+def _answer(answer: Answer) -> Response:
+    return JsonResponse(answer.as_json(), 200 if answer.ok else 409)
+
+
+def _word(word: str) -> Callable[[Request], Response]:
+    return lambda request: PlainTextResponse(word)
+
+
+async def _too_long(scope: Scope, receive: Receive, send: Send) -> None:
+    if scope["type"] == "websocket":
+        await send({"type": "websocket.close"})
+    else:
+        text = "The head of this request is too long."
+        await JsonResponse({"ok": False, "text": text, "code": ""}, 431)(scope, receive, send)
+
+
+async def _no_socket(socket: WebSocket) -> None:
+    await socket.send_denial_response(_not_found())
+
+
+def _not_found(*_: object) -> Response:
+    return JsonResponse({"ok": False, "text": "There's nothing at this address.", "code": ""}, 404)

@@ -1,0 +1,1 @@
+"""What robots send and receive while clients are connected, over WebSockets."""

@@ -1,0 +1,297 @@
+"""Work for pages in processes of its own: checking missions, making films of recordings, counting in UTF-16."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import multiprocessing
+import os
+import threading
+from collections.abc import Callable, Mapping
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from functools import partial
+from weakref import WeakValueDictionary
+
+from btlang.api import Mission, format_mission
+from btlang.diagnostics.errors import MissionError
+from btlang.editing.changes import Change, changed
+from btlang.editing.completion import complete
+from btlang.editing.document import document, text_messages
+from btlang.editing.edits import edit, read_edit
+from btlang.editing.hover import hover
+from btlang.editing.messages import messages
+from btlang.editing.palette import palette
+from btlang.editing.rename import rename
+from btlang.editing.words import Words
+from btlang.frontends.table import frontend_of
+from btlang.recording.film import Film, side_by_side, try_mission
+from btlang.recording.reader import open_recording
+from btlang.server.http.access import AccessError, text_in
+from btlang.support.gc_pause import gc_paused
+from btlang.support.record import Record
+from btlang.testing.trial import results_of
+from btlang.text.source import Source
+from btlang.text.utf16 import Units
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+
+def in_units(answer: dict[str, Any], text: str) -> dict[str, Any]:
+    """Return an answer about a text with its places in units: all that is called `start`, `end` or `of`.
+
+    Where it has `changes`, its own `start` and `end` are in the text with them.
+    """
+    units = Units(text)
+    made: dict[str, Any] = _convert(answer, units) if units.wide else answer
+    if "changes" in answer and "start" in answer:
+        after = Units(changed(text, [Change(**change) for change in answer["changes"]]))
+        made = {**made, "start": after.unit(answer["start"]), "end": after.unit(answer["end"])}
+    return made
+
+
+def _convert(part: Any, units: Units) -> Any:
+    if isinstance(part, Mapping):
+        return {
+            key: _place(value, units) if key in ("start", "end", "of") else _convert(value, units)
+            for key, value in part.items()
+        }
+    return [_convert(each, units) for each in part] if isinstance(part, list | tuple) else part
+
+
+def _place(value: Any, units: Units) -> Any:
+    if isinstance(value, int):
+        return units.unit(value)
+    return [units.unit(each) for each in value] if value is not None else None
+
+
+def film(path: str) -> bytes:
+    """Return the film of a recording (see Film.data) as JSON; runs nothing."""
+    return _write_film(partial(_film, path))
+
+
+def comparison(one: str, other: str) -> bytes:
+    """Return two recordings side by side as JSON (see recording/film.py); runs nothing."""
+    return _write_film(partial(_comparison, one, other))
+
+
+def tree(path: str) -> bytes:
+    """Return the tree of a recording as `xml` of BehaviorTree.CPP, as JSON; runs nothing."""
+    return _write_film(partial(_tree, path))
+
+
+def _film(path: str) -> dict[str, Any]:
+    with open_recording(path, ()) as (recording, mission, nodes):
+        data = Film(mission, dict(recording.about)).take(recording.events(nodes)).data()
+    return in_units(data, data["text"])
+
+
+def _comparison(one: str, other: str) -> dict[str, Any]:
+    data = side_by_side(one, other)
+    return {**data, "films": [in_units(each, each["text"]) for each in data["films"]]}
+
+
+def _tree(path: str) -> dict[str, Any]:
+    with open_recording(path, ()) as (_, mission, _):
+        return {"xml": str(mission.to("xml"))}
+
+
+def _write_film(read: Callable[[], dict[str, Any]]) -> bytes:
+    try:
+        data = {"ok": True, **read()}
+    except MissionError as error:
+        data = {"ok": False, "text": str(error), "code": error.diagnostics[0].code}
+    return json.dumps(data, default=str).encode()
+
+
+TESTS = "tests"
+"""The name of tests in messages."""
+MOST_CHARACTERS = 200_000
+_PATIENCE = 10.0  # seconds for one text
+
+
+class TextQuery(Record):
+    """A query about a text: `help` is a line about it, `do` takes the source, the words, and the arguments that it
+    `needs` or only `takes`: `at`, a place in the text, `name`, `tests` and `called`, texts, or `edit`
+    (btlang.editing.edits.Edit).
+    """
+
+    help: str
+    do: Callable[..., dict[str, Any]]
+    needs: tuple[str, ...] = ()
+    takes: tuple[str, ...] = ()
+
+
+def _of_mission(report: Callable[[Mission], dict[str, Any]]) -> Callable[..., dict[str, Any]]:
+    """Make a query that reports something about a mission, with its messages."""
+
+    def do(source: Source, words: Words) -> dict[str, Any]:
+        mission = words.mission(source)
+        return {"messages": messages(mission.warnings, source), **report(mission)}
+
+    return do
+
+
+def _english(source: Source, words: Words) -> dict[str, Any]:
+    query = _of_mission(lambda mission: {"text": mission.to("english")})
+    return {"sort": frontend_of(source), **query(source, words)}
+
+
+def _format(source: Source, words: Words) -> dict[str, Any]:
+    return {"text": format_mission(source, keywords=words.keywords, world=words.world, language=words.language)}
+
+
+DOES: Mapping[str, TextQuery] = {
+    "check": TextQuery("What is wrong with a mission.", _of_mission(lambda mission: {"outline": str(mission)})),
+    "complete": TextQuery("What may follow at a place, by default the end.", complete, takes=("at",)),
+    "document": TextQuery("All that an editor shows of a text: messages, tree and outline.", document),
+    "edit": TextQuery("A change of a mission by its tree.", edit, needs=("edit",)),
+    "english": TextQuery("A mission, which may be a tree in XML or JSON, in English.", _english),
+    "explain": TextQuery(
+        "How a mission is understood.", _of_mission(lambda mission: {"explanation": mission.explain()})
+    ),
+    "format": TextQuery("A mission in the usual layout.", _format),
+    "hover": TextQuery("What was understood at a place, with help.", hover, needs=("at",)),
+    "messages": TextQuery("What is wrong with a text, as its document says it.", text_messages),
+    "palette": TextQuery("All that can be put into a mission, by topic.", palette),
+    "rename": TextQuery("What gives a definition and its uses another name.", rename, needs=("at",), takes=("name",)),
+    "xml": TextQuery(
+        "A mission as a tree of BehaviorTree.CPP.", _of_mission(lambda mission: {"xml": str(mission.to("xml"))})
+    ),
+}
+
+
+def _test(source: Source, words: Words, tests: str, called: str) -> dict[str, Any]:
+    mission = words.mission(source)
+
+    def given(name: str, world: str | None) -> Mission | None:
+        if name not in (called, f"{called}.txt"):
+            return None
+        return mission if world is None else words.mission(source, world=world)
+
+    beside = os.path.join(os.path.dirname(words.file), TESTS)
+    text = Source(tests, beside) if words.file else Source(tests, TESTS, roots=())
+    return {"messages": messages(mission.warnings, source), **results_of(text, given)}
+
+
+TRIES: Mapping[str, TextQuery] = {
+    "test": TextQuery(
+        "Tests of a mission in the simulated world, with films of those that fail.", _test, ("tests", "called")
+    ),
+    "try": TextQuery("A run of a mission in the simulated world, as a film.", _of_mission(try_mission)),
+}
+"""The queries that take longer: they have a process of their own."""
+ASKED = {**DOES, **TRIES}
+
+
+def arguments_of(kind: str, data: Mapping[str, Any], text: str) -> dict[str, Any]:
+    """Return the further arguments of a request, with places as characters of its text. Raises AccessError (400)."""
+    asked = ASKED[kind]
+    given = {name: data[name] for name in asked.takes if data.get(name) is not None}
+    given |= {name: data.get(name) for name in asked.needs}
+    if "at" in given:
+        units = Units(text)
+        if type(given["at"]) is not int or not 0 <= given["at"] <= units.length:
+            raise AccessError(400, "'at' must be a place in the text, a whole number of UTF-16 units.")
+        given["at"] = units.character(given["at"])
+    for field in ("name", "tests", "called"):
+        if field in given:
+            text_in(given, field)
+    if len(given.get("tests", "")) > MOST_CHARACTERS:
+        raise AccessError(413, f"Tests may have {MOST_CHARACTERS:,} characters.")
+    if "edit" in given:
+        given["edit"] = read_edit(given["edit"])
+    return given
+
+
+def answer(kind: str, text: str, words: Words, arguments: Mapping[str, Any] = {}) -> dict[str, Any]:
+    """Return what is asked of a text, with what is wrong with it as data; places are in UTF-16 units."""
+    source = words.source(text)
+    try:
+        found = {"ok": True, "messages": [], **ASKED[kind].do(source=source, words=words, **arguments)}
+    except MissionError as error:
+        found = {"ok": False, "messages": messages(error.diagnostics, source)}
+    return in_units(found, text)
+
+
+def _write_answer(kind: str, text: str, words: Words, arguments: Mapping[str, Any]) -> bytes:
+    """Return the answer as JSON in ASCII: half a character of UTF-16 has no other encoding."""
+    with gc_paused:
+        return json.dumps(answer(kind, text, words, arguments), separators=(",", ":")).encode()
+
+
+def _end_with_server() -> None:
+    """End the process of a checker with its server, which it would otherwise outlive."""
+    threading.Thread(target=_wait_for_end, daemon=True).start()
+
+
+def _wait_for_end() -> None:
+    server = multiprocessing.parent_process()
+    if server is not None:
+        server.join()
+        os._exit(1)
+
+
+class Checker:
+    """A process that checks missions, for one event loop. Texts take turns, one of each user at a time."""
+
+    def __init__(self) -> None:
+        self._process: ProcessPoolExecutor | None = None
+        self._turn = asyncio.Lock()
+        self._own_turns: WeakValueDictionary[str, asyncio.Lock] = WeakValueDictionary()
+        self._newest: dict[tuple[str, str, str], object] = {}
+
+    async def answer(
+        self,
+        kind: str,
+        text: str,
+        words: Words,
+        arguments: Mapping[str, Any] = {},
+        user: str = "",
+        page: str | None = None,
+    ) -> bytes:
+        """Return what the function `answer` does, as JSON.
+
+        Of a page, which types faster than texts are read, only the newest request of a kind waits. Raises AccessError:
+        413 and 422 for a text that is too long, or takes too long, 409 for a request that a newer one replaced.
+        """
+        if len(text) > MOST_CHARACTERS:
+            raise AccessError(413, f"A mission may have {MOST_CHARACTERS:,} characters.")
+        asked, place = object(), (user, page or "", kind)
+        own_turn = self._own_turns.setdefault(user, asyncio.Lock())
+        if page is not None:
+            self._newest[place] = asked
+        try:
+            async with own_turn, self._turn:
+                if page is not None and self._newest.get(place) is not asked:
+                    raise AccessError(409, "A newer request of the page replaced this one.")
+                return await self._done(_write_answer, kind, text, words, arguments)
+        finally:
+            if self._newest.get(place) is asked:
+                del self._newest[place]
+
+    async def shown(self, show: Callable[..., bytes], *paths: str) -> bytes:
+        """Return what processes.py makes of recordings. Raises AccessError (422) if it takes too long."""
+        async with self._turn:
+            return await self._done(show, *paths)
+
+    async def _done(self, do: Callable[..., bytes], *given: object) -> bytes:
+        if self._process is None:
+            self._process = ProcessPoolExecutor(1, multiprocessing.get_context("spawn"), _end_with_server)
+        loop = asyncio.get_running_loop()
+        try:
+            async with asyncio.timeout(_PATIENCE):
+                return await loop.run_in_executor(self._process, do, *given)
+        except (TimeoutError, BrokenProcessPool):
+            self.close()
+            raise AccessError(422, "This text takes too long to read.") from None
+
+    def close(self) -> None:
+        """End the process, whatever it does."""
+        ended, self._process = self._process, None
+        if ended is not None:
+            for process in tuple((ended._processes or {}).values()):
+                process.kill()
+            ended.shutdown(wait=False, cancel_futures=True)

@@ -1,0 +1,1 @@
+"""Commands: how they reach a robot that is up, what they do and what is answered."""

@@ -1,0 +1,156 @@
+"""Tasks, schedules and missions as answers have them, and the report of some days in English."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from difflib import unified_diff
+from itertools import takewhile
+
+from btlang.task.commands.checks import refusal_error
+from btlang.task.messages import Answer, Put
+from btlang.task.schedule.calendar import format_duration, format_moment
+from btlang.task.store.records import FINAL, MissionText, Revision, Schedule, Task, TaskState
+from btlang.task.store.task_store import TaskStore
+from btlang.text.enumeration import joined
+from btlang.text.escaping import one_line
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+
+_LONGEST = 60  # characters of a mission in a list
+_MOST_LINES = 3_000  # of texts whose smallest difference is found in some seconds, whatever they are
+_HIDDEN = ("mission", "saved", "token")
+
+
+def task_data(task: Task, waits: str = "") -> dict[str, Any]:
+    """Return a task without its text, and why it waits."""
+    data = task.as_dict(without=_HIDDEN)
+    return {**data, "mission": shorten(task.mission), "revision": task.mission.revision, "waits": waits}
+
+
+def task_line(task: Mapping[str, Any]) -> str:
+    """Return a task of `task_data` in one line: id, state, priority, mission, and why it waits or ended."""
+    why = task["waits"] or task["reason"]
+    priority = f" ({task['priority']:+d})" if task["priority"] else ""
+    return f"{task['id']:>4}  {task['state']:<9}{priority}  {task['mission']}" + (f"  [{one_line(why)}]" if why else "")
+
+
+def shorten(mission: MissionText) -> str:
+    """Return the name of a mission or else its text, cut, in one line."""
+    text = one_line(mission.name or " / ".join(line.strip() for line in mission.text.splitlines() if line.strip()))
+    return text if len(text) <= _LONGEST else text[: _LONGEST - 3] + "..."
+
+
+def schedule_data(schedule: Schedule) -> dict[str, Any]:
+    """Return a schedule with the short form of its mission."""
+    return {**schedule.as_dict(without=("mission",)), "mission": shorten(schedule.mission)}
+
+
+def schedule_line(schedule: Schedule, now: float) -> str:
+    """Return a schedule in one line: id, rule, mission, when it is due, and what isn't as usual."""
+    zone = f" in {schedule.zone}" if schedule.zone else ""
+    when = "" if schedule.next is None else f"; next at {format_moment(schedule.next, now)}"
+    line = f"{schedule.id:>4}  {schedule.rule}{zone}: {shorten(schedule.mission)}{when}"
+    unusual = [
+        f"{field} {getattr(schedule, field)}"
+        for field in ("overlap", "missed", "restart")
+        if getattr(schedule, field) != schedule.field_defaults[field]
+    ]
+    unusual += [f"priority {schedule.priority:+d}"] if schedule.priority else []
+    unusual += [] if schedule.within is None else [f"within {format_duration(schedule.within)}"]
+    unusual += [f"label {one_line(label)}" for label in schedule.labels]
+    unusual += [f"{one_line(name)}={one_line(str(value))}" for name, value in schedule.mission.values.items()]
+    return f"{line}  [{', '.join(unusual)}]" if unusual else line
+
+
+def revision_data(revision: Revision) -> dict[str, Any]:
+    """Return a revision without its text."""
+    return revision.as_dict(without=("text",))
+
+
+def describe_deletion(name: str, schedules: Sequence[int]) -> str:
+    """Return what is said of a text that is no longer in the library, while some schedules have it."""
+    text = f"'{one_line(name)}' is no longer in the library."
+    if not schedules:
+        return text
+    numbers = joined([str(number) for number in schedules])
+    who, it = (f"Schedule {numbers} goes", "it") if len(schedules) == 1 else (f"Schedules {numbers} go", "them")
+    return f"{text} {who} on with its text. To end {it}: btc task unschedule"
+
+
+def outdated_error(command: Put, called: str, latest: Revision | None) -> Answer:
+    """Return the refusal of a text, `called` "mission" or the like, that was made from another revision than the latest
+    one, with what differs from that.
+    """
+    before = "" if latest is None else latest.text
+    number = 0 if latest is None else latest.number
+    problem = refusal_error(
+        f"The {called} '{command.name}'", f"has changed since revision {command.revision}: it has {number}"
+    )
+    data = {"revision": number, "text": before, "diff": differences(before, command.text)}
+    return Answer(False, str(problem), data, problem.diagnostics[0].code)
+
+
+def differences(before: str, after: str) -> str:
+    """Return a unified diff; of long texts with everything between the first and the last difference."""
+    return "\n".join(_differences(before.splitlines(), after.splitlines()))
+
+
+def _differences(before: list[str], after: list[str]) -> Iterable[str]:
+    if max(len(before), len(after)) <= _MOST_LINES:
+        return unified_diff(before, after, "latest", "yours", lineterm="")
+    begin = _common(before, after)
+    end = _common(before[begin:][::-1], after[begin:][::-1])
+    old, new = before[begin : len(before) - end], after[begin : len(after) - end]
+    place = f"@@ -{begin + 1},{len(old)} +{begin + 1},{len(new)} @@"
+    return ["--- latest", "+++ yours", place, *(f"-{line}" for line in old), *(f"+{line}" for line in new)]
+
+
+def _common(first: list[str], second: list[str]) -> int:
+    """Return how many lines both begin with."""
+    return sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], zip(first, second, strict=False)))
+
+
+def write_report(store: TaskStore, since: float, until: float) -> Iterator[str]:
+    """Write a report in lines for people.
+
+    What counts is when a task was due, or else when it was asked for, in seconds since 1970.
+    """
+    tasks = [task for task in store.tasks() if since <= _time_of(task) < until]
+    tasks.sort(key=lambda task: (_time_of(task), task.id))
+    yield f"From {format_moment(since, 0.0)} to {format_moment(until, 0.0)}: {_count(tasks)}."
+    schedules = {schedule.id: schedule for schedule in store.schedules()}
+    for number in sorted({task.schedule for task in tasks if task.schedule}):
+        group = [task for task in tasks if task.schedule == number]
+        yield from _group(_title(group[0], schedules.get(number)), group)
+    for person in sorted({task.person for task in tasks if not task.schedule}):
+        group = [task for task in tasks if not task.schedule and task.person == person]
+        yield from _group(f"{one_line(person) or 'Somebody'} asked", group)
+
+
+def _group(title: str, tasks: Sequence[Task]) -> Iterator[str]:
+    yield ""
+    yield f"{title}: {_count(tasks)}."
+    for task in tasks:
+        if task.state is not TaskState.COMPLETED:
+            reason = f": {one_line(task.reason)}" if task.reason else ""
+            when = format_moment(_time_of(task), 0.0)
+            yield f"  {when}  task {task.id}, {shorten(task.mission)}: {task.state}{reason}"
+
+
+def _count(tasks: Sequence[Task]) -> str:
+    done = sum(task.state is TaskState.COMPLETED for task in tasks)
+    still_open = sum(task.state not in FINAL for task in tasks)
+    rest = f", {still_open} not over yet" if still_open else ""
+    return f"{done} of {len(tasks)} done{rest}"
+
+
+def _title(task: Task, schedule: Schedule | None) -> str:
+    rule = schedule.rule if schedule is not None else "a schedule that is removed"
+    return f"{shorten(task.mission)} ({rule})"
+
+
+def _time_of(task: Task) -> float:
+    return task.created if task.due is None else task.due

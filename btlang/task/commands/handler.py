@@ -1,0 +1,378 @@
+"""The message handler: does what commands say, and answers with what happened or why not."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Collection
+from contextlib import suppress
+from functools import partial
+
+from btlang.api import Mission
+from btlang.diagnostics.crash import crashed
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.diagnostics.errors import MissionError
+from btlang.speech.marks import without_marks
+from btlang.task import messages
+from btlang.task.commands.answers import task_data, task_line, write_report
+from btlang.task.commands.checks import (
+    HIGHEST,
+    check_labels,
+    check_priority,
+    check_values,
+    choose_member,
+    refusal_error,
+    report_times,
+    task_times,
+)
+from btlang.task.commands.robot_handlers import ComponentHandler, VoiceHandler, WorldHandler
+from btlang.task.commands.store_handlers import LibraryHandler, ScheduleHandler, unknown_text_error
+from btlang.task.execution.emergency import EmergencyLatch
+from btlang.task.execution.executor import Executor
+from btlang.task.execution.manager import TaskManager
+from btlang.task.messages import Answer, Command, wrong
+from btlang.task.schedule.calendar import format_moment
+from btlang.task.store.records import ACTIVE, FINAL, WAITING, Act, MissionText, RequestedEnd, Restart, Task, TaskState
+from btlang.task.store.task_store import TaskStore
+from btlang.text.escaping import one_line
+from btlang.text.json_text import NestedTooDeep, dump_json
+from btlang.text.source import NOWHERE
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    from btlang.run.world_input import WorldInput
+    from btlang.session import Session
+
+_BEGINNING = 3.0  # seconds of real time that a task may take from its claim to its first tick
+_MOMENT = 0.01
+
+
+class Handler:
+    """A handler of all commands.
+
+    `handle` may be called from any thread. `admit` reads a mission for this robot and refuses what it can't do, with
+    all reasons (MissionError); `now` gives the time since 1970, `down` ends the process, `needs` is what a mission
+    needs, `overs` is what robot files of others may run on, `world_input` a sink of all runs.
+    """
+
+    def __init__(
+        self,
+        store: TaskStore,
+        manager: TaskManager,
+        executor: Executor,
+        emergency: EmergencyLatch,
+        session: Session,
+        admit: Callable[[MissionText], Mission],
+        now: Callable[[], float],
+        down: Callable[[], object],
+        needs: Callable[[MissionText], tuple[str, ...]],
+        overs: Collection[str],
+        world_input: WorldInput,
+    ) -> None:
+        self._store, self._manager, self._executor, self._emergency = store, manager, executor, emergency
+        self._session, self._admit, self._now, self._down, self._needs = session, admit, now, down, needs
+        schedules = ScheduleHandler(store, executor.wake, self._mission, now)
+        library = LibraryHandler(store, admit, now, getattr(session.robot, "body", None), overs)
+        components, world = ComponentHandler(session), WorldHandler(session, world_input)
+        self._does: dict[type[Command], Callable[[Any, str], Answer]] = {
+            messages.Submit: self._submit, messages.List: self._list, messages.Show: self._show,
+            messages.Cancel: partial(self._end, TaskState.CANCELED),
+            messages.Kill: partial(self._end, TaskState.KILLED),
+            messages.Interrupt: self._interrupt, messages.Resume: self._resume, messages.Skip: self._skip,
+            messages.Reorder: self._reorder, messages.Again: self._again, messages.AddSchedule: schedules.add,
+            messages.RemoveSchedule: schedules.remove, messages.Schedules: schedules.list,
+            messages.Put: library.put, messages.Delete: library.delete, messages.Library: library.list,
+            messages.Pause: self._pause, messages.Step: self._step, messages.EmergencyStop: self._stop,
+            messages.Release: self._release, messages.Say: self._say, messages.Down: self._end_all,
+            messages.Status: self._status, messages.Report: self._report, messages.Trail: self._trail,
+            messages.Components: components.list, messages.ChangeComponent: components.change,
+            messages.Picture: components.picture, messages.AnswerQuestion: world.answer,
+            messages.Talk: world.talk,
+            messages.InviteVisitor: world.invite, messages.Voice: VoiceHandler(session).sound,
+            messages.Urdf: components.urdf,
+        }  # fmt: skip
+
+    def do(self, command: Command, person: str) -> Answer:
+        """Do a command, without a trail. Raises MissionError where it is refused."""
+        return self._does[type(command)](command, person)
+
+    def handle(self, command: Command, person: str) -> Answer:
+        """Do a command of a person, who is allowed to give it; a refusal is an answer, too."""
+        try:
+            answer = self.do(command, person)
+        except MissionError as error:
+            first = error.diagnostics[0]
+            answer = Answer(False, str(error), {}, first.code)
+        except Exception as problem:  # whoever asked gets an answer, and the others go on
+            if os.environ.get("BTC_DEBUG"):
+                raise
+            answer = Answer(False, crashed(problem), {}, "BT099")
+        if command.changes:
+            self._log(command, person, answer)
+        return answer
+
+    def add(self, mission: MissionText, person: str, **fields: Any) -> Task:
+        """Queue a mission that was admitted, with these fields of its task. Raises StoreError."""
+        task = Task(0, mission, person, self._now(), needs=self._needs(mission), **fields)
+        task = self._store.add(task, "it was submitted")
+        self._executor.wake()
+        return task
+
+    def _log(self, command: Command, person: str, answer: Answer) -> None:
+        with suppress(MissionError, NestedTooDeep):  # then it was refused for the same, or needs no store
+            details = dump_json(messages.as_json(command), str, ensure_ascii=False)
+            self._store.log(Act(self._now(), person, command.tag, details, answer.text))
+
+    def _submit(self, command: messages.Submit, person: str) -> Answer:
+        earliest, deadline = task_times(command, self._now())
+        task = self.add(
+            self._mission(command), person, priority=check_priority(command.priority, command.tag),
+            labels=check_labels(command.labels, command.tag), earliest=earliest, deadline=deadline,
+            restart=choose_member(Restart, command.restart, "restart", command.tag),
+        )  # fmt: skip
+        return Answer(True, f"Task {task.id} is queued.", {"task": task_data(task)})
+
+    def _list(self, command: messages.List, person: str) -> Answer:
+        wanted = {choose_member(TaskState, state, "states", command.tag) for state in command.states}
+        states = wanted or WAITING | ACTIVE
+        found = self._store.tasks(states, label=command.label, newest=bool(wanted & FINAL), limit=command.limit)
+        found.sort(key=lambda task: task.state not in ACTIVE)
+        is_cut = command.limit is not None and len(found) >= command.limit
+        more = max(self._store.count_tasks(states, label=command.label) - len(found), 0) if is_cut else 0
+        hindrance, now = self._executor.hindrance(), self._now()
+        first = self._manager.first(now)
+        tasks = [task_data(task, self._manager.why_waiting(task, now, hindrance, first)) for task in found]
+        lines = [task_line(task) for task in tasks] or ["There are no tasks."]
+        lines += [f"and {more} more: --limit N lists so many, --all every one"] if more else []
+        return Answer(True, "\n".join(lines), {"tasks": tasks, "more": more, "hindrance": hindrance})
+
+    def _show(self, command: messages.Show, person: str) -> Answer:
+        task = self._known(command.task)
+        now, data = self._now(), self._data(task)
+        changes = [change for _, change in self._store.changes(task.id)]
+        data["changes"] = [
+            {"time": each.time, "state": each.state, "cause": each.cause, "person": each.person} for each in changes
+        ]
+        lines = [
+            task_line(data),
+            f"  asked for by {one_line(task.person) or 'nobody'} at {format_moment(task.created, now)}",
+        ]
+        if task.needs:
+            lines.append(f"  needs {', '.join(task.needs)}")
+        for each in changes:
+            by = f", by {one_line(each.person)}" if each.person else ""
+            cause = f": {one_line(each.cause)}" if each.cause else ""
+            lines.append(f"  {format_moment(each.time, now)}  {each.state}{cause}{by}")
+        if task.recording:
+            lines.append(f"  recorded in {one_line(task.recording)}")
+        return Answer(True, "\n".join(lines), {"task": {**data, "text": task.mission.text}})
+
+    def _end(self, state: TaskState, command: messages.Cancel | messages.Kill, person: str) -> Answer:
+        task = self._open(command.task)
+        cause = _cause(command.reason, person)
+        ended, until = None, time.monotonic() + _BEGINNING
+        while ended is None:
+            now = self._now()
+            ended = self._executor.end(task.id, RequestedEnd(state, cause, person)) or self._store.change(
+                task.id, WAITING, state, time=now, cause=cause, person=person, ended=now
+            )
+            if ended is None:  # it ends at this moment, or is about to begin
+                time.sleep(_MOMENT)
+                known = self._known(task.id)
+                ended = known if known.state in FINAL or time.monotonic() > until else None
+        self._executor.wake()
+        if ended.state is state:
+            return Answer(True, f"Task {task.id} is {state}.", {"task": self._data(ended)})
+        if ended.state in FINAL:
+            raise refusal_error(task.id, f"was already over: {ended.state}")
+        return Answer(True, f"Task {task.id} is about to be {state}.", {"task": self._data(ended)})
+
+    def _interrupt(self, command: messages.Interrupt, person: str) -> Answer:
+        task = self._open(command.task)
+        token, cause = os.urandom(8).hex(), _cause(command.reason, person)
+        run = self._executor.run
+        if self._executor.task is not None and self._executor.task.id == task.id and run is not None:
+            run.save()  # raises if it can't be kept
+        ended = self._executor.end(task.id, RequestedEnd(TaskState.DELAYED, cause, person, token))
+        if ended is None:
+            state = self._known(task.id).state
+            raise refusal_error(
+                task.id, "ends already" if state is TaskState.UNDERWAY else f"isn't under way: it's {state}"
+            )
+        if ended.state in FINAL:
+            raise refusal_error(task.id, f"was already over: {ended.state}")
+        text = f"Task {task.id} is interrupted. To let it go on, use the token {token}."
+        return Answer(True, text, {"task": self._data(ended), "token": token})
+
+    def _resume(self, command: messages.Resume, person: str) -> Answer:
+        if not command.task:
+            ended = self._executor.resume()
+            return Answer(True, f"That ends {ended}." if ended else "Nothing was paused.", {"ended": ended})
+        task = self._open(command.task)
+        if task.state is not TaskState.DELAYED or not task.token:
+            raise refusal_error(task.id, f"wasn't interrupted: it's {task.state}")
+        if not command.token:
+            raise refusal_error(task.id, "was interrupted, and only the token of that lets it go on: --token TOKEN")
+        if command.token != task.token:
+            raise refusal_error(task.id, "has another token: it was interrupted again, or by somebody else")
+        cause = f"{person or 'somebody'} lets it go on"
+        resumed = self._store.change(
+            task.id, {TaskState.DELAYED}, TaskState.QUEUED, time=self._now(), cause=cause, person=person, token=""
+        )
+        if resumed is None:
+            raise refusal_error(task.id, "has changed meanwhile")
+        self._executor.wake()
+        return Answer(True, f"Task {task.id} goes on when it's its turn.", {"task": self._data(resumed)})
+
+    def _skip(self, command: messages.Skip, person: str) -> Answer:
+        task, now = self._open(command.task), self._now()
+        cause = _cause(command.reason, person)
+        skipped = self._store.change(
+            task.id, WAITING, TaskState.SKIPPED, time=now, cause=cause, person=person, ended=now
+        )
+        if skipped is None:
+            raise refusal_error(task.id, "has begun, so it can't be skipped: cancel it")
+        self._executor.wake()
+        return Answer(True, f"Task {task.id} is skipped.", {"task": self._data(skipped)})
+
+    def _reorder(self, command: messages.Reorder, person: str) -> Answer:
+        task = self._open(command.task)
+        if (command.priority is None) is (command.before == 0):
+            raise wrong("reorder", "it needs either 'priority' or 'before'")
+        if command.priority is not None:
+            moved = self._store.amend(task.id, priority=check_priority(command.priority, command.tag))
+        else:
+            moved = self._move_before(task, self._open(command.before))
+        self._executor.wake()
+        assert moved is not None
+        return Answer(True, f"Task {task.id} has a new place.", {"task": self._data(moved)})
+
+    def _move_before(self, task: Task, other: Task) -> Task | None:
+        if task.id == other.id:
+            raise refusal_error(task.id, "can't come before itself")
+        for each in (task, other):
+            if each.state in ACTIVE:
+                raise refusal_error(each.id, f"has begun: it's {each.state}")
+        return self._store.move_before(task.id, other.id)
+
+    def _again(self, command: messages.Again, person: str) -> Answer:
+        task = self._known(command.task)
+        fresh = Task(
+            0,
+            task.mission,
+            person,
+            self._now(),
+            priority=task.priority,
+            labels=task.labels,
+            restart=task.restart,
+            needs=task.needs,
+        )
+        self._admit(task.mission)
+        made = self._store.add(fresh, f"like task {task.id}")
+        self._executor.wake()
+        return Answer(True, f"Task {made.id} is queued.", {"task": task_data(made)})
+
+    def _pause(self, command: messages.Pause, person: str) -> Answer:
+        self._executor.pause()
+        return Answer(True, "The robot is paused.", {})
+
+    def _step(self, command: messages.Step, person: str) -> Answer:
+        if not self._executor.step():
+            raise refusal_error("The robot", "has no paused mission to step")
+        return Answer(True, "One tick.", {})
+
+    def _stop(self, command: messages.EmergencyStop, person: str) -> Answer:
+        self._emergency.stop(person, command.reason)
+        self._executor.wake()
+        return Answer(True, "The robot is stopped. Nothing moves it until 'release'.", {})
+
+    def _release(self, command: messages.Release, person: str) -> Answer:
+        if not self._emergency.is_latched:
+            return Answer(True, "The robot isn't stopped.", {})
+        try:
+            self._emergency.release()
+        except OSError as error:
+            raise MissionError([diagnostic("BT195", NOWHERE, place="the latch", reason=str(error))]) from None
+        self._executor.wake()
+        return Answer(True, "The robot may move again.", {})
+
+    def _say(self, command: messages.Say, person: str) -> Answer:
+        say = getattr(self._session.robot, "say", None)
+        if say is None:
+            raise refusal_error("The robot", "has no voice")
+        run = self._executor.run
+        call = partial(say, without_marks(command.text))
+        if run is not None:
+            run.call(call)
+        else:
+            call()
+        return Answer(True, "It says that.", {})
+
+    def _end_all(self, command: messages.Down, person: str) -> Answer:
+        self._down()
+        return Answer(True, "The robot goes down.", {})
+
+    def _status(self, command: messages.Status, person: str) -> Answer:
+        run, task, hindrance = self._executor.run, self._executor.task, self._executor.hindrance()
+        snapshot = None if run is None or task is None else run.snapshot()
+        state = self._executor.robot_state
+        data: dict[str, Any] = {
+            "stopped": self._emergency.reason, "paused": self._executor.is_paused, "hindrance": hindrance,
+            "task": None if task is None else self._data(self._known(task.id)),
+            "running": [] if snapshot is None else list(snapshot.running),
+            "battery": None if state is None else state.battery,
+            "waiting": self._store.count_tasks(WAITING),
+        }  # fmt: skip
+        running = f": {', '.join(data['running'])}" if data["running"] else ""
+        doing = "It has nothing to do" if task is None else f"Task {task.id} is under way{running}"
+        lines = [f"{hindrance[0].upper()}{hindrance[1:]}." if hindrance else f"{doing}."]
+        lines.append(f"{data['waiting']} waiting." if data["waiting"] else "Nothing waits.")
+        return Answer(True, "\n".join(lines), data)
+
+    def _report(self, command: messages.Report, person: str) -> Answer:
+        since, until = report_times(command.since, command.until, self._now())
+        lines = list(write_report(self._store, since, until))
+        return Answer(True, "\n".join(lines), {"lines": lines})
+
+    def _trail(self, command: messages.Trail, person: str) -> Answer:
+        now, found = self._now(), self._store.acts(command.limit)
+        lines = [
+            f"{format_moment(each.time, now)}  {one_line(each.person)}: {one_line(each.details)}" for each in found
+        ]
+        acts = [each.as_dict() for each in found]
+        return Answer(True, "\n".join(lines) or "Nobody has asked for anything.", {"acts": acts})
+
+    def _mission(self, command: messages.Submit | messages.AddSchedule) -> MissionText:
+        """Return the mission of a command, which this robot can do."""
+        text, name, revision = command.text, command.name, 0
+        if not text:
+            if not name:
+                raise wrong(command.tag, "it needs 'text' or 'name'")
+            found = self._store.text(name)
+            if found is None:
+                raise unknown_text_error(name, is_asked_for=True)
+            text, revision = found.text, found.number
+        mission = MissionText(text, name, revision, dict(command.values), command.keywords)
+        check_values(self._admit(mission), mission.values)
+        return mission
+
+    def _known(self, number: int) -> Task:
+        task = self._store.task(number) if abs(number) <= HIGHEST else None
+        if task is None:
+            raise refusal_error(number, "isn't known")
+        return task
+
+    def _open(self, number: int) -> Task:
+        task = self._known(number)
+        if task.state in FINAL:
+            raise refusal_error(number, f"was already over: {task.state}")
+        return task
+
+    def _data(self, task: Task) -> dict[str, Any]:
+        return task_data(task, self._manager.why_waiting(task, self._now(), self._executor.hindrance()))
+
+
+def _cause(reason: str, person: str) -> str:
+    return reason or f"{person or 'somebody'} asked for it"

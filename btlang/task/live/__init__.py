@@ -1,0 +1,1 @@
+"""What watchers of a robot get, while things happen."""

@@ -1,0 +1,1 @@
+"""When schedules are due: rules in English, the calendar and time zones."""

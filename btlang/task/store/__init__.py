@@ -1,0 +1,1 @@
+"""What the task layer remembers: the records, and the databases that keep them."""

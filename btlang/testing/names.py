@@ -1,9 +1,0 @@
-"""The names of files of tests; apart from what reads them, which most commands don't need."""
-
-ENDING = ".test.txt"
-"""Of the files in which `btc test` looks for tests."""
-
-
-def is_test_file(path: str) -> bool:
-    """Whether a file has tests, by its name."""
-    return path.endswith(ENDING)
