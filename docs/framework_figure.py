@@ -21,11 +21,11 @@ LAYERS = (
     ),
     (
         "Component layer", "what the robot can do",
-        ("actions", "robots/capabilities.py", "robots/motion", "components/manager.py"), "readings and commands",
+        ("actions", "robots/robot.py", "robots/motion", "components/manager.py"), "readings and commands",
     ),
     (
         "Hardware layer", "motors, sensors, speakers",
-        ("devices/kinds.py", "devices/loop.py", "devices/drivers.py", "ros/devices"), "",
+        ("devices/kinds.py", "devices/loop.py", "devices/driver.py", "ros/devices"), "",
     ),
 )  # fmt: skip
 """From top to bottom: what each is, what it decides, its modules below btlang, and what goes to the next one."""
