@@ -29,7 +29,7 @@ LAYERS = (
     ),
 )  # fmt: skip
 """From top to bottom: what each is, what it decides, its modules below btlang, and what goes to the next one."""
-STOP = ("task/commands", "task/execution", "run/controls.py", "robots/latch.py")
+STOP = ("task/commands", "task/execution", "run/controls.py", "robots/command_gate.py")
 """The modules on the way of the emergency stop."""
 _FILL, _EDGE, _ALARM, _PALE = "#f8faf8", "#4f7d62", "#c0440c", "#fde4da"
 

@@ -11,7 +11,7 @@ import numpy as np
 from btlang.pictures import letters
 from btlang.pictures.surface import INK, SMALL, SOFT
 from btlang.robots.geometry import Point, edges
-from btlang.robots.worlds.world import Door, Person, Thing, World, Zone
+from btlang.robots.worlds.world import AREA, Door, Person, Thing, World, Zone
 from btlang.support.record import Record
 
 TYPE_CHECKING = False
@@ -122,9 +122,15 @@ At = Callable[[float, float], tuple[float, float]]
 """A function from metres to points of the canvas."""
 
 
+def find_shown_zones(world: World) -> list[Zone]:
+    """Return the zones without those that are only the region of a place: walls show where it ends."""
+    places = {place.name for place in world.places}
+    return [zone for zone in world.zones if zone.kind != AREA or zone.name not in places]
+
+
 def draw_zones(canvas: Surface, world: World, at: At) -> None:
     """Draw slow zones in yellow, and those to keep out of in red and hatched."""
-    for zone in world.zones:
+    for zone in find_shown_zones(world):
         corners = [at(*point) for point in zone.points]
         if zone.is_closed:
             canvas.polygon(corners, fill="#fbdccb", edge=_CLOSED_ZONE, line=0.9)
@@ -255,7 +261,7 @@ class WorldMap:
 
     def draw_names(self, canvas: Surface, placer: Placer, moved: Mapping[str, Point | None] = {}) -> None:
         """Mark and names of what is in the world; `moved` says where objects lie in the end."""
-        for zone in self._world.zones:
+        for zone in find_shown_zones(self._world):
             x, y = self.at(*middle_of(zone))
             text = letters.clip_text(letters.make_printable(zone.name), _LONGEST_NAME, SMALL)
             canvas.text(x, y, text, size=SMALL, colour=zone_colour(zone), align="center", halo=True, z=1.5)

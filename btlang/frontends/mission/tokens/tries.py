@@ -19,6 +19,7 @@ from btlang.frontends.mission.token import (
 from btlang.frontends.mission.tokens.rules_inside import asks_if_blocked
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, may_fail
 from btlang.frontends.mission.tokens.settling import FAILS
+from btlang.frontends.mission.tokens.silent_words import begins
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
 from btlang.tree.asked import ASK, asking_verbs
 from btlang.vocabulary.match import Match
@@ -122,7 +123,10 @@ class Tries(SentenceReader):
         behind = match.last + (self._text.words[match.last] == ",")
         amount = longest(self._vocabulary.trie, self._text, behind, self._context)
         counts = amount is not None and amount.meaning.role in (*_IN_ALL, "once", "more")
-        return self.again(match, at) if counts or self._is_end(match.last) else 0
+        last = amount.last if amount is not None and counts else match.last
+        if begins(self._tokens) or self._text.words[last] == ":" or not (counts or self._is_end(last)):
+            return 0
+        return self.again(match, at)
 
     def _attempts(self, match: Match) -> tuple[str, int]:
         """How many attempts `try again` makes in all with the number behind it, and where that ends; "" for none."""

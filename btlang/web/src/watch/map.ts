@@ -3,7 +3,7 @@ import { h, oncePerFrame } from "../dom";
 import type { Point, Robot } from "../fleet";
 import { t } from "../texts";
 import { Pen } from "./pen";
-import { drawDoors, drawRoutes, drawZones, nameDoors, nameZones, objectsOf, peopleOf } from "./surroundings";
+import { drawDoors, drawRoutes, drawZones, nameDoors, nameZones, objectsOf, peopleOf, zonesOf } from "./surroundings";
 
 const EDGE = 0.6; // metres around what is drawn
 const ROBOT = 0.28; // metres: robots don't say how large they are
@@ -58,7 +58,7 @@ function drawMap(pen: Pen, robot: Robot): void {
   const { context, colour, scale } = pen;
   const { map, scan, path } = robot;
   const pose = robot.state?.pose ?? null;
-  const [people, objects, zones] = [peopleOf(robot), objectsOf(robot), map?.zones ?? []];
+  const [people, objects, zones] = [peopleOf(robot), objectsOf(robot), zonesOf(robot)];
   drawZones(pen, zones);
   for (const box of map?.boxes ?? []) {
     const [x, y] = pen.at([box.x - box.width / 2, box.y + box.height / 2]);

@@ -26,6 +26,12 @@ export function objectsOf(robot: Robot): Standing[] {
   return placed(robot, robot.map?.objects ?? []);
 }
 
+/** The zones without those that are only the region of a place: walls show where it ends. */
+export function zonesOf(robot: Robot): Zone[] {
+  const places = new Set((robot.map?.places ?? []).map(({ name }) => name));
+  return (robot.map?.zones ?? []).filter(({ kind, name }) => kind !== "area" || !places.has(name));
+}
+
 /** Those that are there. */
 function placed(robot: Robot, known: Omit<Standing, "seen">[]): Standing[] {
   const now = new Map(robot.things.map((thing) => [thing[0], thing]));
