@@ -366,7 +366,7 @@ class _Reader:
         for unit in listed["units"]:
             try:
                 over, _, under = unit["factor"].partition("/")
-                made = Unit(tuple(w.lower() for w in unit["words"]), float(over), float(under or 1))
+                made = Unit(tuple(map(str, unit["words"])), float(over), float(under or 1))
             except (TypeError, KeyError, ValueError, AttributeError):
                 made = None
             if (

@@ -180,7 +180,7 @@ def _roles(items: Sequence[Item]) -> str:
 
 def _brief(item: Item, width: int) -> list[str]:
     if item.sort == "value":
-        return _wrapped(item.help, f"  {item.ways[0]:<12}", " " * 14, width)
+        return _wrapped(item.help, f"  {item.ways[0]:<11} ", " " * 14, width)
     ways = item.ways if item.sort == "word" else item.ways[:1]
     mark = "  (condition)" if item.sort == "condition" else ""
     lines = _wrapped(", ".join(ways), "  ", "    ", width)

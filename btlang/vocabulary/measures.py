@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 
 from btlang.text.source import Source
@@ -13,6 +14,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+_MARK = re.compile("[%°]")
 _LARGEST = 1e12  # beyond it no quantity of a robot makes sense, and sums stay exact
 _MOST_NUMBER_WORDS = 12
 _FARTHEST = 1e6  # metres, as in a world file
@@ -33,7 +35,7 @@ class Measures:
         self._times = tree_of(language["times"].items())
         self._number_starts = frozenset((*self._numbers, *self._multipliers, *self._fractions))
         units = ((kind.name, unit) for kind in types.values() for unit in kind.units)
-        self._units = tree_of((words, (name, unit)) for name, unit in units for words in unit.words)
+        self._units = tree_of((_apart(words), (name, unit)) for name, unit in units for words in unit.words)
         self._facing = [phrase.split() for phrase in language["roles"].get("facing", ())]
 
     def is_number(self, words: Sequence[str]) -> bool:
@@ -188,3 +190,8 @@ class Measures:
 def too_small(value: float, value_type: ValueType) -> bool:
     """Whether a number is below the least of its type."""
     return value_type.least is not None and value < value_type.least
+
+
+def _apart(unit: str) -> str:
+    """A unit as a text is split into words: `°C` is two."""
+    return _MARK.sub(r" \g<0> ", unit).lower()

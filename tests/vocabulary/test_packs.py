@@ -144,3 +144,18 @@ def test_an_installed_pack_is_named_by_its_entry_point(tmp_path: Path, monkeypat
     assert plain(parse_tree("do press-ups twice", keywords=["gym"]).tree) == "Repeat num_cycles=2\n  PressUp"
     with pytest.raises(MissionError, match=r"its keyword entry in .* has no call"):
         parse_tree("do press-ups", keywords=["gym"]).run()
+
+
+def test_a_unit_with_a_mark_is_said_with_and_without_a_blank(tmp_path: Path) -> None:
+    pack = tmp_path / "weather.toml"
+    pack.write_text(
+        '[[type]]\nname = "temperature"\nunits = [{ words = ["°C", "degrees celsius"], factor = "1" }]\n\n'
+        '[[quantity]]\nphrase = "the room temperature"\ntype = "temperature"\nid = "RoomTemperature"\n'
+        'call = "btlang.actions.sensing:distance_ahead"\nhelp = "."\nexample = "the room temperature is above 30 °C"\n',
+        encoding="utf-8",
+    )
+    said = ["30 °C", "30°C", "30 degrees Celsius"]
+    trees = [parse_tree(f"if the room temperature is above {value}, wave", keywords=[str(pack)]) for value in said]
+    assert {str(tree.to("english")) for tree in trees} == {"if the room temperature is above 30°C, wave\n"}
+    turned = parse_tree("turn left 40°", keywords=[str(pack)])
+    assert dict(turned.tree.root.ports) == {"angle": "40"}
