@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 ROBOTS = {
     "simulated": "btlang.robots.simulation.connection:Simulation",
     "devices": "btlang.components.device_robot:connect_devices",
-    "ros": "btlang.ros.command:connect_ros",
-    "actions": "btlang.ros.command:connect_actions",
+    "ros": "btlang.ros.connectors:connect_ros",
+    "actions": "btlang.ros.connectors:connect_actions",
 }
 """Functions of a world and a body that connect to a robot, by what it runs on. They are imported when needed."""
 
@@ -22,7 +22,7 @@ ALL = "all"
 """The value of --simulate for all devices of a robot."""
 COMPONENTS = "btlang.components.connection:component_connection"
 """The function that adds the components and devices of a body to a connection."""
-NODES = "btlang.ros.command:component_nodes"
+NODES = "btlang.ros.connectors:component_nodes"
 """The function that makes the node for components that are ROS 2 nodes."""
 
 

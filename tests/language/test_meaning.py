@@ -85,6 +85,8 @@ def test_numbers_that_are_said(sentence: str, tree: str) -> None:
         ("whenever bumped, go to the lab and back", "BT012"),
         ('pick up the book. Wave and say "Got it" if that worked', "BT168"),
         ("if bumped, stop. Then go to the lab", "BT151"),
+        ("go to Bob and give him the book. If you can't reach Bob, go to Alice instead", "BT151"),
+        ("go to the lab; on failure, go to the hall. In parallel, say hi every 10 s", "BT168"),
         ("whenever bumped, wave\nOtherwise go to the lab", "BT151"),
         ("go to the lab. If that fails, try again twice, and then wave", "BT151"),
         ("repeat: wave until bumped, at most 4 times", "BT151"),

@@ -127,8 +127,8 @@ def test_the_longest_text_is_read_in_bounded_time(layer: TaskLayer) -> None:
 
 READS = """
 import sys
-from btlang.robots.body_file import read_body
-from btlang.robots.world_problem import read_world
+from btlang.robots.bodies.body_file import read_body
+from btlang.robots.worlds.world_file import read_world
 from btlang.text.source import Source
 
 world, robot = (Source(text, "text", roots=()) for text in sys.argv[1:])

@@ -21,6 +21,7 @@ from btlang.vocabulary.references import choice_of
 from btlang.vocabulary.value_type import OBJECT, PERSON, PLACE
 
 _SENTENCE_END = re.compile(r"[.;!?\n]")
+_QUOTED_ENDS = ('."', '!"', '?"')
 _ON_THE_WAY, _BUMPED = ("SomeoneInTheWay", "SomethingInTheWay"), "Bumped"
 
 
@@ -40,7 +41,8 @@ def asked_once(compilation: Compilation) -> Iterator[Diagnostic]:
                     warnings = list(_warning(node, sentence[-1] if sentence else None, vocabulary))
                     yield from warnings or _too_late(node, sentence, vocabulary)
                 elif sentence and "\n" not in node.span.text:
-                    yield from _warning(node, None, vocabulary)  # `A, and when C, B`
+                    before_it = sentence[-1] if type(node.body) is ast.Fail else None  # `A, and abort if C`
+                    yield from _warning(node, before_it, vocabulary)  # `A, and when C, B`
 
 
 def _sentence_before(items: Sequence[ast.Ast], at: int) -> Sequence[ast.Ast]:
@@ -127,9 +129,10 @@ def _is_statement(node: ast.If, vocabulary: Lexicon) -> bool:
     """Whether nothing stands beside it in its statement, and no block below it; behind `stop when C` more may stand."""
     text, span = node.span.source.text, node.span
     before, behind = text[: span.start].rstrip(" \t"), text[span.end :].lstrip(" \t")
-    starts = not before or before[-1] in "\n;.!?"
+    starts = not before or before[-1] in "\n;.!?" or before[-2:] in _QUOTED_ENDS
     halts = node.body.span.start < node.condition.span.start and node.body.span.text.lower() in vocabulary.halting
-    return starts and "\n" not in span.text and (halts or not behind or behind[0] in "\r\n;.!?#")
+    ends = not behind or behind[0] in "\r\n;.!?#" or span.text[-2:] in _QUOTED_ENDS
+    return starts and "\n" not in span.text and (halts or ends)
 
 
 def _warning(node: ast.If, before: ast.Ast | None, vocabulary: Lexicon) -> Iterator[Diagnostic]:

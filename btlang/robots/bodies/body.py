@@ -270,8 +270,8 @@ class Body(Record):
     `over` is what it runs on by default: a name of btlang.robots.registry.ROBOTS. Joints that a posture doesn't name
     stay where they are; its steps follow each other. `file` is the path of the robot file, `world` that of the world
     where it works; "" without one. `rules`, `missions` and `schedules` are the paths of what it does by itself: see
-    btlang.task.house. `forbidden` has pairs of links that may not touch. What moves has to make progress within the
-    seconds of its `patience`.
+    btlang.task.execution.missions. `forbidden` has pairs of links that may not touch. What moves has to make progress
+    within the seconds of its `patience`.
     """
 
     name: str

@@ -258,7 +258,7 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
         return layer.handle(command, person)
 
     def watch(self, *wanted: Any) -> Generator[dict[str, Any]]:
-        """Follow the events of the robot (see `btlang.task.feed.Feed.watch`); no events without a robot."""
+        """Follow the events of the robot (see `btlang.task.live.feed.Feed.watch`); no events without a robot."""
         if self._layer is not None:
             yield from self._layer.feed.watch(*wanted)
 

@@ -122,6 +122,8 @@ class GoingOn(SentenceReader):
         """
         if role == _UNANSWERED:
             self._check_asked(words)
+        if role in ("in_parallel", "meanwhile") and FAILS in self._statement(len(self._tokens))[1]:
+            self._unclear(words)  # `A. If that fails, B. In parallel, C`
         if role not in ("otherwise", FAILS, WORKS):
             return role
         if role != "otherwise" and not set(self._vocabulary.asking["search"]).isdisjoint(_words(words.text)):

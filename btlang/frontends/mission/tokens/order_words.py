@@ -25,6 +25,7 @@ from btlang.frontends.mission.tokens.clock_words import ClockWords
 from btlang.frontends.mission.tokens.journey_words import JourneyWords
 from btlang.frontends.mission.tokens.rules_inside import ON_WAY
 from btlang.frontends.mission.tokens.sentence_reader import leads_to
+from btlang.frontends.mission.tokens.settling import FAILS
 from btlang.frontends.mission.tokens.silent_words import BEGINS, begins
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.trie import longest
@@ -209,6 +210,13 @@ class OrderWords(ClockWords, JourneyWords):
     def _instead(self, match: Match, at: int) -> int:
         """`otherwise wave instead`; elsewhere it is open what isn't done."""
         before = self._tokens[statement_start(self._tokens, len(self._tokens)) :]
+        settled = next((token for token in before if token.kind == "otherwise" and token.value == FAILS), None)
+        if settled is not None:  # `find Alice and wave. If you can't find her, find Bob instead`: and wave?
+            said = self._text.source.text[settled.end : self._text.starts[at]].strip(" ,")
+            span = self._text.span(at, match.last)
+            one, other = f"{said}, {self._vocabulary.word('then')} ...", said
+            self._calls.problems.append(diagnostic("BT151", span, words=span.text, one=one, other=other))
+            return match.last
         if any(token.kind in ("otherwise", "or") for token in before):
             return match.last
         span, otherwise = self._text.span(at, match.last), self._vocabulary.word("otherwise")

@@ -34,7 +34,7 @@ from btlang.frontends.mission.tokens.silent_words import begins
 from btlang.text.source import Span
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.value_type import PERSON
+from btlang.vocabulary.value_type import PERSON, PLACE
 from btlang.vocabulary.word_tree import find
 
 TYPE_CHECKING = False
@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from btlang.frontends.mission.token import Value
 
 _ASKING = frozenset(("if", "as_soon_as", "once"))
+_HOLDS = "Holding"
 _DONE = ("command", "name")
 
 
@@ -60,7 +61,23 @@ class Outcomes(GoingOn):
             self.check_asked(match, at)
         if role in (WORKS, "if_it_works", FAILS):
             self.trailing(match.last)
-        return self.unanswered(match.last) if role == "if_unanswered" else match.last
+        if role == "if_unanswered":
+            return self.unanswered(match.last)
+        return self._limit_before(match.last, role) if said in (WORKS, FAILS) else match.last
+
+    def _limit_before(self, end: int, role: str) -> int:
+        """`if you find him within 60 s, A`, `if that doesn't work after two attempts, A`: of the command before."""
+        tokens, form = self._tokens, len(self._tokens) - 1
+        at = asked_about(tokens, form, lambda _: True)
+        if at is None or any(token.kind not in (*JOINTS, "stop") for token in tokens[at + 1 : form]):
+            return end
+        limit = longest(self._vocabulary.trie, self._text, end, self._context)
+        if role == FAILS and limit is not None and limit.meaning.role == "tries":
+            count = self._calls.token(limit, end)
+            tokens.insert(at + 1, Token("count", count.start, count.end, count.value))
+            tokens.insert(at, Token("retry", tokens[at].start, tokens[at].start))
+            return limit.last
+        return self._limit(tokens[at], end) if role == FAILS or searches(tokens[at]) else end
 
     def settle(self, end: int) -> int:
         """What the condition asks that ends at a word is left out where the command before it has settled it.
@@ -85,7 +102,8 @@ class Outcomes(GoingOn):
                 self._join_otherwise(form)
             return end
         first = self._statement(command)[0] if denied else command
-        if any(_achieves(tokens[at], asked) for at in range(command, first - 1, -1)):
+        has_found = not denied and searches(tokens[command]) and _has_it(tokens[command], asked)
+        if has_found or any(_achieves(tokens[at], asked) for at in range(command, first - 1, -1)):
             self._join(command, form, asked.end, denied)
         return end
 
@@ -163,7 +181,10 @@ class Outcomes(GoingOn):
         if not behind or self._tokens[behind - 1].value != FAILS:
             return 0
         search = next(filter(searches, reversed(self._tokens)), None)
-        return self._partial.add_further(search, at + 1) if search is not None else 0
+        if search is not None or self._text.words[at] not in self._vocabulary.roles["try"]:
+            return self._partial.add_further(search, at + 1) if search is not None else 0
+        journey = self._journey() if self._context.read(PLACE, self._text, at + 1) is not None else None
+        return self._partial.add_further(journey, at + 1) if journey is not None else 0  # `try the hall`
 
     def _able(self, at: int, end: int) -> int:
         """`if you can pick it up, bring it to me`: picks it up unless it just has, and asks if that worked."""
@@ -282,6 +303,14 @@ def _is_presence(value: Value, somebody: Container[str]) -> bool:
     if not isinstance(value, Called) or any(slot.type == PERSON for slot in value.entry.slots):
         return False
     return any(word in somebody for phrase in value.entry.phrases[:1] for word in phrase.split())
+
+
+def _has_it(search: Token, asked: Token) -> bool:
+    """`find the ball. Once you have it, A`: whether what was looked for is asked for as if it was held then."""
+    said, value = asked.value, search.value
+    if not isinstance(said, Called) or said.entry.id != _HOLDS or not isinstance(value, Called | Listed):
+        return False
+    return {text for _, text in said.arguments} <= named_by(value)
 
 
 def _achieves(command: Token, asked: Token) -> bool:

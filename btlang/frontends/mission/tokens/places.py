@@ -9,14 +9,16 @@ from btlang.frontends.mission.token import (
     Called,
     Listed,
     Token,
+    arguments_of,
     constraint_of,
     run_start,
     statement_start,
 )
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, leads_to
 from btlang.frontends.mission.tokens.silent_words import begins
+from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.match import Match
-from btlang.vocabulary.references import NAMES, choice_of
+from btlang.vocabulary.references import ALL, NAMES, choice_of
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import OBJECT, PLACE
 from btlang.vocabulary.word_tree import find
@@ -33,6 +35,26 @@ _PLAIN = frozenset(("command", "name", "comma", "open", "close", *_JOINS))
 
 class Places(SentenceReader):
     """Those of one text."""
+
+    def search_there(self) -> None:
+        """`visit every room and look for the ball`: a search in each of the places, instead of the journeys to them."""
+        tokens = self._tokens
+        search, last = tokens[-1].value, run_start(tokens, len(tokens) - 1, JOINTS)
+        journey = tokens[last - 1].value if 0 < last < len(tokens) - 1 else None
+        if not isinstance(search, Called) or not search.entry.first or not isinstance(journey, Called | Listed):
+            return
+        slot = next((each.name for each in search.entry.slots if each.type == PLACE), "")
+        if not slot or slot in dict(search.arguments) or MOVES not in journey.entry.resources:
+            return
+        places = [dict(each) for each in arguments_of(journey)]
+        goals = [text for each in places for name, text in each.items() if journey.entry.slot(name).type == PLACE]
+        is_set = len(goals) == 1 and (choice := choice_of(goals[0])) is not None and choice.how == ALL
+        is_later = any(token.kind == "then" for token in tokens[last:-1])
+        if is_later or any(len(each) != 1 for each in places) or not (is_set or len(goals) > 1):
+            return
+        each = tuple((*search.arguments, (slot, goal)) for goal in goals)
+        value = Called(search.entry, each[0]) if is_set else Listed(search.entry, each, "or")
+        tokens[last - 1 :] = [Token("command", tokens[last - 1].start, tokens[-1].end, value)]
 
     def at_goal(self, at: int) -> int:
         """`go to the lab and wave there`, `visit every room and wave in each of them`: where the robot is by then."""

@@ -182,7 +182,9 @@ class Tries(SentenceReader):
         if asked is None or (amount is not None and amount.meaning.role in _IN_ALL):
             return 0  # `if he says no, ask again, at most 3 times`: until he says something else
         self._tokens.append(Token("command", self._text.starts[at], self._text.ends[match.last - 1], asked.value))
-        return match.last
+        last = amount.last if amount is not None and amount.meaning.role == "once" else match.last
+        self._doubt(last)
+        return last
 
     @cached_property
     def _asking_verbs(self) -> frozenset[str]:
