@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from btlang.cli import main
-from btlang.robots import simulation
+from btlang.robots.simulation import connection as simulation
 from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.robots.simulation.robot import SimulatedRobot
 

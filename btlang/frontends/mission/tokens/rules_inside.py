@@ -51,10 +51,10 @@ def with_rules_inside(tokens: list[Token]) -> None:
 def asks_if_blocked(tokens: Sequence[Token], form: int) -> bool:
     """Whether a form asks if the way of the journey before it is blocked, which is so while it drives."""
     asked = tokens[form + 1].value if tokens[form].kind == "if" and form + 1 < len(tokens) else None
-    last = run_start(tokens, form, JOINTS | STATEMENT_ENDS)
-    if not isinstance(asked, Called) or asked.entry.id not in _BLOCKED or not last:
+    if not isinstance(asked, Called) or asked.entry.id not in _BLOCKED:
         return False
-    journey = tokens[last - 1].value
+    last = run_start(tokens, form, JOINTS | STATEMENT_ENDS)
+    journey = tokens[last - 1].value if last else None
     return isinstance(journey, Called | Listed) and MOVES in journey.entry.resources
 
 
