@@ -65,7 +65,7 @@ _ALL = (
     Code("BT025", "These brackets are empty."),
     Code("BT026", "Unexpected ':'.", "A ':' follows for example 'if ...', 'repeat', 'otherwise' or 'patrol is'."),
     Code("BT027", "This line opens a block, but no indented line follows it.", "Indent the lines that belong to it."),
-    Code("BT028", "'{words}' is a condition, not a command.", "To make it a step that fails when it isn't true, write: check {words}"),
+    Code("BT028", "'{words}' is a condition, not a command.", "{advice}"),
     Code("BT029", "'{words}' is a command, but a condition is needed {place}."),
     Code("BT030", "'{words}' doesn't say how often or how long.", "Write for example: {words} 3 times"),
     Code("BT031", "'{words}' must stand behind 'A and B', or before a command.", "Write for example: wave and nod {words}"),

@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 from btlang.cli import main
-from btlang.robots.simulation import connection as simulation
 from btlang.robots.mission_vocabulary import world_vocabulary
+from btlang.robots.simulation import connection as simulation
 from btlang.robots.simulation.robot import SimulatedRobot
 
 from .cases import CASES, Case

@@ -15,10 +15,10 @@ PARSERS = ("shunting-yard", "lark")
 
 
 def rows(file: str) -> list[tuple[str, str]]:
-    """Two lines a row, a sentence and its tree, with comments and empty lines between them."""
+    """Two lines a row, a sentence (lines of it end in `\\n`) and its tree, with comments and empty lines between."""
     text = (HERE / file).read_text(encoding="utf-8").splitlines()
     lines = [line for line in text if line and not line.startswith("#")]
-    return list(zip(lines[::2], lines[1::2], strict=True))
+    return [(said.replace("\\n", "\n"), tree) for said, tree in zip(lines[::2], lines[1::2], strict=True)]
 
 
 def in_one_line(mission: btlang.Mission) -> str:
@@ -85,6 +85,10 @@ def test_numbers_that_are_said(sentence: str, tree: str) -> None:
         ("whenever bumped, go to the lab and back", "BT012"),
         ('pick up the book. Wave and say "Got it" if that worked', "BT168"),
         ("if bumped, stop. Then go to the lab", "BT151"),
+        ("find the book and the red cup and bring them to Bob. If you can't find them, wave", "BT168"),
+        ("look for Bob and Alice in the kitchen, then in the lab", "BT028"),
+        ("seek is go to the lab and find the book, then bring it to Bob. If you can't find it, wave\nseek", "BT168"),
+        ("report that lunch is ready to Bob", "BT159"),
         ("go to Bob and give him the book. If you can't reach Bob, go to Alice instead", "BT151"),
         ("go to the lab; on failure, go to the hall. In parallel, say hi every 10 s", "BT168"),
         ("whenever bumped, wave\nOtherwise go to the lab", "BT151"),

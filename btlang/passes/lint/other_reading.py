@@ -63,7 +63,7 @@ def in_chain(chain: ast.Chain, items: Sequence[ast.Ast], is_part: bool, vocabula
         if not gaps.is_open(at):
             continue
         place, start, gap = _Place(chain, gaps, at, is_part), left.span.start, gaps.text(at)
-        if _is_open(right):
+        if _is_open(right) and not _names_its_command(right):
             yield Attachment(MIXED, start, partial(place.mixed_right, right))
         elif _is_open(left):
             yield Attachment(MIXED, start, partial(place.mixed_left, left))
@@ -73,6 +73,12 @@ def in_chain(chain: ast.Chain, items: Sequence[ast.Ast], is_part: bool, vocabula
             yield Attachment(LIST, start, partial(place.list_left, left))
         elif lists and _is_sequence(right) and "(" not in gap:
             yield Attachment(LIST, start, partial(place.list_right, right))
+
+
+def _names_its_command(item: ast.Ast) -> bool:
+    """`A and find the cup. If you can't find it, B`: of all that stands before the stop B is about one command."""
+    source, parts = item.span.source.text, sorted(ast.parts(item), key=lambda part: part.span.start)
+    return len(parts) > 1 and "." in source[parts[0].span.end : parts[1].span.start]
 
 
 def _behind_after(

@@ -37,7 +37,12 @@ def needs_check(scan: Scan, token: Token) -> None:
     """BT028 for a condition in the place of a command that begins with `not` or words for a list."""
     last = scan.raw[scan.at + 1]
     span = scan.span(token, last if last.kind == "condition" else token)
-    scan.fail("BT028", span, word_before(scan, token, "check"), words=span.text)
+    scan.fail("BT028", span, word_before(scan, token, "check"), words=span.text, advice=check_advice(scan, span.text))
+
+
+def check_advice(scan: Scan, words: str) -> str:
+    """What to write for a condition that is to be a step."""
+    return f"To make it a step that fails when it isn't true, write: {scan.word('check')} {words}"
 
 
 def after_item(scan: Scan, entry: StackEntry, token: Token) -> None:

@@ -5,17 +5,19 @@ from __future__ import annotations
 from btlang.frontends.mission.grouping import constraints
 from btlang.frontends.mission.grouping.bodies import block_follows, separator, set_amount, set_pace
 from btlang.frontends.mission.grouping.conditions import AMOUNTS, CONDITION_FORMS, is_refused
-from btlang.frontends.mission.grouping.lists import lacks_neither, needs_check, stray
+from btlang.frontends.mission.grouping.lists import check_advice, lacks_neither, needs_check, stray
 from btlang.frontends.mission.grouping.problems import found_words, no_operand, word_before
 from btlang.frontends.mission.grouping.readings import started_over
 from btlang.frontends.mission.grouping.scan import ENDS, Scan
 from btlang.frontends.mission.grouping.stack import StackEntry
-from btlang.frontends.mission.token import Header, Listed, Token
+from btlang.frontends.mission.token import Called, Header, Listed, Token
 
 SEPARATORS = {"in_parallel": "BLOCK_AND", "in_order": "BLOCK_OR", "node": "BLOCK_CHILD", "following": "SEMI"}
 """What begins a block, each with the token between its lines."""
 
 
+_WHERE_IT_IS = ("AtPlace", "InZone")
+_PREPOSITION_AND_ARTICLE = 2  # words
 COMMANDS = frozenset(("command", "wait", "wait_until", "wait_for", "wait_up_to"))
 """What may stand in the head of `before waving, A`."""
 
@@ -34,7 +36,7 @@ def operand(scan: Scan, token: Token) -> None:
         scan.emit("CONDITION", token)
     else:
         if token.kind == "condition":
-            scan.fail("BT028", scan.span(token), word_before(scan, token, "check"), words=scan.words(token))
+            _misplaced_condition(scan, token)
             return
         if constraints.taken(scan, token):
             return
@@ -253,3 +255,14 @@ def definition(scan: Scan, token: Token) -> None:
         scan.stack.append(StackEntry("condition", after="definition"))
     scan.next(token, True)
     separator(scan)
+
+
+def _misplaced_condition(scan: Scan, token: Token) -> None:
+    """BT028. Behind a preposition alone more often stands where something is done than where the robot is."""
+    words, value = scan.words(token), token.value
+    place = value.arguments[-1][1] if isinstance(value, Called) and value.entry.id in _WHERE_IT_IS else ""
+    if place and len(words.split()) - len(place.split()) <= _PREPOSITION_AND_ARTICLE:
+        scan.fail("BT028", scan.span(token), words=words, advice=f"Say what is done there, or how to get to {place}.")
+        return
+    fix, advice = word_before(scan, token, "check"), check_advice(scan, words)
+    scan.fail("BT028", scan.span(token), fix, words=words, advice=advice)

@@ -6,7 +6,7 @@ from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import Called, Listed, Token
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.frontends.mission.tokens.word_matches import words_of
-from btlang.vocabulary.entry import Entry
+from btlang.vocabulary.entry import RECIPIENT, Entry
 from btlang.vocabulary.match import SlotValue
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE, ZONE
@@ -173,6 +173,16 @@ class AddressedTexts(SentenceReader):
         if text.words[opener] in asking["pleading"]:
             said = f"{asking['reminder' if text.words[at] in asking['reminding'] else 'plea'][0]} {said}"
         return said[:1].upper() + said[1:], end
+
+    def _addressee(self, first: int, last: int) -> int:
+        """Where a clause ends with a person who may be told it: `report that lunch is ready to Bob`; 0 for none."""
+        introducing = self._vocabulary.values.role_words.introducing.get(RECIPIENT, ())
+        people, to = self._vocabulary.values.names_tree(PERSON), {words[-1] for words in introducing}
+        for at in range(first, last - 1):
+            named = find(people, self._text.words, at + 1) if self._text.words[at] in to else None
+            if named is not None and named[1] == last:
+                return at
+        return 0
 
     def _repeat(self, entry: Entry, value: SlotValue, command: Token) -> None:
         """`ask Bob again`: what was asked, or told, before."""

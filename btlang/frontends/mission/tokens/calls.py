@@ -178,6 +178,8 @@ class Calls:
         before = [dict(each) for each in arguments_of(said)]
         names = {value.name for value in places}
         added = dict(self.arguments(entry, [value.replace(more=()) for value in further.values]))
+        if len({tuple((name, each[name]) for name in each if name not in names) for each in before}) > 1:
+            return None  # `look for Bob and Alice in the kitchen, then in the lab`
         if any(added[name] != each.get(name) for each in before for name in added.keys() - names):
             return False if all(text[:1] not in _ODD for text in added.values()) else None
         name = places[0].name if len(places) == 1 else ""

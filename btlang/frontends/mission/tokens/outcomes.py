@@ -168,7 +168,7 @@ class Outcomes(GoingOn):
     def read(self, at: int) -> int:
         """Words that go on with what has happened to the command before them. Returns where to go on, 0 for others."""
         if self._tokens and self._tokens[-1].kind == "if":
-            return self._unable(at)
+            return self._unable(at) or self._name_fails(at)
         if able := find(self._vocabulary.able, self._text.words, at):
             return self._able(at, able[1])
         if end := self.end_mission(at):
@@ -249,6 +249,24 @@ class Outcomes(GoingOn):
         start = self._tokens.pop().start
         self._try(match, front[1], Token("or", start, self._text.ends[front[1] - 1], FAILS))
         return match.last + (self._text.words[match.last] == ",")
+
+    def _name_fails(self, at: int) -> int:
+        """`if delivery fails, A`: does what has this name, unless it just has, and A if it fails."""
+        name = self._partial.named(at)
+        fails = longest(self._vocabulary.trie, self._text, name.last, self._context) if name is not None else None
+        if name is None or fails is None or fails.meaning.role != "fails":
+            return 0
+        tokens, form = self._tokens, self._tokens.pop()
+        last = run_start(tokens, len(tokens), STATEMENT_ENDS)
+        said = self._calls.token(name, at)
+        if last and tokens[last - 1].kind == said.kind and tokens[last - 1].value == said.value:
+            go_on(tokens)
+            settle(tokens, last - 1)
+            self._looked = 0, None, 0, frozenset()
+        else:
+            tokens += [said, Token("stop", form.start, form.start)]
+        tokens.append(Token("or", form.start, self._text.ends[fails.last - 1], FAILS))
+        return fails.last + (self._text.words[fails.last] == ",")
 
     def trailing(self, end: int) -> None:
         """Words behind a command that ask how the one before went, stand before it: `pick it up. Wave if that worked`.

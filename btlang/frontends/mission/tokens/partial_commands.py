@@ -263,11 +263,15 @@ class PartialCommands:
             elif token.kind not in ("and", "comma") and token.role != "list":
                 return
 
+    def named(self, at: int) -> Match | None:
+        """The name of a definition at a word."""
+        return longest(self._tries[1], self._text, at, self._context) if self._tries[1] else None
+
     def performed(self, at: int) -> int:
         """`run the tour`: the name of a definition, before which it says nothing. Returns where that begins."""
         if self._text.words[at] not in self._vocabulary.asking["performing"]:
             return 0
-        return at + 1 if longest(self._tries[1], self._text, at + 1, self._context) is not None else 0
+        return at + 1 if self.named(at + 1) is not None else 0
 
     def add_without_theme(self, at: int) -> int:
         """A command about the thing of the one before, which it leaves out: `pick up the cup and put in the box`."""

@@ -19,7 +19,7 @@ from btlang.frontends.mission.token import (
 )
 from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.entry import Entry
-from btlang.vocabulary.references import choice_of
+from btlang.vocabulary.references import ALL, choice_of
 
 FAILS, WORKS = "if_fails", "if_works"
 MEASURES = frozenset(("for", "up_to", "within", "count"))
@@ -63,7 +63,10 @@ def settle(tokens: list[Token], at: int) -> str:
     before = before[is_tried:]
     if any(token.kind not in _BETWEEN or token.value == FAILS for token in rest):
         return ""
-    splits = _is_sequence(before)
+    if not _sets_of(tokens[start:behind]).isdisjoint(text for token in rest for text in _texts(token)):
+        return ""  # `find every cup and bring them to me`: the rest belongs to the round
+    is_defined = first > 0 and tokens[first - 1].kind == "define"  # a definition in one line is one statement
+    splits = _is_sequence(before) and not (is_defined and before)
     if not splits and not all(token.kind in _HEADS for token in before):
         return "" if rest else FAILS
     if not rest and not (splits and before):
@@ -86,10 +89,22 @@ def _is_sequence(before: Sequence[Token]) -> bool:
     """Whether commands are done before another one, whatever they are joined with."""
     if any(token.kind not in _SIMPLE for token in before) or all(token.kind in JOINTS for token in before):
         return not before
+    if _sets_of(before):
+        return False  # `visit every room and find the cup`: in each of them
     last = run_start(before, len(before), JOINTS)
     value = before[last - 1].value if last else None
     moves = isinstance(value, Called | Listed) and MOVES in value.entry.resources
     return 0 < last < len(before) and (moves or before[-1].kind != "and")
+
+
+def _texts(token: Token) -> tuple[str, ...]:
+    return texts_of(token.value) if isinstance(token.value, Called | Listed) else ()
+
+
+def _sets_of(tokens: Sequence[Token]) -> set[str]:
+    """The references to the things of the rounds that commands make."""
+    choices = (choice_of(text) for token in tokens for text in _texts(token))
+    return {f"{{{choice.key}}}" for choice in choices if choice is not None and choice.how == ALL}
 
 
 def _one_statement(rest: Sequence[Token]) -> list[Token]:
