@@ -57,7 +57,8 @@ def _spin_node(options: argparse.Namespace, came: EndingSignals) -> int:
     require_interfaces()
     require_ros(*_PACKAGES)
     from btlang.cli.robot import layer_options
-    from btlang.ros.mission.node import MissionNode, Setup, StopNode, robot_name
+    from btlang.ros.mission.node import MissionNode, StopNode
+    from btlang.ros.mission.setup import Setup, robot_name
     from btlang.ros.node import SpunNode
     from btlang.task.commands.companion import companions
     from btlang.task.commands.socket_server import SocketServer

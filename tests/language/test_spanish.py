@@ -17,7 +17,7 @@ from btlang.frontends.mission.reader import PARSERS
 from btlang.printer.mission import english
 from btlang.repl.draft import MissionDraft
 from btlang.robots.mission_vocabulary import world_vocabulary
-from btlang.ros.mission.node import Setup
+from btlang.ros.mission.setup import Setup
 from btlang.task.store.records import MissionText
 from btlang.text.words import without_accents
 from btlang.vocabulary.load import load_vocabulary

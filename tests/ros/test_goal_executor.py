@@ -13,7 +13,7 @@ from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.ros.serving.goal_executor import BUSY, REST, GoalExecutor
 from btlang.ros.serving.names import action_name, choose_actions, find_servable
-from btlang.ros.serving.server import make_leaf
+from btlang.ros.serving.requested_leaf import make_leaf
 from btlang.run.bus import Bus
 
 WORDS = """

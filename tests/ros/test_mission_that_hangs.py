@@ -32,7 +32,8 @@ def hang(robot):
 def test_a_command_that_hangs(tmp_path: Path, domain: int, run_mission: Any, monkeypatch: pytest.MonkeyPatch):
     from rclpy.lifecycle import TransitionCallbackReturn
 
-    from btlang.ros.mission.node import MissionNode, Setup
+    from btlang.ros.mission.node import MissionNode
+    from btlang.ros.mission.setup import Setup
     from btlang.ros.node import SpunNode
     from btlang.task.execution import executor
     from tests.ros.processes import LONG, wait_until

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 import btlang
-from btlang.ros.mission.topics import MissionProgress, RunUpdate, TreeTopic
+from btlang.ros.mission.progress import MissionProgress, RunUpdate, TreeTopic
 from btlang.run.bus import INLINE
 
 
@@ -19,7 +19,7 @@ def test_the_last_snapshot_has_the_last_statuses(pause: float, monkeypatch: pyte
     """Also where a snapshot has just been taken when the run ends; `pause` are seconds between two looks."""
     looks = itertools.count()
     clock = SimpleNamespace(monotonic=lambda: next(looks) * pause)
-    monkeypatch.setattr("btlang.ros.mission.topics.time", clock)
+    monkeypatch.setattr("btlang.ros.mission.progress.time", clock)
     snapshots: list[str] = []
     changes: list[str] = []
     with btlang.Session() as session:

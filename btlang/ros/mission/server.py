@@ -25,7 +25,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from btlang.ros.mission.topics import RunUpdate
+    from btlang.ros.mission.progress import RunUpdate
 
     Handle = Callable[[Command | dict[str, Any]], Answer]
 
