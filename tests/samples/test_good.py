@@ -60,7 +60,7 @@ ROWS = {
     # sentences.md
     **dict.fromkeys(("Going on after a full stop", "If that works", "In any case"), "going_on"),
     "What a command has settled": "order",
-    "Do that again": "again",
+    "Each of the places before": "each_place", "Do that again": "again",
     # things.md
     "Lists": "lists_and_quantities", "Every name": "every_name", "Which one": "which_one",
     "Descriptions": "nouns", "Sets and rounds": "rounds", "Pronouns": "pronouns",

@@ -262,7 +262,8 @@ def _misplaced_condition(scan: Scan, token: Token) -> None:
     words, value = scan.words(token), token.value
     place = value.arguments[-1][1] if isinstance(value, Called) and value.entry.id in _WHERE_IT_IS else ""
     if place and len(words.split()) - len(place.split()) <= _PREPOSITION_AND_ARTICLE:
-        scan.fail("BT028", scan.span(token), words=words, advice=f"Say what is done there, or how to get to {place}.")
+        journey = f", or how to get to {place}" if place[0].isalnum() else ""
+        scan.fail("BT028", scan.span(token), words=words, advice=f"Say what is done there{journey}.")
         return
     fix, advice = word_before(scan, token, "check"), check_advice(scan, words)
     scan.fail("BT028", scan.span(token), fix, words=words, advice=advice)

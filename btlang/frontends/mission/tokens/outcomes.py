@@ -94,7 +94,8 @@ class Outcomes(GoingOn):
         if denied and tokens[form].kind == "if" and tokens[form - 1].kind in ("semi", "newline"):
             at = asked_about(tokens, form, lambda token: self._is_settled(token, asked))
             is_free = BRANCHES.isdisjoint(self._statement(form - 1)[1])
-            if at is not None and is_free and not self._may_ask_again(at, form, end):
+            may_ask = at is None or not is_free or self._may_ask_again(at, form, end)
+            if at is not None and not may_ask and settle(tokens[:form], at):
                 return self._settle(at, form, asked.end, end)
         command = self._before(form)
         if command is None:
