@@ -118,13 +118,22 @@ def _module(entry: Entry, name: str) -> ModuleType:
         raise
 
 
+_MOVED = {
+    "btlang.actions.commands:do_what_somebody_says": "btlang.actions.conversation:do_what_somebody_says",
+    "btlang.actions.show:bow": "btlang.actions.gestures:bow",
+    "btlang.actions.show:dance": "btlang.actions.gestures:dance",
+    "btlang.actions.sides:go_to_side": "btlang.actions.navigation:go_to_side",
+}
+"""Where functions that keyword files of 0.1 may name in `call` are now."""
+
+
 def _imported(entry: Entry) -> Callable[..., Any]:
     if not isinstance(entry.call, str):
         return entry.call
     node = Node(entry.id, span=entry.span)
     if not entry.call:
         raise EngineError(f'its keyword entry in {entry.file} has no call = "module:name"', node)
-    module, _, name = entry.call.partition(":")
+    module, _, name = _MOVED.get(entry.call, entry.call).partition(":")
     try:
         found: Any = _module(entry, module)
         for part in name.split("."):
