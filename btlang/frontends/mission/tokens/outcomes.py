@@ -170,11 +170,12 @@ class Outcomes(GoingOn):
         """Words that go on with what has happened to the command before them. Returns where to go on, 0 for others."""
         if self._tokens and self._tokens[-1].kind == "if":
             return self._unable(at) or self._name_fails(at)
-        if able := find(self._vocabulary.able, self._text.words, at):
+        word, words = self._text.words[at], self._vocabulary
+        if word in words.able and (able := find(words.able, self._text.words, at)):
             return self._able(at, able[1])
-        if end := self.end_mission(at):
+        if word in words.finishing and (end := self.end_mission(at)):
             return end
-        return self._search_elsewhere(at) if self._text.words[at] in self._vocabulary.asking["searching"] else 0
+        return self._search_elsewhere(at) if word in words.asking["searching"] else 0
 
     def _search_elsewhere(self, at: int) -> int:
         """`look for the cup in the lab. If it isn't there, look in the hall`: for the same thing."""

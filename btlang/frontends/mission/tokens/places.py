@@ -39,9 +39,12 @@ class Places(SentenceReader):
     def search_there(self) -> None:
         """`visit every room and look for the ball`: a search in each of the places, instead of the journeys to them."""
         tokens = self._tokens
-        search, last = tokens[-1].value, run_start(tokens, len(tokens) - 1, JOINTS)
+        search = tokens[-1].value
+        if not isinstance(search, Called) or not search.entry.first:
+            return
+        last = run_start(tokens, len(tokens) - 1, JOINTS)
         journey = tokens[last - 1].value if 0 < last < len(tokens) - 1 else None
-        if not isinstance(search, Called) or not search.entry.first or not isinstance(journey, Called | Listed):
+        if not isinstance(journey, Called | Listed):
             return
         slot = next((each.name for each in search.entry.slots if each.type == PLACE), "")
         if not slot or slot in dict(search.arguments) or MOVES not in journey.entry.resources:
