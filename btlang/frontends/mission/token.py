@@ -27,6 +27,7 @@ from collections.abc import Container, Sequence
 
 from btlang.support.record import Record
 from btlang.text.source import Span
+from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.entry import Entry
 
 QUANTIFIERS = frozenset(("neither", "not_both", "any_of", "all_of", "none_of", "at_least_of"))
@@ -53,7 +54,7 @@ BEFORE_CONDITIONS = frozenset(("if", "unless", "while", "until", "whenever", "fi
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import TypeAlias
+    from typing import TypeAlias, TypeGuard
 
     Said: TypeAlias = "Called | Listed | Assigned | Remembered | NodeCall"
     Value: TypeAlias = "Said | Each | Paced | OnDays | Constraint | Header | str | None"
@@ -187,6 +188,11 @@ def statement_start(tokens: Sequence[Token], end: int) -> int:
     return next((at + 1 for at in reversed(range(end)) if tokens[at].kind in LINES), 0)
 
 
+def statement_end(tokens: Sequence[Token], at: int) -> int:
+    """Where the statement ends in which a token stands."""
+    return next((end for end in range(at, len(tokens)) if tokens[end].kind in LINES), len(tokens))
+
+
 def run_start(tokens: Sequence[Token], end: int, kinds: Container[str]) -> int:
     """Where the tokens of some kinds begin that stand right before one; `end` if none does."""
     while end > 0 and tokens[end - 1].kind in kinds:
@@ -202,6 +208,11 @@ def arguments_of(said: Called | Listed) -> tuple[tuple[tuple[str, str], ...], ..
 def texts_of(said: Called | Listed) -> tuple[str, ...]:
     """The values of a phrase, or of all that a list stands for."""
     return tuple(text for arguments in arguments_of(said) for _, text in arguments)
+
+
+def drives(value: Value) -> TypeGuard[Called | Listed]:
+    """Whether what a token says drives the robot."""
+    return isinstance(value, Called | Listed) and MOVES in value.entry.resources
 
 
 def constraint_of(token: Token) -> Constraint | None:

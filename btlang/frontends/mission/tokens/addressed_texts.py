@@ -28,7 +28,7 @@ class AddressedTexts(SentenceReader):
     def _goes_on(self, at: int) -> bool:
         """Whether words follow that are neither a mark nor begin anything."""
         is_mark = self._is_end(at) or self._text.words[at] in (",", ":")
-        return not is_mark and longest(self._vocabulary.trie, self._text, at, self._context) is None
+        return not is_mark and self._phrase(at) is None
 
     def _tell(self, entry: Entry, value: SlotValue, command: Token) -> int:
         """`tell Bob dinner is ready`: a clause without a word before it."""
@@ -156,7 +156,7 @@ class AddressedTexts(SentenceReader):
         """Whether no name of somebody or of a place, and no phrase, begins at a word."""
         kinds = (PERSON, PLACE, ZONE, DOOR)
         named = any(find(self._vocabulary.values.names_tree(kind), self._text.words, at) is not None for kind in kinds)
-        return not named and longest(self._vocabulary.trie, self._text, at, self._context) is None
+        return not named and self._phrase(at) is None
 
     def _opens_clause(self, at: int) -> bool:
         """`tell me that ...`, `remind me to ...`, but not `report to Alice`."""

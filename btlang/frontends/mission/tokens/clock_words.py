@@ -7,7 +7,6 @@ from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.frontends.mission.tokens.silent_words import BEGINS
 from btlang.text.time_of_day import WEEKDAYS
 from btlang.vocabulary.match import Match, SlotValue
-from btlang.vocabulary.trie import longest
 
 _TIME = "time_of_day"
 _WEEKDAYS = frozenset(map(str.lower, WEEKDAYS))
@@ -38,7 +37,7 @@ class ClockWords(SentenceReader):
         while text.words[found[-1].last] in (",", *joints):
             behind = found[-1].last + (text.words[found[-1].last] == ",")
             behind += text.words[behind] in joints
-            more = longest(self._vocabulary.trie, text, behind, self._context)
+            more = self._phrase(behind)
             if more is None or more.meaning.role != "at":
                 break
             found.append(more)
@@ -78,7 +77,7 @@ class ClockWords(SentenceReader):
     def _is_repeated(self, at: int) -> bool:
         """Whether the rest of the statement is done again and again: `wave every 5 minutes`."""
         end = self._end_of_statement(at)
-        found = (longest(self._vocabulary.trie, self._text, i, self._context) for i in range(at, end))
+        found = (self._phrase(i) for i in range(at, end))
         return any(match is not None and match.meaning.role == "every" for match in found)
 
     def _until(self) -> None:

@@ -10,8 +10,8 @@ from btlang.frontends.mission.token import (
     RULES,
     STATEMENT_ENDS,
     Called,
-    Listed,
     Token,
+    drives,
     go_on,
     run_start,
 )
@@ -20,9 +20,7 @@ from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, hear
 from btlang.frontends.mission.tokens.settling import FAILS, MEASURES, WORKS, asked_about, is_about, settle
 from btlang.text.source import Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
-from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.match import Match
-from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import PLACE
 from btlang.vocabulary.word_tree import find
 
@@ -163,11 +161,15 @@ class GoingOn(SentenceReader):
         end = run_start(self._tokens, len(self._tokens), STATEMENT_ENDS)
         if role == WORKS and any(token.kind not in MEASURES for token in self._tokens[at + 1 : end]):
             return role
-        made = settle(self._tokens, at)
-        self._looked = 0, None, 0, frozenset()
+        made = self._settle_command(at)
         if not made:
             self._unclear(words)
         return made if made == "otherwise" else role
+
+    def _settle_command(self, at: int) -> str:
+        """See `settle`; the tokens that it makes have to be looked at anew."""
+        self._looked = 0, None, 0, frozenset()
+        return settle(self._tokens, at)
 
     def _first_about(self, start: int, words: Span) -> int | None:
         """The first command of a statement about the thing that a pronoun among some words stands for."""
@@ -182,7 +184,8 @@ class GoingOn(SentenceReader):
         at = next(at for at in reversed(range(len(self._tokens))) if self._tokens[at].kind == WORKS)
         worked, pronouns = self._tokens[at], self._vocabulary.values.pronouns
         asked, said = _words(self._text.source.text[worked.start : worked.end]), _words(words.text)
-        if any(PLACE in pronouns.get(word, ()) for word in said) and any(map(_moves, self._tokens[at:])):
+        has_left = any(drives(token.value) for token in self._tokens[at:])
+        if has_left and any(PLACE in pronouns.get(word, ()) for word in said):
             return False  # `if he is there, go to the lab. If he isn't there, A`: it may be about the lab
         denied = (
             [*asked[:at], *way.split(), *asked[at + 1 :]]
@@ -228,7 +231,7 @@ class GoingOn(SentenceReader):
         """Whether anything but `otherwise` is said behind the end of a statement."""
         words = self._text.words
         at = next((at for at in range(end, len(words)) if words[at] not in _ENDS), None)
-        behind = longest(self._vocabulary.trie, self._text, at, self._context) if at is not None else None
+        behind = self._phrase(at) if at is not None else None
         return at is not None and (behind is None or behind.meaning.role not in ("otherwise", FAILS))
 
     def goes_on_endlessly(self) -> bool:
@@ -265,7 +268,3 @@ class GoingOn(SentenceReader):
 
 def _words(text: str) -> list[str]:
     return text.lower().rstrip(",").split()
-
-
-def _moves(token: Token) -> bool:
-    return isinstance(token.value, Called | Listed) and MOVES in token.value.entry.resources

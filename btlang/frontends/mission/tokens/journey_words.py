@@ -8,7 +8,6 @@ from btlang.frontends.mission.tokens.silent_words import BEGINS, begins_item
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.language_tables import NOT_ALONE
 from btlang.vocabulary.match import Match, SlotValue
-from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import DOOR, PERSON, PLACE
 from btlang.vocabulary.word_tree import find
 
@@ -20,14 +19,14 @@ class JourneyWords(SentenceReader):
 
     def _start(self, at: int, end: int) -> int:
         """`from the lab, go to the hall`, `go from the lab to the hall`: to the first place, then on."""
-        tokens, words = self._tokens, self._text.words
+        tokens = self._tokens
         if tokens and tokens[-1].kind not in (*BEGINS, *JOINTS):
             return 0
         journey = self._with_front(at, end, "journey")
         if journey is None or self._is_end(journey.last) or any("{" in value.text for value in journey.values):
             return 0  # `from your room` isn't where it starts
-        behind = journey.last + (words[journey.last] == ",")
-        joint = longest(self._vocabulary.trie, self._text, behind, self._context)
+        behind = self._behind_comma(journey.last)
+        joint = self._phrase(behind)
         self._partial.append(journey, at)
         tokens.append(Token("then", self._text.ends[journey.last - 1], self._text.ends[journey.last - 1]))
         return joint.last if joint is not None and joint.meaning.role in ("and", "then") else behind
@@ -36,7 +35,7 @@ class JourneyWords(SentenceReader):
         """`go from the lab to the hall`, by the verb at a word."""
         if self._text.words[at] not in self._vocabulary.journey_verbs:
             return 0
-        match = longest(self._vocabulary.trie, self._text, at + 1, self._context)
+        match = self._phrase(at + 1)
         return self._start(at, match.last) if match is not None and match.meaning.role == "start_at" else 0
 
     def _back(self, at: int) -> int:
@@ -45,7 +44,7 @@ class JourneyWords(SentenceReader):
         journey = run_start(self._tokens, len(self._tokens), JOINTS) - 1
         if found is None or journey < 0 or self._journey(self._tokens[: journey + 1]) is not self._tokens[journey]:
             return 0
-        behind = longest(self._vocabulary.trie, self._text, found[1], self._context)
+        behind = self._phrase(found[1])
         joins = behind is not None and behind.meaning.role in ("and", "then", "count")
         if not (joins or self._is_end(found[1]) or self._text.words[found[1]] == ","):
             return 0
@@ -82,10 +81,10 @@ class JourneyWords(SentenceReader):
     def _go_and_see(self, at: int) -> int:
         """`go and see if Bob is in the lab`: there, and then what is asked."""
         going = find(self._vocabulary.going, self._text.words, at)
-        check = longest(self._vocabulary.trie, self._text, going[1], self._context) if going is not None else None
+        check = self._phrase(going[1]) if going is not None else None
         if going is None or check is None or check.meaning.role != "check":
             return 0
-        asked = longest(self._vocabulary.trie, self._text, check.last, self._context)
+        asked = self._phrase(check.last)
         places = [value for value in asked.values if value.type in (PLACE, DOOR)] if asked is not None else []
         journey = self._with_front(at, places[0].first, "journey") if len(places) == 1 else None
         if journey is None or journey.last != places[0].last:
@@ -101,7 +100,7 @@ class JourneyWords(SentenceReader):
         manner = find(self._context.manners, words, at + 1) if words[at] in self._vocabulary.journey_verbs else None
         if manner is None or not begins_item(self._tokens) or self._journey() is not None:
             return 0
-        behind = longest(self._vocabulary.trie, self._text, manner[1], self._context)
+        behind = self._phrase(manner[1])
         joins = behind is not None and behind.meaning.role in ("and", "then")
         if not (self._is_end(manner[1]) or words[manner[1]] == "," or joins):
             return 0
@@ -146,7 +145,7 @@ class JourneyWords(SentenceReader):
         found = self._with_front(at, end, "inspecting")
         if found is None:
             return 0
-        behind = longest(self._vocabulary.trie, self._text, found.last, self._context)
+        behind = self._phrase(found.last)
         joins = behind is not None and behind.meaning.entry is None and behind.meaning.role not in NOT_ALONE
         if not (joins or self._is_end(found.last) or self._text.words[found.last] == ","):
             return 0

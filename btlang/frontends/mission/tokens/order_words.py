@@ -28,7 +28,6 @@ from btlang.frontends.mission.tokens.sentence_reader import leads_to
 from btlang.frontends.mission.tokens.settling import FAILS
 from btlang.frontends.mission.tokens.silent_words import BEGINS, begins
 from btlang.vocabulary.match import Match
-from btlang.vocabulary.trie import longest
 from btlang.vocabulary.word_tree import find
 
 
@@ -74,7 +73,7 @@ class OrderWords(ClockWords, JourneyWords):
         if tokens[-1].kind not in ("command", "name", "close", *BEGINS):
             return 0
         tokens.append(Token("then", self._text.starts[at], self._text.ends[end - 1]))
-        return end + (self._text.words[end] == ",")
+        return self._behind_comma(end)
 
     def _may_be_left_out(self, journey: Token) -> bool:
         """Whether the journey is that of an earlier statement that doesn't always run, or runs beside the others."""
@@ -143,7 +142,7 @@ class OrderWords(ClockWords, JourneyWords):
             return 0
         self._watch(tokens[first])
         behind = found[1] + (words[found[1]] == ",")
-        joint = longest(self._vocabulary.trie, self._text, behind, self._context)
+        joint = self._phrase(behind)
         if joint is not None and joint.meaning.role in ("and", "then"):
             return joint.last
         return behind if behind > found[1] else 0
@@ -173,7 +172,7 @@ class OrderWords(ClockWords, JourneyWords):
 
     def is_doing(self, at: int) -> bool:
         """Whether the form of a verb stands at a word: `keep going back and forth`."""
-        match = longest(self._vocabulary.trie, self._text, at, self._context)
+        match = self._phrase(at)
         again = match is not None and match.meaning.role == "back_and_forth"
         return again or self._partial.doing(at) is not None
 
@@ -189,7 +188,7 @@ class OrderWords(ClockWords, JourneyWords):
         if not tokens or tokens[-1].kind != "command":
             return False
         if words[at] in (*self._vocabulary.asked_once, *roles["once"]):
-            behind = longest(self._vocabulary.trie, self._text, match.last, self._context)
+            behind = self._phrase(match.last)
             return self._is_end(match.last) or (behind is not None and behind.meaning.role in ("and", "then"))
         is_later = self._is_end(match.last) and len(tokens) > 1 and tokens[-2].kind in (*JOINTS, "semi", "newline")
         if is_later and tokens[-2].kind == "and":  # `go to the lab and wave afterwards`
@@ -257,8 +256,8 @@ class OrderWords(ClockWords, JourneyWords):
             tokens.pop()
         if journey is None or (tokens[-1].kind not in JOINTS and tokens[-1] is not journey):
             return 0
-        behind = end + (text.words[end] == ",")
-        match = longest(self._vocabulary.trie, text, behind, self._context)
+        behind = self._behind_comma(end)
+        match = self._phrase(behind)
         if match is None or match.meaning.entry is None:
             return 0
         while tokens[-1].kind in JOINTS:
@@ -293,8 +292,8 @@ class OrderWords(ClockWords, JourneyWords):
             tokens.append(Token(joint, text.starts[at], text.ends[end - 1]))
             self._partial.append(journey, at)
             return journey.last
-        behind = journey.last + (text.words[journey.last] == ",")
-        match = longest(self._vocabulary.trie, text, behind, self._context)
+        behind = self._behind_comma(journey.last)
+        match = self._phrase(behind)
         if match is not None and match.meaning.role in RULES and begins(tokens):
             tokens.append(Token("while_doing", text.starts[at], text.ends[end - 1]))
             self._partial.append(journey, at)

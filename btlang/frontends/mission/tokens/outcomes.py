@@ -33,7 +33,6 @@ from btlang.frontends.mission.tokens.settling import (
 from btlang.frontends.mission.tokens.silent_words import begins
 from btlang.text.source import Span
 from btlang.vocabulary.match import Match
-from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import PERSON, PLACE
 from btlang.vocabulary.word_tree import find
 
@@ -71,7 +70,7 @@ class Outcomes(GoingOn):
         at = asked_about(tokens, form, lambda _: True)
         if at is None or any(token.kind not in (*JOINTS, "stop") for token in tokens[at + 1 : form]):
             return end
-        limit = longest(self._vocabulary.trie, self._text, end, self._context)
+        limit = self._phrase(end)
         if role == FAILS and limit is not None and limit.meaning.role == "tries":
             count = self._calls.token(limit, end)
             tokens.insert(at + 1, Token("count", count.start, count.end, count.value))
@@ -118,7 +117,7 @@ class Outcomes(GoingOn):
 
     def _time_behind(self, end: int) -> Match | None:
         """The time that stands at a word."""
-        limit = longest(self._vocabulary.trie, self._text, end, self._context)
+        limit = self._phrase(end)
         return limit if limit is not None and limit.meaning.role in ("within", "delay") else None
 
     def _is_settled(self, token: Token, asked: Token) -> bool:
@@ -141,8 +140,7 @@ class Outcomes(GoingOn):
                 wait.kind, wait.value = "wait_until", None
             elif at + 1 < len(tokens) and tokens[at + 1].kind in ("for", "up_to"):
                 tokens[at + 1].kind = "within"
-        role = settle(tokens, at)
-        self._looked = 0, None, 0, frozenset()
+        role = self._settle_command(at)
         if not role:
             self._unclear(Span(self._text.source, start, stop))
         tokens.append(Token("otherwise" if role == "otherwise" else "or", start, stop, FAILS))
@@ -190,10 +188,10 @@ class Outcomes(GoingOn):
 
     def _able(self, at: int, end: int) -> int:
         """`if you can pick it up, bring it to me`: picks it up unless it just has, and asks if that worked."""
-        asked = longest(self._vocabulary.trie, self._text, at + 1, self._context)
+        asked = self._phrase(at + 1)
         if asked is not None and asked.last > end:
             return self._begin_if(at)  # `if you can see it`
-        match = longest(self._vocabulary.trie, self._text, end, self._context)
+        match = self._phrase(end)
         if match is None or match.meaning.role != "command":
             match = self._partial.doing(end)
         if match is None or match.meaning.entry is None or self._text.words[match.last] != ",":
@@ -221,7 +219,7 @@ class Outcomes(GoingOn):
     def _unable(self, at: int) -> int:
         """`if you can't grab it`, behind a command about it: if that fails. Else it is tried first."""
         front, form = find(self._vocabulary.unable, self._text.words, at), len(self._tokens) - 1
-        match = longest(self._vocabulary.trie, self._text, front[1], self._context) if front is not None else None
+        match = self._phrase(front[1]) if front is not None else None
         if front is not None and match is None:
             reaching = find(self._vocabulary.reaching, self._text.words, front[1])
             match = self._with_front(front[1], reaching[1], "journey") if reaching is not None else None
@@ -250,12 +248,12 @@ class Outcomes(GoingOn):
             return 0
         start = self._tokens.pop().start
         self._try(match, front[1], Token("or", start, self._text.ends[front[1] - 1], FAILS))
-        return match.last + (self._text.words[match.last] == ",")
+        return self._behind_comma(match.last)
 
     def _name_fails(self, at: int) -> int:
         """`if delivery fails, A`: does what has this name, unless it just has, and A if it fails."""
         name = self._partial.named(at)
-        fails = longest(self._vocabulary.trie, self._text, name.last, self._context) if name is not None else None
+        fails = self._phrase(name.last) if name is not None else None
         if name is None or fails is None or fails.meaning.role != "fails":
             return 0
         tokens, form = self._tokens, self._tokens.pop()
@@ -263,12 +261,11 @@ class Outcomes(GoingOn):
         said = self._calls.token(name, at)
         if last and tokens[last - 1].kind == said.kind and tokens[last - 1].value == said.value:
             go_on(tokens)
-            settle(tokens, last - 1)
-            self._looked = 0, None, 0, frozenset()
+            self._settle_command(last - 1)
         else:
             tokens += [said, Token("stop", form.start, form.start)]
         tokens.append(Token("or", form.start, self._text.ends[fails.last - 1], FAILS))
-        return fails.last + (self._text.words[fails.last] == ",")
+        return self._behind_comma(fails.last)
 
     def trailing(self, end: int) -> None:
         """Words behind a command that ask how the one before went, stand before it: `pick it up. Wave if that worked`.
@@ -277,8 +274,8 @@ class Outcomes(GoingOn):
         """
         tokens, form, command = self._tokens, self._tokens[-1], len(self._tokens) - 2
         role = FAILS if form.value == FAILS else form.kind
-        further = end + (self._text.words[end] == ",")
-        behind = longest(self._vocabulary.trie, self._text, further, self._context)
+        further = self._behind_comma(end)
+        behind = self._phrase(further)
         is_last = self._is_end(end) or (behind is not None and behind.meaning.role == "otherwise")
         if not is_last or role not in (FAILS, WORKS, "if_possible") or tokens[command].kind not in _DONE:
             return

@@ -11,15 +11,14 @@ from btlang.frontends.mission.token import (
     Token,
     arguments_of,
     constraint_of,
+    drives,
     run_start,
     statement_start,
 )
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, leads_to
 from btlang.frontends.mission.tokens.silent_words import begins
-from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.references import ALL, NAMES, choice_of
-from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import OBJECT, PLACE
 from btlang.vocabulary.word_tree import find
 
@@ -44,10 +43,10 @@ class Places(SentenceReader):
             return
         last = run_start(tokens, len(tokens) - 1, JOINTS)
         journey = tokens[last - 1].value if 0 < last < len(tokens) - 1 else None
-        if not isinstance(journey, Called | Listed):
+        if not drives(journey):
             return
         slot = next((each.name for each in search.entry.slots if each.type == PLACE), "")
-        if not slot or slot in dict(search.arguments) or MOVES not in journey.entry.resources:
+        if not slot or slot in dict(search.arguments):
             return
         places = [dict(each) for each in arguments_of(journey)]
         goals = [text for each in places for name, text in each.items() if journey.entry.slot(name).type == PLACE]
@@ -67,7 +66,7 @@ class Places(SentenceReader):
         if pronoun is None or PLACE not in context.pronouns[pronoun[0]]:
             return 0
         journey = self._journey(tokens[:-1])
-        behind = longest(self._vocabulary.trie, text, pronoun[1], context)
+        behind = self._phrase(pronoun[1])
         is_polite = behind is not None and behind.meaning.role == "politeness"  # `there, too`
         if journey is None or not (is_polite or self._is_end(pronoun[1]) or text.words[pronoun[1]] == ","):
             return 0
@@ -91,7 +90,7 @@ class Places(SentenceReader):
         value, is_wait = tokens[-1].value, tokens[-1].kind == "wait"
         if journey is None or not (is_wait or (isinstance(value, Called | Listed) and not constraint_of(tokens[-1]))):
             return 0
-        following = longest(self._vocabulary.trie, self._text, journey.last, self._context)
+        following = self._phrase(journey.last)
         ends = self._is_end(journey.last) or self._text.words[journey.last] == ","
         if not ends and (following is None or following.meaning.role not in _JOINS):
             return 0
@@ -130,10 +129,10 @@ class Places(SentenceReader):
         journey = self._to(at)
         if journey is None:
             return 0
-        behind = journey.last + (self._text.words[journey.last] == ",")
+        behind = self._behind_comma(journey.last)
         if self._goes_there(journey, len(self._tokens)):
             return behind
-        following = longest(self._vocabulary.trie, self._text, behind, self._context)
+        following = self._phrase(behind)
         if following is None or following.meaning.role not in _COMMANDS:
             return 0
         if any(value.group or value.more for value in journey.values) and not self._are_commands(behind):
@@ -173,7 +172,7 @@ class Places(SentenceReader):
         """Whether all from a word to the end of the statement are commands that `and` joins."""
         joints = self._vocabulary.roles["and"]
         while True:
-            command = longest(self._vocabulary.trie, self._text, at, self._context)
+            command = self._phrase(at)
             if command is None or command.meaning.role not in _COMMANDS:
                 return False
             if self._is_end(command.last):

@@ -40,7 +40,7 @@ class Questions(Answers):
         measured = self._measured(end)
         if measured is None:
             return 0
-        behind = longest(self._vocabulary.trie, self._text, measured.last, self._context)
+        behind = self._phrase(measured.last)
         last = behind.last if behind is not None and behind.meaning.role == "there_are" else measured.last
         if command is not None and self._text.words[last] in self._vocabulary.values.texts.inverting:
             last += 1
@@ -94,7 +94,7 @@ class Questions(Answers):
         if text.words[first] in self._vocabulary.roles["if"]:
             self._doubt(said.entry, first, _DEPENDS)  # `tell me if the door is open`
             return first + self._length(first) + 1
-        asked = longest(self._vocabulary.trie, text, first, self._context)
+        asked = self._phrase(first)
         role = asked.meaning.role if asked is not None else ""
         read = {"ask_value": self._asked, "ask_where": self._where, "ask_how_many": self._how_many}.get(role)
         if asked is None or read is None:
@@ -104,7 +104,7 @@ class Questions(Answers):
     def _say_whether(self, at: int, first: int, said: Called, slot: str) -> int:
         """Says yes or no for the condition that begins at `first`."""
         text = self._text
-        condition = longest(self._vocabulary.trie, text, first, self._context)
+        condition = self._phrase(first)
         is_one = condition is not None and condition.meaning.role in ("condition", "negated")
         if condition is None or not is_one or not self._ends(condition.last):
             return 0
@@ -135,7 +135,7 @@ class Questions(Answers):
 
     def _say_last_count(self, at: int, end: int, command: Token | None, slot: str) -> int:
         """`count the boxes, then tell me how many there are`, `then say how many`: what was counted."""
-        behind, count = longest(self._vocabulary.trie, self._text, end, self._context), self._vocabulary.entry(COUNT)
+        behind, count = self._phrase(end), self._vocabulary.entry(COUNT)
         is_there = behind is not None and behind.meaning.role == "there_are"
         last = behind.last if behind is not None and is_there else end
         if count is None or not self._ends(last) or not (is_there or self._has_counted()):
@@ -153,7 +153,7 @@ class Questions(Answers):
         counted = self._with_front(at - 1, at, "counting")
         if counted is None:
             return None
-        behind = longest(self._vocabulary.trie, self._text, counted.last, self._context)
+        behind = self._phrase(counted.last)
         if behind is None or behind.meaning.role != "there_are":
             return counted
         counting, left_out = self._vocabulary.asking["counting"], range(counted.last, behind.last)
@@ -189,7 +189,7 @@ class Questions(Answers):
             return 0
         end = text.ends[condition.last - 1]
         if text.words[condition.last] == END_OF_STATEMENT:
-            joint = longest(self._vocabulary.trie, text, condition.last + 1, self._context)
+            joint = self._phrase(condition.last + 1)
             is_then = joint is not None and joint.meaning.role == "then"  # `is the battery low? Then dock`
             reply = (True, joint.last) if joint is not None and is_then else None
             if condition.last + 1 in text.going_on:
@@ -231,7 +231,7 @@ class Questions(Answers):
         """Whether a question may end before a word."""
         if self._is_end(at) or self._text.words[at] == ",":
             return True
-        match = longest(self._vocabulary.trie, self._text, at, self._context)
+        match = self._phrase(at)
         return match is not None and match.meaning.role in _BEHIND
 
     def _then(self, at: int) -> None:

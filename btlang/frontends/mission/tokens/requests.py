@@ -13,7 +13,6 @@ from btlang.text.source import Span
 from btlang.tree.asked import ASK
 from btlang.vocabulary.entry import SAY, Entry
 from btlang.vocabulary.match import Match
-from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import TEXT
 from btlang.vocabulary.word_tree import find
 
@@ -47,7 +46,7 @@ class Requests(Questions):
         if is_pronoun and value.last == value.first + 1 and entry.id in (SAY, TELL):
             self._doubt(entry, value.first)  # `say it again`
             return 0
-        again = longest(self._vocabulary.trie, self._text, value.first, self._context)
+        again = self._phrase(value.first)
         if again is not None and again.meaning.role == "again":
             self._repeat(entry, value, command)
             return 0
@@ -59,7 +58,7 @@ class Requests(Questions):
         if not (entry.accompaniment or "voice" in entry.needs):
             return 0  # a text that nobody says is its words: `listen for the bell`
         text, first = self._text, value.first
-        asked = longest(self._vocabulary.trie, text, first, self._context)
+        asked = self._phrase(first)
         if asked is not None and asked.meaning.role == "ask_how_many":
             return self._how_many(at, asked.last, command, value.name)
         if entry.id == TELL and text.words[first] in self._vocabulary.roles["and"]:
@@ -115,7 +114,7 @@ class Requests(Questions):
         wanted = self._with_front(at, at, "fetching")
         if wanted is None:
             return 0
-        end = wanted.last + (text.words[wanted.last] == ",")
+        end = self._behind_comma(wanted.last)
         if text.words[end] not in begging or not self._is_end(end + 1):
             return 0
         self._partial.append(wanted, at)
@@ -185,7 +184,7 @@ class Requests(Questions):
             at -= 1
         if at >= 0 and tokens[at].kind == "check":
             written = self._text.source.text[tokens[at].start : tokens[at].end].lower()
-            following = longest(self._vocabulary.trie, self._text, end, self._context)
+            following = self._phrase(end)
             asked = {value.text for value in following.values} if following is not None else set()
             said = (token.value for token in tokens[at:] if isinstance(token.value, Called | Listed))
             same = any(asked.intersection(texts_of(value)) for value in said)

@@ -8,16 +8,16 @@ from collections.abc import Sequence
 
 from btlang.frontends.mission.token import (
     JOINTS,
-    LINES,
     RULES,
     STATEMENT_ENDS,
     Called,
     Listed,
     Token,
+    drives,
     run_start,
+    statement_end,
     statement_start,
 )
-from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.value_type import PERSON, PLACE
 
 ON_WAY = "on_way"
@@ -37,7 +37,7 @@ def with_rules_inside(tokens: list[Token]) -> None:
         is_rule = tokens[at].role == ON_WAY
         if is_rule or tokens[at].kind == _DOING:
             first = statement_start(tokens, at)
-            last = next((i for i in range(at, len(tokens)) if tokens[i].kind in LINES), len(tokens))
+            last = statement_end(tokens, at)
             if is_rule and first == at:  # of the statement before
                 first = statement_start(tokens, run_start(tokens, first, STATEMENT_ENDS))
             statement = tokens[first:last]
@@ -53,17 +53,21 @@ def asks_if_blocked(tokens: Sequence[Token], form: int) -> bool:
     asked = tokens[form + 1].value if tokens[form].kind == "if" and form + 1 < len(tokens) else None
     if not isinstance(asked, Called) or asked.entry.id not in _BLOCKED:
         return False
+    return _journey_before(tokens, form) is not None
+
+
+def _journey_before(tokens: Sequence[Token], form: int) -> Called | Listed | None:
+    """The command right before a form, if it drives."""
     last = run_start(tokens, form, JOINTS | STATEMENT_ENDS)
-    journey = tokens[last - 1].value if last else None
-    return isinstance(journey, Called | Listed) and MOVES in journey.entry.resources
+    value = tokens[last - 1].value if last else None
+    return value if drives(value) else None
 
 
 def _is_event(tokens: Sequence[Token], form: int) -> bool:
     """Whether `if somebody is in the way` is about the journey; `if there is a wall` may ask at its end."""
-    asked, last = tokens[form + 1].value, run_start(tokens, form, JOINTS | STATEMENT_ENDS)
-    journey = tokens[last - 1].value
-    end = next((i for i in range(form, len(tokens)) if tokens[i].kind in LINES), len(tokens))
-    if not isinstance(journey, Called | Listed) or any(token.kind == "otherwise" for token in tokens[form:end]):
+    asked, journey = tokens[form + 1].value, _journey_before(tokens, form)
+    end = statement_end(tokens, form)
+    if journey is None or any(token.kind == "otherwise" for token in tokens[form:end]):
         return False
     is_joined = tokens[form - 1].kind not in STATEMENT_ENDS
     leads = any(slot.type in (PLACE, PERSON) for slot in journey.entry.slots)

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from btlang.frontends.mission.token import Called, Listed, Token, constraint_of
+from btlang.frontends.mission.token import Called, Listed, Token, constraint_of, drives
 from btlang.frontends.mission.tokens.calls import Calls
 from btlang.frontends.mission.tokens.partial_commands import PartialCommands
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
-from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import ReadingContext
+from btlang.vocabulary.trie import longest
 
 _HEARS = "ears"
 _ENDS = (END_OF_STATEMENT, END_OF_TEXT, ")")
@@ -42,6 +42,14 @@ class SentenceReader:
             at += 1
         return at
 
+    def _phrase(self, at: int) -> Match | None:
+        """The longest phrase at a word."""
+        return longest(self._vocabulary.trie, self._text, at, self._context)
+
+    def _behind_comma(self, at: int) -> int:
+        """Where to go on at a word, which may be a comma."""
+        return at + (self._text.words[at] == ",")
+
     def _with_front(self, at: int, end: int, front: str) -> Match | None:
         """The phrase that words of the table `asking` make of those from `end` on."""
         return self._partial.with_front(at, end, self._vocabulary.asking[front])
@@ -51,10 +59,8 @@ class SentenceReader:
         for token in reversed(self._tokens if tokens is None else tokens):
             if token.kind == "define":
                 return None
-            value = token.value
-            if token.kind == "command" and isinstance(value, Called | Listed) and constraint_of(token) is None:
-                if MOVES in value.entry.resources:
-                    return token
+            if token.kind == "command" and constraint_of(token) is None and drives(token.value):
+                return token
         return None
 
 

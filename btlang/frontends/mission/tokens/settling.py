@@ -13,11 +13,11 @@ from btlang.frontends.mission.token import (
     Called,
     Listed,
     Token,
+    drives,
     run_start,
     statement_start,
     texts_of,
 )
-from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.references import ALL, choice_of
 
@@ -92,9 +92,7 @@ def _is_sequence(before: Sequence[Token]) -> bool:
     if _sets_of(before):
         return False  # `visit every room and find the cup`: in each of them
     last = run_start(before, len(before), JOINTS)
-    value = before[last - 1].value if last else None
-    moves = isinstance(value, Called | Listed) and MOVES in value.entry.resources
-    return 0 < last < len(before) and (moves or before[-1].kind != "and")
+    return 0 < last < len(before) and (drives(before[last - 1].value) or before[-1].kind != "and")
 
 
 def _texts(token: Token) -> tuple[str, ...]:

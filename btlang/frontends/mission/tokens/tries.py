@@ -23,7 +23,6 @@ from btlang.frontends.mission.tokens.silent_words import begins
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
 from btlang.tree.asked import ASK, asking_verbs
 from btlang.vocabulary.match import Match
-from btlang.vocabulary.trie import longest
 
 _JOINTS = JOINTS | {"stop"}
 _STATEMENT_ENDS = (END_OF_STATEMENT, END_OF_TEXT)
@@ -105,7 +104,7 @@ class Tries(SentenceReader):
         number, end = self._attempts(match)
         if not number:
             return 0
-        delay = longest(self._vocabulary.trie, self._text, match.last, self._context)
+        delay = self._phrase(match.last)
         if delay is not None and delay.meaning.role == "delay":
             return 0  # `try again after 5 minutes`
         del tokens[last:]
@@ -120,8 +119,8 @@ class Tries(SentenceReader):
 
     def retry(self, match: Match, at: int) -> int:
         """`A. If that fails, B and retry up to 3 times`: with nothing else behind it `retry` is `try again`."""
-        behind = match.last + (self._text.words[match.last] == ",")
-        amount = longest(self._vocabulary.trie, self._text, behind, self._context)
+        behind = self._behind_comma(match.last)
+        amount = self._phrase(behind)
         counts = amount is not None and amount.meaning.role in (*_IN_ALL, "once", "more")
         last = amount.last if amount is not None and counts else match.last
         if begins(self._tokens) or self._text.words[last] == ":" or not (counts or self._is_end(last)):
@@ -130,9 +129,9 @@ class Tries(SentenceReader):
 
     def _attempts(self, match: Match) -> tuple[str, int]:
         """How many attempts `try again` makes in all with the number behind it, and where that ends; "" for none."""
-        behind = match.last + (self._text.words[match.last] == ",")
+        behind = self._behind_comma(match.last)
         behind += self._text.words[behind] in self._vocabulary.roles["but"]
-        amount = longest(self._vocabulary.trie, self._text, behind, self._context)
+        amount = self._phrase(behind)
         if amount is None or amount.meaning.role not in (*_IN_ALL, "once", "more"):
             return _TWICE, match.last
         if amount.meaning.role == "once":
@@ -177,8 +176,8 @@ class Tries(SentenceReader):
     def _ask_again(self, match: Match, at: int) -> int:
         """`ask Bob "Tea?". If he says no, ask again`: what was asked before."""
         asked = next((token for token in reversed(self._tokens) if _is_question(token)), None)
-        behind = match.last + (self._text.words[match.last] == ",")
-        amount = longest(self._vocabulary.trie, self._text, behind, self._context)
+        behind = self._behind_comma(match.last)
+        amount = self._phrase(behind)
         if asked is None or (amount is not None and amount.meaning.role in _IN_ALL):
             return 0  # `if he says no, ask again, at most 3 times`: until he says something else
         self._tokens.append(Token("command", self._text.starts[at], self._text.ends[match.last - 1], asked.value))
@@ -196,7 +195,7 @@ class Tries(SentenceReader):
         last = run_start(tokens, len(tokens), STATEMENT_ENDS)
         first = statement_start(tokens, last)
         kinds = {token.kind for token in tokens[first:last]}
-        amount = longest(self._vocabulary.trie, self._text, match.last, self._context)
+        amount = self._phrase(match.last)
         if amount is None or amount.meaning.role not in _IN_ALL or not last or last == len(tokens):
             return 0
         if not kinds <= {*_OPERANDS, *_JOINTS, "open"} or kinds.isdisjoint(_OPERANDS):
@@ -216,7 +215,7 @@ class Tries(SentenceReader):
         at += text.words[at] == END_OF_STATEMENT
         is_joined = text.words[at - 1] != END_OF_STATEMENT
         at += text.words[at] == ","
-        joint = longest(self._vocabulary.trie, text, at, self._context)
+        joint = self._phrase(at)
         if joint is None or joint.meaning.role not in (("then", "and") if is_joined else ("then",)):
             return
         end = next(i for i in range(joint.last, len(text.words)) if text.words[i] in _STATEMENT_ENDS)
