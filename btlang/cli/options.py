@@ -7,6 +7,7 @@ from btlang.cli.values import (
     namespace,
     picture,
     port,
+    real_speed,
     robot_on,
     server_address,
     speed,
@@ -114,10 +115,8 @@ MISSION = (
     *READING, FORMAT, MAIN,
     OneOf(Option("file", nargs="?", metavar="FILE", help="mission, or - for standard input"), TEXT),
 )  # fmt: skip
-MISSIONS = (
-    *READING, FORMAT, MAIN,
-    OneOf(Option("file", nargs="*", default=[], metavar="FILE", help="mission, or - for standard input"), TEXT),
-)  # fmt: skip
+FILES = OneOf(Option("file", nargs="*", default=[], metavar="FILE", help="mission, or - for standard input"), TEXT)
+MISSIONS = (*READING, FORMAT, MAIN, FILES)
 ROBOT_WORDS = Option(
     "--robot", default="", metavar="ROBOT",
     help="read missions with the words and the world of this robot: a robot file or a name",
@@ -126,6 +125,7 @@ ROBOT_WORDS = Option(
 
 SPEED = Option("--speed", type=speed, default="real", help="real, max, or a factor of real time")
 ROBOT_SPEED = Option("--speed", type=speed, default="real", metavar="SPEED", help="real, max, or a factor of real time")
+REAL_SPEED = Option("--speed", type=real_speed, default="real", help="real, or a factor of real time")
 RATE = Option("--rate", type=between(*RATES), default=20.0, metavar="HZ", help="ticks per second (default: 20)")
 SIMULATE = Option(
     "--simulate", action="append", nargs="?", const=ALL, default=[], metavar="DEVICE",

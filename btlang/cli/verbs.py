@@ -13,6 +13,7 @@ from btlang.cli.options import (
     ANSWERS,
     BROWSER,
     COMPANIONS,
+    FILES,
     GROOT,
     JSON,
     LINES,
@@ -23,6 +24,7 @@ from btlang.cli.options import (
     PLATFORMS,
     RATE,
     READING,
+    REAL_SPEED,
     REASON,
     RECORDING,
     ROBOT_SPEED,
@@ -50,7 +52,6 @@ from btlang.cli.values import (
     picture,
     pose,
     project_name,
-    real_speed,
     robot_name,
     robot_on,
     robot_or_library,
@@ -255,9 +256,7 @@ _TABLE = (
         (
             *READING,
             Option("--check", action="store_true", help="change nothing; exit with 1 if a file would change"),
-            OneOf(
-                Option("file", nargs="*", default=[], metavar="FILE", help="mission, or - for standard input"), TEXT
-            ),
+            FILES,
             ROBOT_WORDS,
         ),
         examples=(("btc format --check examples/hello.txt", "without --check, it changes the file"),),
@@ -667,7 +666,7 @@ _TABLE = (
         "sim-ros", ROS, "run the simulated robot as a ROS 2 node", "btlang.cli.ros:simulate_robot",
         (
             WORLD, *body_options("simulated"),
-            Option("--speed", type=real_speed, default="real", help="real, or a factor of real time"),
+            REAL_SPEED,
             Option(
                 "--rate", type=RATE.settings["type"], metavar="HZ",
                 help="steps per simulated second (default: 20, or 50 for a body whose joints have accelerations)",
@@ -721,7 +720,7 @@ _TABLE = (
             Option(
                 "--sim-time", action="store_true", help="with --robot ros: use the time of the topic /clock"
             ),
-            Option("--speed", type=real_speed, default="real", help="real, or a factor of real time"),
+            REAL_SPEED,
             RATE,
             Option(
                 "--only", nargs="+", action="extend", default=[], metavar="ID",
