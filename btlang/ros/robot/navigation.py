@@ -299,7 +299,7 @@ class ServerGoals:
         return AWAKE.now() - self._stopped < _SEEN
 
     def confirm_stop(self, seconds: float) -> None:
-        """Wait at most `limit` seconds until the server has ended all goals that were withdrawn."""
+        """Wait so many seconds at most until the server has ended all goals that were withdrawn."""
         until = time.monotonic() + seconds
         for goal in (*self._given_up, *((self._goal,) if self._goal is not None else ())):
             goal.withdrawn.wait(max(0.0, until - time.monotonic()))
