@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from contextlib import closing
 from typing import Protocol
 
@@ -30,24 +29,24 @@ class SearchingRobot(Perception, Navigation, DrivingRobot, Hands, Protocol):
 def look_for_person(
     robot: SearchingRobot, person: str, place: str | None = None, x: float | None = None, y: float | None = None
 ) -> Steps:
-    """Search a place, or all of them, until a person is in view. Fails if they are in none."""
-    yield from _search(robot, person, lambda: robot.sees(person), place, x, y)
+    """Search a place, or all of them, until a person is in view there. Fails if they are in none."""
+    yield from _search(robot, "person", person, place, x, y)
 
 
 def look_for_object(
     robot: SearchingRobot, object: str, place: str | None = None, x: float | None = None, y: float | None = None
 ) -> Steps:
-    """Search a place, or all of them, until an object is in view or in a hand. Fails if it is in none."""
+    """Search a place, or all of them, until an object is in view there, or in a hand. Fails if it is in none."""
     if robot.body.has("holding") and holding(robot, object):
         return
-    yield from _search(robot, object, lambda: robot.sees(object), place, x, y)
+    yield from _search(robot, "object", object, place, x, y)
 
 
 def look_for_someone(
     robot: SearchingRobot, place: str | None = None, x: float | None = None, y: float | None = None
 ) -> Steps:
-    """Search a place, or all of them, until anybody is in view. Fails if nobody is."""
-    yield from _search(robot, None, lambda: bool(robot.seen("person")), place, x, y)
+    """Search a place, or all of them, until anybody is in view there. Fails if nobody is."""
+    yield from _search(robot, "person", None, place, x, y)
 
 
 def find_person(
@@ -71,7 +70,7 @@ def find_someone(
 ) -> Steps:
     """Look for anybody and go there."""
     yield from look_for_someone(robot, place, x, y)
-    for person in robot.seen("person")[:1]:
+    for person in _found(robot, "person", None, place)[:1]:
         yield from travel(robot, person)
 
 
@@ -160,17 +159,12 @@ def _count(
 
 
 def _search(
-    robot: SearchingRobot,
-    name: str | None,
-    seen: Callable[[], bool],
-    place: str | None,
-    x: float | None,
-    y: float | None,
+    robot: SearchingRobot, type: str, name: str | None, place: str | None, x: float | None, y: float | None
 ) -> Steps:
     is_here = place is not None or x is not None
     tour = _look_in(robot, place, x, y) if is_here else _tour(robot, name)
     with closing(tour):
-        while not seen():
+        while not _found(robot, type, name, place):
             try:
                 next(tour)
             except StopIteration:
@@ -178,6 +172,15 @@ def _search(
                 found = f"I haven't found {said(name)}" if name else "I haven't found anybody"
                 raise ActionFailed(f"{found}{where}") from None
             yield
+
+
+def _found(robot: SearchingRobot, type: str, name: str | None, place: str | None) -> list[str]:
+    """Return which of those that are searched are in view, and at the place as far as the robot knows."""
+    seen = robot.seen(type) if name is None else [name] if robot.sees(name) else []
+    if not seen or place is None:
+        return seen
+    there = robot.described(type, {"at": place})
+    return [each for each in seen if each in there]
 
 
 def _look_in(robot: SearchingRobot, place: str | None, x: float | None, y: float | None) -> Steps:

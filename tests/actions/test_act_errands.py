@@ -222,6 +222,16 @@ def test_what_is_not_there_is_not_found(bench):
         gone.run(search.find_someone, seconds=600.0, place="east")
 
 
+def test_who_is_seen_elsewhere_is_not_found_in_a_place(bench):
+    b = bench(hall(walker(walks=())))
+    for look in (search.look_for_person, search.find_person):
+        with pytest.raises(ActionFailed, match=r"^I haven't found Ada in the east$"):
+            b.run(look, seconds=600.0, person="Ada", place="east")
+    with pytest.raises(ActionFailed, match=r"^I haven't found anybody in the east$"):
+        b.run(search.look_for_someone, seconds=600.0, place="east")
+    b.run(search.look_for_person, seconds=600.0, person="Ada")
+
+
 def test_a_search_that_is_stopped_ends(bench):
     b = bench(unknown_world())
     with closing(b.begin(search.look_for_person, 8.0, person="Bob")) as running:

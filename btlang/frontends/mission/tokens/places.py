@@ -26,6 +26,7 @@ _TRAVELS = "navigation"
 """What a command needs that drives by itself: it takes a place in its own way, or none."""
 _HOLD = "Hold"
 _JOINS = ("and", "then", "or")
+_AND = frozenset(("and", "comma"))
 _COMMANDS = frozenset(("command", "name", "wait", "nothing"))
 _DONE = ("command", "name", "close", "wait")
 _PLAIN = frozenset(("command", "name", "comma", "open", "close", *_JOINS))
@@ -35,28 +36,45 @@ _PLAIN = frozenset(("command", "name", "comma", "open", "close", *_JOINS))
 class Places(SentenceReader):
     """Those of one text."""
 
-    def search_there(self) -> None:
-        """`visit every room and look for the ball`: a search in each of the places, instead of the journeys to them."""
+    def search_there(self, match: Match) -> None:
+        """`go to the lab and look for the ball`: a search there; of several places in each, instead of the journeys."""
         tokens = self._tokens
         search = tokens[-1].value
-        if not isinstance(search, Called) or not search.entry.first:
+        if not isinstance(search, Called | Listed) or not search.entry.first:
             return
-        last = run_start(tokens, len(tokens) - 1, JOINTS)
-        journey = tokens[last - 1].value if 0 < last < len(tokens) - 1 else None
-        if not drives(journey):
-            return
+        if match.values and match.values[-1].last != match.last:
+            return  # `go to the lab and look for the ball everywhere`
         slot = next((each.name for each in search.entry.slots if each.type == PLACE), "")
-        if not slot or slot in dict(search.arguments):
+        if not slot or any(slot in dict(each) for each in arguments_of(search)):
+            return
+        at = len(tokens) - 2
+        while at > 0 and (tokens[at].kind in _AND or self._is_beside(tokens[at])):
+            at -= 1
+        journey = tokens[at].value if 0 <= at < len(tokens) - 2 else None
+        if not drives(journey):
             return
         places = [dict(each) for each in arguments_of(journey)]
         goals = [text for each in places for name, text in each.items() if journey.entry.slot(name).type == PLACE]
-        is_set = len(goals) == 1 and (choice := choice_of(goals[0])) is not None and choice.how == ALL
-        is_later = any(token.kind == "then" for token in tokens[last:-1])
-        if is_later or any(len(each) != 1 for each in places) or not (is_set or len(goals) > 1):
+        if not goals or any(len(each) != 1 for each in places):
             return
-        each = tuple((*search.arguments, (slot, goal)) for goal in goals)
-        value = Called(search.entry, each[0]) if is_set else Listed(search.entry, each, "or")
-        tokens[last - 1 :] = [Token("command", tokens[last - 1].start, tokens[-1].end, value)]
+        choice = choice_of(goals[0])
+        is_set = len(goals) > 1 or (choice is not None and choice.how == ALL)
+        is_right_behind = at == run_start(tokens, len(tokens) - 1, _AND) - 1
+        if len(goals) == 1 and choice is None:
+            made = tuple((*each, (slot, goals[0])) for each in arguments_of(search))
+            is_one = isinstance(search, Called)
+            tokens[-1].value = Called(search.entry, made[0]) if is_one else search.replace(arguments=made)
+        elif is_set and is_right_behind and isinstance(search, Called):
+            each = tuple((*search.arguments, (slot, goal)) for goal in goals)
+            value = Called(search.entry, each[0]) if len(goals) == 1 else Listed(search.entry, each, "or")
+            tokens[at:] = [Token("command", tokens[at].start, tokens[-1].end, value)]
+
+    @staticmethod
+    def _is_beside(token: Token) -> bool:
+        """Whether a command is done where the robot is, or is a search that is about the same place."""
+        value = token.value
+        is_said = token.kind == "command" and isinstance(value, Called | Listed) and constraint_of(token) is None
+        return is_said and (value.entry.first or _TRAVELS not in value.entry.needs)
 
     def at_goal(self, at: int) -> int:
         """`go to the lab and wave there`, `visit every room and wave in each of them`: where the robot is by then."""

@@ -330,7 +330,7 @@ class WordReader:
             said.role = "fronted"
         tokens.append(said)
         self._outcomes.give_up(match.last)
-        self._places.search_there()
+        self._places.search_there(match)
         if len(tokens) > 1 and tokens[-2].kind == "while" and constraint_of(said) is not None:
             tokens[-2].kind = "while_doing"  # `while avoiding the kitchen`
         return 0
