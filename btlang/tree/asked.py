@@ -111,7 +111,7 @@ def _with_silence(items: Sequence[ast.Ast], item: ast.If) -> list[ast.Ast]:
     `If so, A. If not, B. If she says nothing, C`: silence is no `not`.
     """
     asked, *others = items
-    question = asked if isinstance(asked, ast.Try) else ast.Try(asked, None, asked.span)
+    question = _without_failure(asked)
     excludes = any(isinstance(each, ast.If) and _holds_in_silence(each) for each in others)
     is_plain = isinstance(item.condition, ast.Phrase) and not item.negated and item.otherwise is None
     if not (excludes and is_plain and all(map(_depends, others))):
@@ -119,6 +119,17 @@ def _with_silence(items: Sequence[ast.Ast], item: ast.If) -> list[ast.Ast]:
     span = Span(item.span.source, others[0].span.start, others[-1].span.end)
     otherwise = others[0] if len(others) == 1 else ast.Chain("sequence", tuple(others), True, span)
     return [question, item.replace(otherwise=otherwise)]
+
+
+def _without_failure(asked: ast.Ast) -> ast.Ast:
+    """A command whose question may stay without an answer; what is done before it may still fail."""
+    if isinstance(asked, ast.Try):
+        return asked
+    if not isinstance(asked, ast.Chain) or asked.operator == "fallback":
+        return ast.Try(asked, None, asked.span)
+    last = max(at for at, each in enumerate(asked.items) if _questions(each))
+    items = [*asked.items[:last], _without_failure(asked.items[last]), *asked.items[last + 1 :]]
+    return asked.replace(items=tuple(items))
 
 
 def _holds_in_silence(node: ast.If) -> bool:

@@ -108,7 +108,7 @@ class Answers(AddressedTexts):
     def _hear(self, token: Token, at: int) -> None:
         """`wait until she says stop` where nobody is asked is what is heard; `she says nothing` is silence."""
         value = token.value
-        if isinstance(value, Called) and value.entry.id == _PERSON_SAYS and self._may_ask:
+        if isinstance(value, Called) and value.entry.id in (_PERSON_SAYS, _SOMEBODY_SAYS) and self._may_ask:
             value = token.value = self._answer_of_asked(value)
         if not isinstance(value, Called) or value.entry.id != ANSWERED:
             return
@@ -124,10 +124,11 @@ class Answers(AddressedTexts):
             token.value = Called(heard, tuple((slot.name, by_type[slot.type]) for slot in heard.slots))
 
     def _answer_of_asked(self, heard: Called) -> Called:
-        """`if Bob is near or says yes` behind a question to Bob is about his answer."""
+        """`if Bob says yes` behind a question to Bob is about his answer, and `if I say yes` where no one else is asked."""
         entry = self._vocabulary.entry(ANSWERED)
         values = {slot.type: text for slot, (_, text) in zip(heard.entry.slots, heard.arguments, strict=True)}
-        if entry is None or values[PERSON] != self._asked_person():
+        who = values.get(PERSON, "")
+        if entry is None or who != self._asked_person() or not (who or self._question_before() is not None):
             return heard
         return Called(entry, ((entry.slots[0].name, values[TEXT]),))
 
@@ -153,11 +154,15 @@ class Answers(AddressedTexts):
 
     def _asked_person(self) -> str:
         """Who is asked by the question that a condition may be about whose form has begun; "" if nobody alone is."""
-        asked = self._question(run_start(self._tokens, len(self._tokens), _OF_REPLY), right_before=False)
+        asked = self._question_before()
         if not isinstance(asked, Called):
             return ""
         persons = {slot.name for slot in asked.entry.slots if slot.type == PERSON}
         return next((text for name, text in asked.arguments if name in persons), "")
+
+    def _question_before(self) -> Called | Listed | None:
+        """The question that a condition may be about whose form has begun."""
+        return self._question(run_start(self._tokens, len(self._tokens), _OF_REPLY), right_before=False)
 
     def _is_asked(self, right_before: bool) -> bool:
         """Whether the statement before asks, or depends on the answer."""
