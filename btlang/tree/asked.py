@@ -20,7 +20,8 @@ ASK, ANSWERED, UNANSWERED = "Ask", "AnswerIs", "NobodyAnswered"
 ABOUT_ANSWERS = frozenset((ANSWERED, UNANSWERED))
 _ONCE = (ast.Retry, ast.Try, ast.Within, ast.UpTo, ast.StopWhen, ast.Constrained, ast.Delay, ast.Provided, ast.Chain)
 """Forms whose commands are done before what comes behind the form."""
-_EXAMPLE = 'ask Alice "Tea?". If so, wave'
+EXAMPLE = 'ask Alice "Tea?". If so, wave'
+OF_WHICH = "could be about the first question or about the second"
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -73,7 +74,7 @@ def _gathered(node: ast.Ast, problems: list[Diagnostic]) -> ast.Ast:
             problem = _problem(made, asking, form, item)
             if problem:
                 words = item.span.text.split(",")[0]
-                problems.append(diagnostic("BT144", item.span, words=words, problem=problem, example=_EXAMPLE))
+                problems.append(diagnostic("BT144", item.span, words=words, problem=problem, example=EXAMPLE))
             elif form:
                 made[asking] = _with_last(form, item)
                 continue
@@ -129,7 +130,8 @@ def _without_failure(asked: ast.Ast) -> ast.Ast:
         return ast.Try(asked, None, asked.span)
     last = max(at for at, each in enumerate(asked.items) if _questions(each))
     items = [*asked.items[:last], _without_failure(asked.items[last]), *asked.items[last + 1 :]]
-    return asked.replace(items=tuple(items))
+    made: ast.Chain = asked.replace(items=tuple(items))
+    return made
 
 
 def _holds_in_silence(node: ast.If) -> bool:
@@ -189,7 +191,7 @@ def _problem(made: Sequence[ast.Ast], at: int, form: Sequence[Any], item: ast.As
     if getattr(inner, "otherwise", None) is not None or len(form) > 1:
         return "could be about several questions"
     if _depends(inner):
-        return "" if _same(inner, item) else "could be about the first question or about the second"
+        return "" if _same(inner, item) else OF_WHICH
     return "stands on another line than what asks only sometimes" if "\n" in text else ""
 
 

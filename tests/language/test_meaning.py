@@ -69,6 +69,8 @@ def test_numbers_that_are_said(sentence: str, tree: str) -> None:
         ("go to Alice. If she isn't there, go to the lab. Otherwise wave", "BT168"),
         ("dock. If that works, wave. If that fails, nod", "BT168"),
         ("ask Alice and Bob if they want tea. If not, wave", "BT144"),
+        ('ask Bob "Tea?". If he says no, ask him again. If there is no answer, go to the lab', "BT144"),
+        ('ask Bob "Tea?"; if the answer is no, wave and ask him "Why?"; if he doesn\'t answer, dock', "BT144"),
         ('ask everyone "Tea?". If so, wave', "BT144"),
         ('ask Alice "Tea?". Ask Bob "Tea?". If so, wave', "BT144"),
         ('go to every person and ask "Tea?". If so, wave', "BT144"),

@@ -62,8 +62,7 @@ class Places(SentenceReader):
         is_right_behind = at == run_start(tokens, len(tokens) - 1, _AND) - 1
         if len(goals) == 1 and choice is None:
             made = tuple((*each, (slot, goals[0])) for each in arguments_of(search))
-            is_one = isinstance(search, Called)
-            tokens[-1].value = Called(search.entry, made[0]) if is_one else search.replace(arguments=made)
+            tokens[-1].value = search.replace(arguments=made if isinstance(search, Listed) else made[0])
         elif is_set and is_right_behind and isinstance(search, Called):
             each = tuple((*search.arguments, (slot, goal)) for goal in goals)
             value = Called(search.entry, each[0]) if len(goals) == 1 else Listed(search.entry, each, "or")
@@ -73,8 +72,9 @@ class Places(SentenceReader):
     def _is_beside(token: Token) -> bool:
         """Whether a command is done where the robot is, or is a search that is about the same place."""
         value = token.value
-        is_said = token.kind == "command" and isinstance(value, Called | Listed) and constraint_of(token) is None
-        return is_said and (value.entry.first or _TRAVELS not in value.entry.needs)
+        if token.kind != "command" or not isinstance(value, Called | Listed) or constraint_of(token) is not None:
+            return False
+        return value.entry.first or _TRAVELS not in value.entry.needs
 
     def at_goal(self, at: int) -> int:
         """`go to the lab and wave there`, `visit every room and wave in each of them`: where the robot is by then."""
