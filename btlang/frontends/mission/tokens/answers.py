@@ -7,6 +7,7 @@ from functools import cached_property
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import BEFORE_CONDITIONS, Called, Listed, Token, run_start, statement_start
 from btlang.frontends.mission.tokens.addressed_texts import AddressedTexts
+from btlang.frontends.mission.tokens.sentence_reader import is_question
 from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of
 from btlang.tree.asked import ABOUT_ANSWERS, ANSWERED, ASK, EXAMPLE, OF_WHICH, UNANSWERED, asking_verbs
 from btlang.vocabulary.match import Match
@@ -118,9 +119,10 @@ class Answers(AddressedTexts):
         if isinstance(token.value, Called) and token.value.entry.id in ABOUT_ANSWERS:
             self.note_answerer()
 
-    def note_question(self) -> None:
+    def note_question(self, command: Token) -> None:
         """Remember of whom pronouns behind the answers to a question to nobody by name speak."""
-        self._met = self._context.latest.get(PERSON, "")
+        if is_question(command):
+            self._met = self._context.latest.get(PERSON, "")
 
     def note_answerer(self) -> None:
         """Make pronouns stand for who answers, whatever is done for another answer; else for the nearest person.

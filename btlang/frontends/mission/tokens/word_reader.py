@@ -33,7 +33,6 @@ from btlang.frontends.mission.tokens.silent_words import (
 from btlang.frontends.mission.tokens.tries import Tries
 from btlang.frontends.mission.tokens.unknown_words import UnknownWords
 from btlang.text.words import END_OF_STATEMENT, Words
-from btlang.tree.asked import ASK
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.language_tables import CONNECTIVES, NOT_ALONE, ORDER, QUESTIONS
 from btlang.vocabulary.lexicon import NODE_ROLES
@@ -330,8 +329,7 @@ class WordReader:
         if (word in self._unknown.before_doing or word in self._verb_forms) and constraint_of(said) is not None:
             said.role = "fronted"
         tokens.append(said)
-        if match.meaning.entry is not None and match.meaning.entry.id == ASK:
-            self._requests.note_question()
+        self._requests.note_question(said)
         self._outcomes.give_up(match.last)
         self._places.search_there(match)
         if len(tokens) > 1 and tokens[-2].kind == "while" and constraint_of(said) is not None:
