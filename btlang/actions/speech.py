@@ -7,6 +7,7 @@ from typing import Protocol
 
 from btlang.actions.common import Watch
 from btlang.actions.motion import Steps
+from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.geometry import Point
 from btlang.robots.preflight import said_gesture
 from btlang.robots.robot import Gesturing, Operation, RobotError, Voice
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
 _LOOKS_AHEAD = 4.0  # seconds before a word in which the way to a stroke is planned
 _PERIOD = 0.2  # seconds to the next tick, as long as none has shown how long that takes
+_MOST_COUNTED = 1000
 _LATEST = 2.0  # seconds by which speech may begin later, for its first stroke
 
 
@@ -122,6 +124,17 @@ def _strokes(robot: PresentingRobot, marks: Sequence[GestureMark]) -> Iterator[S
             yield Stroke(found.name, robot.locate(found.target) if found.target else None, mark.index)
         elif robot.on_event is not None:  # values of the mission brought it
             robot.on_event("warning", {"text": f'the robot has no gesture "{mark.words}"'})
+
+
+def count_aloud(
+    robot: PresentingRobot, start: float = 1.0, number: float = 1.0, kept: dict[str, Any] | None = None
+) -> Steps:
+    """Say the whole numbers from `start` to `number`, up or down. Fails if these are more than a thousand."""
+    first, last = round(start), round(number)
+    if abs(last - first) >= _MOST_COUNTED:
+        raise ActionFailed(f"counting from {first} to {last} takes too long")
+    step = 1 if last >= first else -1
+    yield from say(robot, " ".join(f"{each}." for each in range(first, last + step, step)), kept)
 
 
 def say(robot: PresentingRobot, text: str, kept: dict[str, Any] | None = None) -> Steps:

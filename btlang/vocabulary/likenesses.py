@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from btlang.vocabulary.nouns import Description, Features
 from btlang.vocabulary.references import ALL, COUNT, DENIED, NAMES, RELATIONS, Choice, Parts
-from btlang.vocabulary.value_type import OBJECT, PLACE
+from btlang.vocabulary.value_type import OBJECT, PLACE, ZONE
 
 
 class Likenesses:
@@ -60,8 +60,16 @@ class Likenesses:
     def described(self, meant: Description) -> tuple[str, ...]:
         """The names of a type that have the parts of a description, in the order of the world."""
         if not meant.parts:
-            return self._listed(meant.type)
+            return self._every(meant.type)
         return tuple(name for name, parts in self.features.get(meant.type, ()) if set(meant.parts) <= set(parts))
+
+    def _every(self, type: str) -> tuple[str, ...]:
+        """All names of a type; zones that are places only where one is named aren't among the places."""
+        names = self._listed(type)
+        if type != PLACE:
+            return names
+        places, zones = dict(self.features.get(PLACE, ())), self._listed(ZONE)
+        return tuple(name for name in names if name in places or name not in zones)
 
     def so_many(self, sets: Iterable[tuple[Description, int]], count: float) -> Iterator[tuple[Description, int]]:
         """The sets, without a number, of which the world has just so many: `all three shelves`."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from itertools import pairwise
 from math import cos, dist, inf, radians, sqrt
 
@@ -14,7 +13,7 @@ from btlang.robots.robot import RobotError
 from btlang.robots.simulation.faults import Faults
 from btlang.robots.simulation.surroundings import Surroundings
 from btlang.robots.worlds.obstacles import Obstacles
-from btlang.robots.worlds.world import Place, Thing, World, said
+from btlang.robots.worlds.world import Thing, World, said
 from btlang.support.interrupts import interrupts_later
 
 TYPE_CHECKING = False
@@ -91,7 +90,6 @@ class Navigator:
         surroundings: Surroundings,
         guard: Guard,
     ) -> None:
-        self._places: dict[str, Place] = {place.name: place for place in world.places}
         self._base = base
         self._body = base.body
         self._obstacles = obstacles
@@ -109,10 +107,6 @@ class Navigator:
     def way(self) -> list[Point]:
         """The points of the way to the current goal; none without a goal."""
         return [] if self.goal is None or self.goal.done else self.goal.path
-
-    def name_places(self, places: Iterable[Place]) -> None:
-        """Set the named places from now on."""
-        self._places = {place.name: place for place in places}
 
     def prepare(self) -> PathPlanner:
         """Load the planner, which takes longer than a tick has."""
@@ -225,8 +219,9 @@ class Navigator:
         name = goal.name
         if goal.pose is not None:
             return goal.pose.x, goal.pose.y
-        if name in self._places:
-            return self._places[name].x, self._places[name].y
+        place = self._surroundings.place(name)
+        if place is not None:
+            return place.x, place.y
         if not goal.reach:
             goal.reach = stand_off(self._body, self._obstacles.things[name], self._surroundings.is_person(name))
         return self._surroundings.sight.where(name)
@@ -251,12 +246,11 @@ class Navigator:
         self._base.drive(speed, turn_rate(error, self._body.turning))
 
     def _face(self, goal: NavigationGoal) -> None:
-        pose = self._base.pose
+        pose, place = self._base.pose, self._surroundings.place(goal.name)
         if goal.pose is not None:
             error = wrap(goal.pose.heading - pose.heading)
-        elif goal.name in self._places:
-            facing = self._places[goal.name].facing
-            error = 0.0 if facing is None else wrap(facing - pose.heading)
+        elif place is not None:
+            error = 0.0 if place.facing is None else wrap(place.facing - pose.heading)
         else:
             error = pose.bearing_to(goal.target)
         if abs(error) <= _FACING:

@@ -359,7 +359,6 @@ class SimulatedRobot(AssembledRobot):
     def name_places(self, places: Iterable[Place]) -> None:
         """Set the places of a mission, in addition to those of the world."""
         self._surroundings.name_places(places)
-        self._navigator.name_places(self.world.places)
 
     def move_thing(self, name: str, x: float, y: float) -> None:
         """Put an object or a person somewhere else, as somebody in the world would. Raises RobotError."""

@@ -194,13 +194,11 @@ class Relations:
         for door in self._world.doors:
             if door.name == name:
                 return door.middle
-        for zone in self._world.zones:
-            if zone.name == name and not any(place.name == name for place in self._world.places):
-                return centre_of(zone.points)
         try:
             return self._where(name)
         except RobotError:
-            return None
+            zone = next((zone for zone in self._world.zones if zone.name == name), None)
+            return None if zone is None else centre_of(zone.points)
 
 
 def _is_beside(relation: str, point: Point | None, pose: Pose) -> bool:

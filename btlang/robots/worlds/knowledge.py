@@ -5,17 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from math import hypot
 
-from btlang.robots.geometry import Point, Pose, wrap
+from btlang.robots.geometry import Point, Pose, centre_of, edges, segment_distance, wrap
 from btlang.robots.robot import OnEvent, RobotError
 from btlang.robots.worlds.descriptions import PICKY, Choices, Relations, without_relations
 from btlang.robots.worlds.obstacles import Obstacles
 from btlang.robots.worlds.sight import Sight
-from btlang.robots.worlds.world import Door, Place, World, said
+from btlang.robots.worlds.world import Door, FurnitureBox, Place, World, Zone, said
 from btlang.robots.zones import Zones
 from btlang.run.robot_state import Whereabouts
 from btlang.vocabulary.references import SELF, ordinal
 
 _BESIDE = 0.7  # metres from the middle of a door
+_STEPS = 12  # parts of each side of a region, in the search for its middle
 
 
 def spots_beside(door: Door, pose: Pose) -> list[Pose]:
@@ -26,6 +27,20 @@ def spots_beside(door: Door, pose: Pose) -> list[Pose]:
     spots = [(x + side * across[0], y + side * across[1]) for side in (1, -1)]
     spots.sort(key=pose.distance_to)
     return [Pose(*spot, Pose(*spot).bearing_to((x, y))) for spot in spots]
+
+
+def _middle(region: Zone, boxes: Iterable[FurnitureBox]) -> Point:
+    """Return the point of a region, in no furniture, that is farthest from its border."""
+    xs, ys = zip(*region.points, strict=True)
+    steps = [number / _STEPS for number in range(1, _STEPS)]
+    grid = [(min(xs) + i * (max(xs) - min(xs)), min(ys) + j * (max(ys) - min(ys))) for i in steps for j in steps]
+    spots = [spot for spot in grid if region.contains(spot) and not any(box.contains(spot) for box in boxes)]
+    border = [(*a, *b) for a, b in edges(region.points)]
+    return max(
+        spots,
+        key=lambda spot: min(segment_distance(spot, segment) for segment in border),
+        default=centre_of(region.points),
+    )
 
 
 class Knowledge:
@@ -40,10 +55,20 @@ class Knowledge:
         self.zones = Zones(world.zones)
         self.sight = sight
         self._given_to: dict[str, str] = {}
+        self._places = {place.name: place for place in world.places}
 
     def name_places(self, places: Iterable[Place]) -> None:
         """Set the places of a mission, in addition to those of the world."""
         self.world = self._given_world.with_places(places)
+        self._places = {place.name: place for place in self.world.places}
+
+    def place(self, name: str) -> Place | None:
+        """Return the place of a name as the world spells it; of a region the point that is farthest from its border."""
+        found = self._places.get(name)
+        region = next((zone for zone in self.world.regions if zone.name == name), None) if found is None else None
+        if region is not None:
+            found = self._places[name] = Place(name, *_middle(region, self.world.boxes))
+        return found
 
     def whereabouts(self) -> tuple[Whereabouts, ...]:
         """Return where walking people and unknown things are, to the centimetre, and whether they are in view."""
@@ -52,7 +77,7 @@ class Knowledge:
     def known(self, name: str) -> str:
         """Return the name as the world spells it."""
         names = self.world.names
-        for known in (*names.places, *names.objects, *names.people, *self.obstacles.things):
+        for known in (*names.places, *names.regions, *names.objects, *names.people, *self.obstacles.things):
             if known.lower() == name.lower():
                 return known
         raise RobotError(f"I don't know where '{name}' is")
@@ -70,9 +95,9 @@ class Knowledge:
     def where(self, name: str) -> Point | None:
         """Return where it is, like `locate`; None while the robot carries it."""
         known = self.known(name)
-        for place in self.world.places:
-            if place.name == known:
-                return place.x, place.y
+        place = self.place(known)
+        if place is not None:
+            return place.x, place.y
         if known in self._given_to:
             return self.where(self._given_to[known])
         point = self.sight.where(known)
@@ -83,7 +108,7 @@ class Knowledge:
     def free(self, kind: str) -> list[str]:
         """Return the names of a type whose position is known, without objects that are carried or fixed."""
         if kind not in ("object", "person"):
-            return list(self.world.names.of(kind))
+            return list(self.world.names.every(kind))
         things = self.obstacles.things
         names = (name for name in self.sight.names(kind) if self.sight.where(name) is not None)
         return [name for name in names if not getattr(things[name], "fixed", False)]
@@ -97,7 +122,7 @@ class Knowledge:
         else:
             places = self.world.places if kind == "place" else ()
             fitting = [place.name for place in places if set(like.items()) <= set(place.parts)]
-            names = fitting if like else list(self.world.names.of(kind))
+            names = fitting if like else list(self.world.names.every(kind))
         if len(like) < len(parts):
             relations = Relations(
                 self.world, things, self.where, lambda name: self.sight.sees(name, pose), self._holder

@@ -285,16 +285,22 @@ class WorldNames(Record):
     people: tuple[str, ...] = ()
     zones: tuple[str, ...] = ()
     doors: tuple[str, ...] = ()
+    regions: tuple[str, ...] = ()
+    """The zones that the robot may enter and no place has the name of: they are places, too."""
     features: Mapping[str, tuple[tuple[str, Parts], ...]] = {}
 
     def of(self, kind: str) -> tuple[str, ...]:
         """Return the names of a type: a key of `by_type`."""
         return self.by_type.get(kind, ())
 
+    def every(self, kind: str) -> tuple[str, ...]:
+        """Return the names among which one of a type is chosen: no region is among the places."""
+        return self.places if kind == "place" else self.of(kind)
+
     @property
     def by_type(self) -> dict[str, tuple[str, ...]]:
         """The names of each type of slots."""
-        of = {"place": self.places, "object": self.objects, "person": self.people}
+        of = {"place": (*self.places, *self.regions), "object": self.objects, "person": self.people}
         likes = dict.fromkeys(part for named in self.features.values() for _, parts in named for part in parts)
         described = {part: tuple(text for name, text in likes if name == part) for part in PARTS}
         return {**of, "zone": self.zones, "door": self.doors, **described}
@@ -347,7 +353,13 @@ class World(Record):
             at_home = ((name, (*parts, HOME) if name == self.home else parts) for name, parts in features["place"])
             features["place"] = tuple(at_home)
         places, objects, people, zones, doors = (tuple(each.name for each in kind) for kind in named)
-        return WorldNames(places, objects, people, zones, doors, features)
+        return WorldNames(places, objects, people, zones, doors, tuple(zone.name for zone in self.regions), features)
+
+    @property
+    def regions(self) -> tuple[Zone, ...]:
+        """The zones that the robot may enter, and that nothing else has the name of."""
+        named = {thing.name.lower() for things in (self.places, self.objects, self.people) for thing in things}
+        return tuple(zone for zone in self.zones if not zone.is_closed and zone.name.lower() not in named)
 
     def wall_segments(self) -> tuple[Segment, ...]:
         """Return the walls in straight pieces, without furniture."""

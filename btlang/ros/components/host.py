@@ -331,5 +331,6 @@ class ComponentNodes:
             point = places.locate(known, Pose(0.0, 0.0, 0.0))
         except RobotError:
             raise KeyError(name) from None
-        facing = next((place.facing for place in self._robot.world.places if place.name == known), None)
+        place = places.place(known)
+        facing = None if place is None else place.facing
         return *point, None if facing is None else radians(facing)

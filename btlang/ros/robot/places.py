@@ -77,10 +77,12 @@ class RosPlaces(Knowledge):
         unknown name.
         """
         try:
-            point = self.locate(self.known(name), Pose(0.0, 0.0, 0.0))
+            known = self.known(name)
+            point = self.locate(known, Pose(0.0, 0.0, 0.0))
         except RobotError:
             raise KeyError(name) from None
-        facing = next((place.facing for place in self.world.places if place.name == name), None)
+        place = self.place(known)
+        facing = None if place is None else place.facing
         return *point, None if facing is None else radians(facing)
 
     def dock(self, robot: Pose) -> Pose | None:
@@ -103,10 +105,10 @@ class RosPlaces(Knowledge):
         known = self.known(name)
         self.check_free(known)
         point = self.locate(known, robot)
-        for place in self.world.places:
-            if place.name == known:
-                facing = robot.heading + robot.bearing_to(point) if place.facing is None else place.facing
-                return Pose(place.x, place.y, facing)
+        place = self.place(known)
+        if place is not None:
+            facing = robot.heading + robot.bearing_to(point) if place.facing is None else place.facing
+            return Pose(place.x, place.y, facing)
         reach = stand_off(self._body, self.obstacles.things[known], self.is_person(known))
         stand = self._stand(robot, point, reach)
         return Pose(*stand, stand_heading(stand, point))
