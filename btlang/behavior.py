@@ -8,7 +8,7 @@ from typing import TypeAlias
 from btlang.api import Mission, mission_of_tree, source_of
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
-from btlang.engine.script.values import kept
+from btlang.engine.script.values import to_stored
 from btlang.frontends.table import read_text
 from btlang.passes import compile_mission, errors_of
 from btlang.robots.mission_vocabulary import described, world_vocabulary
@@ -167,7 +167,7 @@ def _text(port: str, value: object) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, int | float):
-        return str(kept(value))
+        return str(to_stored(value))
     if isinstance(value, str):
         return value
     raise TypeError(f"{port} is a text, a number or a bool, not {described(value)}")

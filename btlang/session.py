@@ -14,11 +14,10 @@ from btlang.backends.touching import awaited
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.engine.blackboard import Blackboard
-from btlang.engine.clock import Clock
+from btlang.engine.clock import Clock, LeafTimer
 from btlang.engine.engine import Engine, EngineError
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.engine.saving import SaveError
-from btlang.engine.timing import Stopwatch
 from btlang.robots.command_gate import RobotProxy
 from btlang.robots.registry import connector
 from btlang.robots.spoken_commands import SpokenCommands, choices
@@ -480,7 +479,7 @@ class Run:
         try:
             return trace_engine(
                 mission.tree, bind, bus=self.bus, services={"robot": connection.robot}, proxies={"robot": RobotProxy},
-                blackboard=values, stopwatch=Stopwatch() if timed else None, hooks=hooks,
+                blackboard=values, stopwatch=LeafTimer() if timed else None, hooks=hooks,
             )  # fmt: skip
         except EngineError as error:
             raise MissionError(self._refused(error, connection)) from None

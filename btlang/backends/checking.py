@@ -10,7 +10,7 @@ from btlang.backends.keywords import Draft, drafts
 from btlang.backends.near_ids import respelt_leaf, respelt_subtree, said_at
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import in_order
-from btlang.engine.faults import UnknownNode, UnknownSubTree, faults
+from btlang.engine.faults import UnknownNode, UnknownSubTree, find_faults
 from btlang.engine.instance import EngineError
 from btlang.engine.leaves.leaf import LeafBinding
 from btlang.text.source import NOWHERE, Span
@@ -36,13 +36,13 @@ def tree_problems(
     cannot be loaded here is no problem then, as it may be there on the robot.
     """
     bind, services = bind or cache(partial(bound, vocabulary)), services or {"robot": None}
-    found = faults(tree, bind, services)
+    found = find_faults(tree, bind, services)
     found.sort(key=_place)  # so that a missing entry is reported at its first use
     entries = drafts(tree, vocabulary) if any(isinstance(error, UnknownNode) for error in found) else {}
     problems = []
 
     def fits(node: Node) -> bool:
-        return not faults(Tree(node), bind, services)
+        return not find_faults(Tree(node), bind, services)
 
     for error in found:
         problems.append(_diagnosed(error, tree, vocabulary, entries, fits))

@@ -11,7 +11,7 @@ from types import ModuleType
 from btlang.backends.comparing import comparing
 from btlang.backends.touching import touching
 from btlang.engine.instance import EngineError
-from btlang.engine.leaves.leaf import LeafBinding, described
+from btlang.engine.leaves.leaf import LeafBinding, describe_exception
 from btlang.engine.script.values import as_text
 from btlang.printer.phrase import leaf_words
 from btlang.tree.node import Node
@@ -141,7 +141,7 @@ def _imported(entry: Entry) -> Callable[..., Any]:
     except KeyboardInterrupt:
         raise
     except BaseException as error:  # whatever a user's module raises while it is imported
-        raise EngineError(f"{entry.call} cannot be loaded ({described(error)})", node) from error
+        raise EngineError(f"{entry.call} cannot be loaded ({describe_exception(error)})", node) from error
     if not callable(found):
         raise EngineError(f"{entry.call} isn't a function or class", node)
     return found  # type: ignore[no-any-return]

@@ -9,7 +9,7 @@ from btlang.api import Mission
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.engine.instance import blackboard_key
-from btlang.engine.script.names import READS, SETS, uses_of_names
+from btlang.engine.script.tokens import READS, SETS, find_name_uses
 from btlang.frontends.btcpp.file import XmlFile
 from btlang.frontends.btcpp.files import read_files
 from btlang.frontends.btcpp.models import nav2_models
@@ -46,7 +46,7 @@ class KeyReader:
     def _of_port(self, node: Node, port: str, text: str) -> list[tuple[str, set[str]]]:
         holds = held(node.id, port)
         if holds == SCRIPT:
-            return list(uses_of_names(text).items())
+            return list(find_name_uses(text).items())
         if holds == KEY:
             return [(text.strip("{} "), {SETS})]
         key = blackboard_key(port, text)

@@ -1,4 +1,4 @@
-"""How deep Python may recurse while a deep tree is ticked."""
+"""The recursion limit of Python while a deep tree is ticked."""
 
 from __future__ import annotations
 
@@ -15,24 +15,24 @@ _asked: list[int] = []  # the frames that those ask for who run now
 _usual = 0  # the limit while nobody does
 
 
-def allowing_depth(frames: int, do: Callable[..., Any]) -> Callable[..., Any]:
-    """The same function, with so many frames allowed while it runs, in whatever thread.
+def allow_depth(frames: int, do: Callable[..., Any]) -> Callable[..., Any]:
+    """Wrap a function so that so many frames are allowed while it runs, in whatever thread.
 
     The limit doesn't stay raised: what recurses in C, as Python's JSON does, would crash where it says now that
     something is nested too deep.
     """
 
     def done(*args: Any) -> Any:
-        _ask(frames)
+        _raise(frames)
         try:
             return do(*args)
         finally:
-            _ask_no_more(frames)
+            _lower(frames)
 
     return done
 
 
-def _ask(frames: int) -> None:
+def _raise(frames: int) -> None:
     global _usual
     with _lock:
         if not _asked:
@@ -41,7 +41,7 @@ def _ask(frames: int) -> None:
         sys.setrecursionlimit(max([_usual, *_asked]))
 
 
-def _ask_no_more(frames: int) -> None:
+def _lower(frames: int) -> None:
     with _lock:
         _asked.remove(frames)
         sys.setrecursionlimit(max([_usual, *_asked]))

@@ -7,8 +7,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.engine.instance import blackboard_key
-from btlang.engine.script.names import READS, SETS, uses_in_script
-from btlang.engine.script.tokens import ScriptError
+from btlang.engine.script.tokens import READS, SETS, ScriptError, find_script_names
 from btlang.frontends.btcpp.spelling import AUTOREMAP, TRUE
 from btlang.projects.ports import attribute_value, place_of
 from btlang.support.record import Record
@@ -103,7 +102,7 @@ def _script_uses(node: Node, port: str, code: str) -> list[EntryUse]:
     Nothing of what is no script, which is reported elsewhere, or is in an entry itself.
     """
     try:
-        uses = {} if blackboard_key(port, code) is not None else uses_in_script(code)
+        uses = {} if blackboard_key(port, code) is not None else find_script_names(code)
     except ScriptError:
         return []
     return [EntryUse(node, port, name, READS in how, SETS in how) for name, how in uses.items() if name[:1] != "@"]

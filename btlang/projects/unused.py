@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection, Container, Iterable, Iterator,
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.engine.instance import blackboard_key
-from btlang.engine.script.names import READS, SETS, uses_of_names
+from btlang.engine.script.tokens import READS, SETS, find_name_uses
 from btlang.frontends.btcpp.dialect import ONLY_IN_3
 from btlang.frontends.btcpp.project import XmlProject
 from btlang.frontends.btcpp.spelling import AUTOREMAP, TRUE
@@ -36,7 +36,7 @@ def keys_read(nodes: Iterable[Node], outputs_of: OutputsOf) -> frozenset[str]:
         outputs = outputs_of(node)
         for name, text in node.ports:
             if held(node.id, name) == SCRIPT:
-                read.update(name.lstrip("@") for name, uses in uses_of_names(text).items() if READS in uses)
+                read.update(name.lstrip("@") for name, uses in find_name_uses(text).items() if READS in uses)
             elif name not in outputs and held(node.id, name) != KEY:
                 key = blackboard_key(name, text)
                 read.update((key.lstrip("@"),) if key is not None else _WORD.findall(text))
@@ -58,7 +58,7 @@ def unread_values(nodes: Iterable[Node], outputs_of: OutputsOf, read: frozenset[
 def _keys_set(node_id: str, port: str, text: str, outputs: Container[str]) -> Iterable[str]:
     holds = held(node_id, port)
     if holds == SCRIPT:
-        return [name for name, uses in uses_of_names(text).items() if SETS in uses]
+        return [name for name, uses in find_name_uses(text).items() if SETS in uses]
     key = blackboard_key(port, text) if port in outputs or holds == KEY else None
     return (key,) if key is not None else (text,) if holds == KEY and _WORD.fullmatch(text) else ()
 

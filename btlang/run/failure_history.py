@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 
 from btlang.diagnostics.render import underlined
 from btlang.engine.engine import Failure
-from btlang.engine.leaves.leaf import raised_in
+from btlang.engine.leaves.leaf import find_raising_line
 from btlang.engine.nodes.decorators import WAS_TRUE
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SUCCESS
 from btlang.run.bus import INLINE
@@ -196,7 +196,7 @@ class _Report:
         if reason == WAS_TRUE and not denied.children:
             reason = f"'{self._words(named)}' was true"
         yield f"  {denied.id}: {reason}"
-        if place := raised_in(failure.exception):
+        if place := find_raising_line(failure.exception):
             yield f"  raised in {place}"
         for index, seconds in last.stopped if last is not None else ():
             yield f"  It stopped '{self._words(index)}' after {seconds:.1f} s."

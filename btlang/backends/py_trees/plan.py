@@ -10,7 +10,7 @@ from btlang.diagnostics.errors import MissionError
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.clock import Clock
 from btlang.engine.compile import expand
-from btlang.engine.conditions import is_of_editors
+from btlang.engine.conditions import is_editor_attribute
 from btlang.engine.instance import EngineState, NodeInstance
 from btlang.engine.leaves.leaf import LeafBinding
 from btlang.printer.phrase import phrase_of
@@ -190,7 +190,7 @@ class _Planner:
 
     def _always_skipped(self, node: Node) -> bool:
         for port, text in node.ports:
-            if port[:1] != "_" or port == "_autoremap" or is_of_editors(port):
+            if port[:1] != "_" or port == "_autoremap" or is_editor_attribute(port):
                 continue
             if port != "_skipIf" or text not in ("true", "false"):
                 raise _Inexpressible(f"py_trees has no {port}")

@@ -9,9 +9,9 @@ from py_trees.common import Status
 
 from btlang.backends.py_trees.node import SKIPPED, Asking, Node
 from btlang.engine.blackboard import Blackboard
+from btlang.engine.compile import child_scope
 from btlang.engine.engine import Engine
 from btlang.engine.leaves.leaf import LeafBinding
-from btlang.engine.nodes.subtree import child_scope
 from btlang.engine.status import FAILURE, RUNNING, SUCCESS
 from btlang.text.time_of_day import local
 from btlang.tree import node as btlang_node

@@ -10,7 +10,7 @@ from btlang.api import Mission, parse_tree
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import is_below, read_source
-from btlang.engine.leaves.leaf import described
+from btlang.engine.leaves.leaf import describe_exception
 from btlang.task.store.records import MissionText
 from btlang.text.escaping import one_line
 from btlang.text.source import NOWHERE, Source, Span
@@ -94,7 +94,9 @@ class MissionReader:
             )
         except (SystemExit, RecursionError) as problem:  # of a keyword file, which may be anybody's
             where = Span(source, 0, 0)
-            raise MissionError([diagnostic("BT001", where, file=source.name, reason=described(problem))]) from None
+            raise MissionError(
+                [diagnostic("BT001", where, file=source.name, reason=describe_exception(problem))]
+            ) from None
 
     def _is_in_allowed_folder(self, name: str) -> bool:
         if "\0" in name or not os.path.isfile(name):

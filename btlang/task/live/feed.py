@@ -9,7 +9,7 @@ from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import suppress
 
 from btlang.api import Mission
-from btlang.engine.leaves.leaf import described
+from btlang.engine.leaves.leaf import describe_exception
 from btlang.engine.status import NAMES
 from btlang.passes.scripts import is_prepared
 from btlang.run.bus import INLINE
@@ -367,6 +367,6 @@ class TaskFollower:
                 self._closed.wait(_RETRY)
             except Exception as problem:  # the next ones may do better
                 self._last = found[-1][0]
-                self._trouble(f"An error inside btlang: {described(problem)}")
+                self._trouble(f"An error inside btlang: {describe_exception(problem)}")
             else:
                 self._closed.wait(_REST * (time.monotonic() - began))

@@ -1,4 +1,4 @@
-"""What expressions of scripts are compiled to: closures that take a blackboard and give a value.
+"""The closures that expressions of scripts are compiled to: each takes a blackboard and returns a value.
 
 A value within a script is a float, a text, or anything else that a leaf wrote, which can only be passed on.
 """
@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.script import values
-from btlang.engine.script.values import COMPARISONS, ScriptFailed, comparable, kept, number, read
+from btlang.engine.script.values import COMPARISONS, ScriptFailed, comparable, from_stored, number, to_stored
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def constant(value: Any) -> Run:
 def name(key: str) -> Run:
     def run(board: Blackboard) -> Any:
         try:
-            return read(board.get(key))
+            return from_stored(board.get(key))
         except KeyError:
             raise ScriptFailed(f"{{{key}}} has no value") from None
 
@@ -58,13 +58,13 @@ def prefix(sign: str, operand: Run) -> Run:
 
 
 def infix(sign: str, left: Run, right: Run) -> Run:
-    """Both sides are always evaluated, also those of && and ||, as there."""
+    """Evaluate both sides always, even those of && and ||, as in C++."""
     apply = _INFIX[sign]
     return lambda board: apply(left(board), right(board))
 
 
 def comparison(signs: Sequence[str], operands: Sequence[Run], enums: Enums) -> Run:
-    """`a < b < c` holds where both do; what follows the first that does not hold is not evaluated."""
+    """Evaluate `a < b < c`, which holds if both do. What follows the first that doesn't hold isn't evaluated."""
     first, *others = operands
     steps = [(sign, COMPARISONS[sign], operand) for sign, operand in zip(signs, others, strict=True)]
 
@@ -88,7 +88,7 @@ def choice(enums: Enums, condition: Run, then: Run, otherwise: Run) -> Run:
 
 
 def assignment(enums: Enums, sign: str, key: str, right: Run) -> Run:
-    """Writes and gives the value. An entry that exists keeps its kind: a number stays one, and a text a text."""
+    """Write and return the value. An entry that exists keeps its kind: a number stays one, and a text a text."""
     if sign == ":=" or sign == "=":
         return _assignment(enums, key, right, sign == ":=")
     apply = _INFIX[sign[0]]
@@ -96,8 +96,8 @@ def assignment(enums: Enums, sign: str, key: str, right: Run) -> Run:
     def run(board: Blackboard) -> Any:
         _need(board, key, sign)
         value = right(board)
-        value = apply(read(board.get(key)), value)
-        board.set(key, kept(value))
+        value = apply(from_stored(board.get(key)), value)
+        board.set(key, to_stored(value))
         return value
 
     return run
@@ -109,8 +109,8 @@ def _assignment(enums: Enums, key: str, right: Run, creates: bool) -> Run:
             _need(board, key, "=")
         value = right(board)
         if key in board:
-            value = _of_kind(read(board.get(key)), value, key, enums)
-        board.set(key, kept(value))
+            value = _of_kind(from_stored(board.get(key)), value, key, enums)
+        board.set(key, to_stored(value))
         return value
 
     return run
@@ -124,7 +124,7 @@ def _of_kind(old: Any, value: Any, key: str, enums: Enums) -> Any:
             return number(value, enums)
     except ScriptFailed:
         pass  # the message below says more
-    raise ScriptFailed(f"{{{key}}} holds {values.described(old)} and cannot become {values.described(value)}")
+    raise ScriptFailed(f"{{{key}}} holds {values.describe_value(old)} and cannot become {values.describe_value(value)}")
 
 
 def _need(board: Blackboard, key: str, sign: str) -> None:
