@@ -6,8 +6,7 @@ import os
 from collections.abc import Mapping
 from importlib import import_module
 
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.frontends.mission.reader import DEFAULT_PARSER, read_mission
 from btlang.frontends.table import frontend_of, read_text
 from btlang.passes import compile_mission, errors_of, lower_mission, run_passes

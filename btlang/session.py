@@ -11,8 +11,7 @@ from importlib import import_module
 
 from btlang.backends.engine import bind_leaf
 from btlang.backends.touching import awaited
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.clock import Clock, LeafTimer
 from btlang.engine.engine import Engine, EngineError
@@ -33,7 +32,7 @@ from btlang.run.recent import RecentEvents
 from btlang.run.runner import Runner, trace_engine
 from btlang.run.snapshot import RunFollower, Snapshot
 from btlang.run.statuses import Status
-from btlang.text.escaping import RED
+from btlang.text.formatting import RED
 from btlang.text.source import NOWHERE, Source
 from btlang.vocabulary.values import key_of
 

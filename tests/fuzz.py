@@ -20,7 +20,7 @@ from functools import partial
 
 from btlang.api import Mission
 from btlang.cli.examples import examples
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.frontends.mission.completion.completer import completions
 from btlang.frontends.mission.reader import read_mission
 from btlang.passes import compile_mission

@@ -8,8 +8,7 @@ from functools import cache, partial
 from btlang.backends.engine import bind_leaf, leaf_binding
 from btlang.backends.keywords import Draft, drafts
 from btlang.backends.near_ids import respelt_leaf, respelt_subtree, said_at
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.errors import in_order
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic, sort_diagnostics
 from btlang.engine.faults import UnknownNode, UnknownSubTree, find_faults
 from btlang.engine.instance import EngineError
 from btlang.engine.leaves.leaf import LeafBinding
@@ -47,7 +46,7 @@ def tree_problems(
     for error in found:
         problems.append(_diagnosed(error, tree, vocabulary, entries, fits))
         entries.pop(error.node.id, None)  # once is enough
-    return in_order(problems)
+    return sort_diagnostics(problems)
 
 
 def misnamed(tree: Tree, vocabulary: Lexicon) -> Iterator[Diagnostic]:

@@ -7,7 +7,7 @@ import shutil
 import sys
 from contextlib import nullcontext
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.reading import unwritable
 from btlang.text.output import pass_on
 

@@ -9,8 +9,7 @@ from __future__ import annotations
 import os
 import re
 
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.frontends.json.reader import FORMAT, PORT_KEYS
 from btlang.printer.phrase import phrase_of
 from btlang.text.source import NOWHERE

@@ -8,8 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from btlang.backends.keywords import Draft, Leaf, drafted, is_unknown, keyword_text, why_none
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.diagnostics.reading import read_source
 from btlang.frontends.btcpp.files import read_files
 from btlang.frontends.mission.reader import PARSERS, read_mission

@@ -10,7 +10,7 @@ from itertools import chain
 from btlang.backends.slot_types import NUMBER, SlotTypes
 from btlang.backends.wording import SpokenPorts, asks, id_words, phrases
 from btlang.support.record import Record
-from btlang.text.toml_writing import toml_key, toml_value
+from btlang.text.toml import toml_key, toml_value
 from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.model import NodeModel, PortModel
 from btlang.tree.node import Node, Tree

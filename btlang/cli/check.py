@@ -9,8 +9,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 from btlang.cli.missions import hint_at_text, mission_of, parse_mission, read_typed
-from btlang.diagnostics.diagnostic import Diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError
 from btlang.diagnostics.reading import has_mark, read_source
 from btlang.frontends.table import frontend_of
 from btlang.robots.mission_vocabulary import world_vocabulary
@@ -60,12 +59,12 @@ class _FileCheck:
 
     def mend(self) -> None:
         """Write corrections into the files; show what a text, or standard input, becomes."""
-        from btlang.diagnostics.mending import mended, mended_together
+        from btlang.diagnostics.fixes import apply_fixes, apply_fixes_together
 
-        done = [mended(source, self._problems_alone) for source in self._alone]
+        done = [apply_fixes(source, self._problems_alone) for source in self._alone]
         self._alone = [source for source, _ in done]
         if self._trees:
-            done += (both := mended_together(self._trees, self._problems_together))
+            done += (both := apply_fixes_together(self._trees, self._problems_together))
             self._trees = [source for source, _ in both]
         for source, count in done:
             with self._report_errors():

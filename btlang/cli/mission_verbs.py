@@ -9,7 +9,7 @@ from functools import partial
 
 from btlang.api import Mission, format_mission
 from btlang.cli.missions import hint_at_text, mission_of, parse_mission, read_typed
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.support.test_files import is_test_file

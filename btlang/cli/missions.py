@@ -9,8 +9,7 @@ from contextlib import contextmanager
 
 from btlang.api import Mission, parse_tree
 from btlang.cli.parser import quote_mission, reads_as_mission
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.diagnostics.reading import read_source
 from btlang.robots.platforms import ROBOTS
 from btlang.support.test_files import is_test_file

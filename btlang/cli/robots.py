@@ -5,11 +5,11 @@ from __future__ import annotations
 import sys
 from contextlib import closing
 
-from btlang.diagnostics.render import render
+from btlang.diagnostics.diagnostic import render
 from btlang.passes.lint.allow import not_allowed, not_silenced
 from btlang.robots.registry import connector, runs_in_real_time, runs_on
+from btlang.text.formatting import Table
 from btlang.text.output import has_colour, show
-from btlang.text.table import Table
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

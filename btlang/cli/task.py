@@ -16,7 +16,7 @@ from btlang.task import messages
 from btlang.task.commands.client import RobotClient
 from btlang.task.messages import Answer, Command, wrong
 from btlang.task.store.records import TaskState
-from btlang.text.escaping import one_line
+from btlang.text.formatting import one_line
 from btlang.text.output import pass_on, show
 
 TYPE_CHECKING = False

@@ -1,4 +1,4 @@
-"""Files to sources; everything that can be wrong with a file becomes a diagnostic, also when it is to be written."""
+"""Reading files as sources. Everything that can be wrong with a file, even one to be written, becomes a diagnostic."""
 
 from __future__ import annotations
 
@@ -9,8 +9,7 @@ import sys
 from codecs import BOM_UTF8
 from collections.abc import Callable
 
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.text.source import Source, Span
 
 MOST_BYTES = 10_000_000
@@ -22,17 +21,17 @@ TOO_DEEP = f"more than {MOST_DEEP} files include each other in a row"
 
 
 def read_source(path: str, include_root: str | None = None) -> Source:
-    """The text of a file that the user names himself, or of standard input for `-`. Raises MissionError (BT001, BT002).
+    """Read the text of a file that the user names, or of standard input for `-`. Raises MissionError (BT001, BT002).
 
     What it includes lies in its folder, or below `include_root`. It may be a pipe, too.
     """
     folder = os.path.dirname(path)
     roots = (folder,) if include_root is None else (folder, include_root)
-    return _decoded(Source("", path, folder, roots, may_load=True), lambda: read_bytes(path))
+    return _decode(Source("", path, folder, roots, may_load=True), lambda: read_bytes(path))
 
 
 def read_included(path: str, source: Source) -> Source:
-    """The text of a file that another text names, with the same roots: a regular file below one of them.
+    """Read the text of a file that another text names, with the same roots: a regular file below one of them.
 
     Raises MissionError (BT001, BT002).
     """
@@ -48,7 +47,7 @@ def read_included(path: str, source: Source) -> Source:
             return _limited(file.read(MOST_BYTES + 1))
 
     hides = source.hides_includes
-    return _decoded(Source("", where, os.path.dirname(where), source.roots, hidden=hides, hides_includes=hides), read)
+    return _decode(Source("", where, os.path.dirname(where), source.roots, hidden=hides, hides_includes=hides), read)
 
 
 def included_path(path: str, source: Source) -> tuple[str, str]:
@@ -69,7 +68,7 @@ OUTSIDE = "it is outside the folder of the mission; to allow another folder, use
 
 
 def read_bytes(path: str) -> bytes:
-    """The content of a file that the user names himself, or of standard input for `-`. Raises OSError."""
+    """Read the content of a file that the user names, or of standard input for `-`. Raises OSError."""
     if path in _pipes:
         return _pipes[path]
     if path == "-":
@@ -101,12 +100,12 @@ def is_below(real: str, root: str) -> bool:
     return os.path.join(real, "").startswith(os.path.join(os.path.realpath(root or os.curdir), ""))
 
 
-def _decoded(source: Source, read: Callable[[], bytes]) -> Source:
-    """The source with the text that was read."""
+def _decode(source: Source, read: Callable[[], bytes]) -> Source:
+    """Return the source with the text that was read."""
     try:
         data = read()
     except (OSError, ValueError) as error:  # ValueError: a path with a NUL
-        reason = reason_of(error) if isinstance(error, OSError) else str(error)
+        reason = os_error_reason(error) if isinstance(error, OSError) else str(error)
         raise MissionError([diagnostic("BT001", Span(source, 0, 0), file=source.name, reason=reason)]) from None
     data = data.removeprefix(BOM_UTF8)
     try:
@@ -120,11 +119,11 @@ def _decoded(source: Source, read: Callable[[], bytes]) -> Source:
 
 def unwritable(path: str, reason: str | OSError) -> Diagnostic:
     """BT009: a file cannot be written."""
-    text = reason if isinstance(reason, str) else reason_of(reason)
+    text = reason if isinstance(reason, str) else os_error_reason(reason)
     return diagnostic("BT009", Span(Source("", path), 0, 0), file=path, reason=text)
 
 
-def reason_of(error: OSError) -> str:
-    """The reason in the words of the operating system, to stand in a sentence."""
+def os_error_reason(error: OSError) -> str:
+    """Return the reason in the words of the operating system, to be used in a sentence."""
     reason = error.strerror or str(error)
     return reason[:1].lower() + reason[1:]

@@ -8,12 +8,12 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from btlang.backends.english import to_english
 from btlang.backends.files import put, write_file
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.reading import read_source, unwritable
 from btlang.documents.project import DocumentedProject, KeyReader, TreeChapter, nodes_of
 from btlang.frontends.btcpp.models import nav2_models
 from btlang.pictures.tree_picture import to_svg
-from btlang.text.escaping import one_line, printable
+from btlang.text.formatting import one_line, printable
 from btlang.tree.catalogue import BEHAVIOR_TREE_CPP, CATALOGUE, SUBTREE
 from btlang.tree.comments import KEPT
 from btlang.tree.model import NodeModel, PortModel

@@ -6,7 +6,7 @@ import os
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
 from btlang.api import Mission
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.engine.instance import blackboard_key
 from btlang.engine.script.tokens import READS, SETS, find_name_uses

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from btlang.api import Mission
-from btlang.diagnostics.diagnostic import Diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError
 from btlang.editing.messages import messages
 from btlang.editing.outline import outline
 from btlang.editing.syntax import Syntax

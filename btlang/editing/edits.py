@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.editing.changes import Change, changed
 from btlang.editing.forms import FORMS, amount_of
 from btlang.editing.paths import at_path, difference, path_of, place_of

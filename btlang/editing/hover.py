@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from btlang.api import Mission
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.editing.words import Words
 from btlang.frontends.mission.reader import lexed
 from btlang.frontends.mission.token import Assigned, Called, Each, Header, Listed, NodeCall, Remembered, Token

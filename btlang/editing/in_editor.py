@@ -8,8 +8,7 @@ import subprocess
 import tempfile
 
 from btlang.backends.files import write_file
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.diagnostics.reading import read_source
 from btlang.editing.onto import write_onto
 from btlang.editing.words import Words

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from btlang.diagnostics.data import as_data
 from btlang.diagnostics.diagnostic import Diagnostic
+from btlang.diagnostics.formats import to_data
 from btlang.text.source import Source, Span
 
 TYPE_CHECKING = False
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def messages(problems: Iterable[Diagnostic], source: Source) -> list[dict[str, Any]]:
-    """Return the messages of `as_data`; each place has its `start` and `end`, None where it is in another text."""
+    """Return the messages of `to_data`; each place has its `start` and `end`, None where it is in another text."""
     return [_message(problem, source) for problem in problems]
 
 
@@ -26,7 +26,7 @@ def offsets(span: Span | None, source: Source) -> dict[str, int | None]:
 
 
 def _message(problem: Diagnostic, source: Source) -> dict[str, Any]:
-    data = as_data(problem) | offsets(problem.span, source)
+    data = to_data(problem) | offsets(problem.span, source)
     if problem.fix is not None:
         data["fix"] |= offsets(problem.fix[0], source)
     for name, spans in (("readings", problem.readings), ("notes", problem.notes)):

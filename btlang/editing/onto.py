@@ -7,8 +7,7 @@ import shlex
 
 from btlang.api import Mission
 from btlang.backends.files import write_file
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.diagnostics.reading import has_mark, read_source, unwritable
 from btlang.frontends.btcpp.kept import Kept, digest_of, kept_in, with_digest
 from btlang.frontends.btcpp.reader import read_xml

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from functools import lru_cache
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.editing.forms import FORMS
 from btlang.editing.words import Words
 from btlang.frontends.mission.reader import lexed, read_mission

@@ -7,8 +7,7 @@ from __future__ import annotations
 
 from btlang.api import Mission
 from btlang.backends.explain import Sentences, understood
-from btlang.diagnostics.diagnostic import Diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError
 from btlang.text.source import Source
 from btlang.text.words import split
 from btlang.vocabulary.language_tables import GOES_ON, ORDER

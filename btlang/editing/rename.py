@@ -8,8 +8,7 @@ from collections.abc import Container, Iterable, Iterator
 from functools import partial
 
 from btlang.api import Mission
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.editing.changes import Change, changed
 from btlang.editing.words import Words
 from btlang.frontends.mission.reader import lexed

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from btlang.api import Mission, parse_tree
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.robots.mission_vocabulary import mission_vocabulary, world_vocabulary
-from btlang.text.escaping import one_line
+from btlang.text.formatting import one_line
 from btlang.text.source import Source
 from btlang.vocabulary.lexicon import Lexicon
 

@@ -12,7 +12,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain, pairwise
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.editing.changes import Change, changed
 from btlang.editing.lines import Lines, comments_in, indented
 from btlang.editing.syntax import Step, Syntax, Unplaced, are_equal, joined

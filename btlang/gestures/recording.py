@@ -20,7 +20,7 @@ from btlang.robots.robot import joint_of
 from btlang.support.interrupts import interrupts_later
 from btlang.text.output import show
 from btlang.text.source import Source
-from btlang.text.toml_writing import toml_key, toml_value
+from btlang.text.toml import toml_key, toml_value
 
 _EACH = 0.1  # seconds between two commands that keep servos loose
 _WAITS = 2.0  # seconds until servos must have let go, or hold again

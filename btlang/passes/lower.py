@@ -1,4 +1,4 @@
-"""AST to tree: what each form of the language means in nodes of BehaviorTree.CPP."""
+"""Lowering: what each form of the language means in nodes of BehaviorTree.CPP."""
 
 from __future__ import annotations
 
@@ -7,9 +7,8 @@ from collections.abc import Callable, Iterator, Sequence
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
 from btlang.passes.lower_time import TIMED
-from btlang.passes.lowered import Lowered, new_node, new_round
-from btlang.passes.scope import Scope
-from btlang.passes.scripts import assignment, behind, chosen, comparison, prepared
+from btlang.passes.scope import Lowered, Scope, new_node, new_round
+from btlang.passes.scripts import compile_assignment, compile_comparison, make_choice, prepare_ports, run_before
 from btlang.text.source import Span
 from btlang.tree import ast
 from btlang.tree.catalogue import CONSTRAINTS, SUBTREE, never_ends
@@ -28,7 +27,7 @@ _CHAINS = {"sequence": "Sequence", "all": "Sequence", "fallback": "Fallback", "a
 
 
 def lower_names(compilation: Compilation) -> Iterator[Diagnostic]:
-    """The tree of a mission: each definition, then its commands. BT005 where there is no command but must be one."""
+    """Make the tree of a mission: each definition, then its commands. BT005 if a command is missing but needed."""
     mission, ordered = compilation.mission, compilation.ordered
     names = (definition.name for definition in ordered)
     scope = Scope(names, compilation.vocabulary.types, compilation.origins)
@@ -52,7 +51,7 @@ def lower_names(compilation: Compilation) -> Iterator[Diagnostic]:
 
 
 def _models(exact: Sequence[ast.Exact], phrases: Sequence[ast.Phrase], vocabulary: Lexicon) -> tuple[NodeModel, ...]:
-    """What a mission says of leaves: what those by their ids are, and the ports that they give values to."""
+    """Return what a mission says about leaves: what those by their ids are, and the ports that they give values to."""
     known = {node.id for node in exact if node.items} | vocabulary.nodes.keys()
     outputs: dict[str, dict[str, None]] = {}
     for node in exact:
@@ -71,13 +70,13 @@ def _models(exact: Sequence[ast.Exact], phrases: Sequence[ast.Phrase], vocabular
 
 
 def lower(root: ast.Ast, scope: Scope) -> Lowered:
-    """The tree of a command or condition."""
+    """Make the tree of a command or condition."""
     one = lower_one if scope.origins is None else _noted
     return fold(root, ast.parts, lambda item, done: one(item, done, scope))
 
 
 def lower_one(item: ast.Ast, done: list[Lowered], scope: Scope) -> Lowered:
-    """What one piece of syntax makes of its lowered parts."""
+    """Make a node of one piece of syntax and its lowered parts."""
     return _LOWER[type(item)](item, done, scope)
 
 
@@ -100,7 +99,7 @@ def _negated(negated: bool, condition: Node) -> Node:
 
 
 def _phrase(item: ast.Phrase, _done: list[Lowered], scope: Scope) -> Lowered:
-    """A value that is the slot's default says nothing."""
+    """Make a leaf. A value that is the slot's default isn't written."""
     if not item.arguments:
         return Lowered(Node(item.entry.id, (), item.ports, item.name, item.span))
     defaults = {slot.name: slot.default for slot in item.entry.slots}
@@ -108,35 +107,35 @@ def _phrase(item: ast.Phrase, _done: list[Lowered], scope: Scope) -> Lowered:
     if len(spoken) > 1:
         order = list(defaults)
         spoken.sort(key=lambda port: order.index(port[0]))
-    scripts, ports = prepared(spoken, scope)
-    return Lowered(behind(scripts, Node(item.entry.id, (), ports + item.ports, item.name, item.span)))
+    scripts, ports = prepare_ports(spoken, scope)
+    return Lowered(run_before(scripts, Node(item.entry.id, (), ports + item.ports, item.name, item.span)))
 
 
 def _name(item: ast.Name, _done: list[Lowered], scope: Scope) -> Lowered:
-    """A subtree sees its arguments, and what it needs of the mission's values."""
-    scripts, ports = prepared(item.arguments, scope, scope.parameters.get(item.name, {}))
+    """Make a subtree, which gets its arguments, and what it needs of the mission's values."""
+    scripts, ports = prepare_ports(item.arguments, scope, scope.parameters.get(item.name, {}))
     shared = tuple((key, f"{{{key}}}") for key in scope.free.get(item.name, ()))
     node = Node(SUBTREE, (), (("ID", item.name), *ports, *shared), span=item.span)
-    return Lowered(behind(scripts, node), item.name in scope.skipping and not scripts, item.name in scope.endless)
+    return Lowered(run_before(scripts, node), item.name in scope.skipping and not scripts, item.name in scope.endless)
 
 
 def _compared(item: ast.Compared, _done: list[Lowered], scope: Scope) -> Lowered:
-    scripts, code = comparison(item.key, item.arguments, item.kind, scope)
-    return Lowered(behind(scripts, Node("ScriptCondition", (), (("code", code),), span=item.span)))
+    scripts, code = compile_comparison(item.key, item.arguments, item.kind, scope)
+    return Lowered(run_before(scripts, Node("ScriptCondition", (), (("code", code),), span=item.span)))
 
 
 def _assign(item: ast.Assign, _done: list[Lowered], scope: Scope) -> Lowered:
     choice = choice_of(item.text)
     if choice is not None:
-        return Lowered(chosen(choice, item.key).replace(span=item.span))
-    scripts, code = assignment(item.key, item.operation, item.text, item.kind, scope)
-    return Lowered(behind(scripts, Node("Script", (), (("code", code),), span=item.span)))
+        return Lowered(make_choice(choice, item.key).replace(span=item.span))
+    scripts, code = compile_assignment(item.key, item.operation, item.text, item.kind, scope)
+    return Lowered(run_before(scripts, Node("Script", (), (("code", code),), span=item.span)))
 
 
 def _remember(item: ast.Remember, _done: list[Lowered], scope: Scope) -> Lowered:
-    scripts, ports = prepared(item.arguments, scope)
+    scripts, ports = prepare_ports(item.arguments, scope)
     node = Node(item.entry.id, (), (*ports, (MEASURED, f"{{{item.key}}}")), span=item.span)
-    return Lowered(behind(scripts, node))
+    return Lowered(run_before(scripts, node))
 
 
 def _for_each(item: ast.ForEach, done: list[Lowered], scope: Scope) -> Lowered:
@@ -153,8 +152,8 @@ def _for_each(item: ast.ForEach, done: list[Lowered], scope: Scope) -> Lowered:
     shared = tuple((key, f"{{{key}}}") for key in scope.needs(item.body, [item.key]))
     rounds = []
     for text in item.values:
-        scripts, ports = prepared([(item.key, text)], scope, {item.key: item.kind})
-        rounds.append(behind(scripts, Node(SUBTREE, (), (("ID", name), *ports, *shared), span=item.span)))
+        scripts, ports = prepare_ports([(item.key, text)], scope, {item.key: item.kind})
+        rounds.append(run_before(scripts, Node(SUBTREE, (), (("ID", name), *ports, *shared), span=item.span)))
     node = rounds[0] if len(rounds) == 1 else new_node("Sequence", rounds, item.span)
     return Lowered(node, done[0].can_skip, done[0].endless)
 
@@ -199,7 +198,7 @@ def _ruled(item: ast.Chain, done: list[Lowered], scope: Scope) -> Lowered:
 
 
 def _whenever(item: ast.Whenever, done: list[Lowered], _scope: Scope) -> Lowered:
-    """A rule alone watches for ever."""
+    """Make a rule. Alone it watches for ever."""
     ports = {"once": "true"} if item.once else {}
     children = done[0].node, done[1].node, _for_ever(item.span)
     return Lowered(new_node("Whenever", children, item.span, **ports), False, True)
@@ -264,9 +263,9 @@ def _try(item: ast.Try, done: list[Lowered], _scope: Scope) -> Lowered:
 
 
 def _constrained(item: ast.Constrained, done: list[Lowered], scope: Scope) -> Lowered:
-    scripts, ports = prepared([("zones", "; ".join(item.zones))], scope)
+    scripts, ports = prepare_ports([("zones", "; ".join(item.zones))], scope)
     node = Node(CONSTRAINTS[item.kind], (done[0].node,), ports, span=item.span)
-    return Lowered(behind(scripts, node), done[0].can_skip and not scripts, done[0].endless)
+    return Lowered(run_before(scripts, node), done[0].can_skip and not scripts, done[0].endless)
 
 
 def _check(_item: ast.Check, done: list[Lowered], _scope: Scope) -> Lowered:

@@ -6,8 +6,7 @@ import re
 from collections.abc import Iterator, Mapping
 
 from btlang.backends.checking import anything, bound, misnamed, tree_problems
-from btlang.diagnostics.diagnostic import Diagnostic
-from btlang.diagnostics.errors import in_order
+from btlang.diagnostics.diagnostic import Diagnostic, sort_diagnostics
 from btlang.engine.leaves.leaf import LeafBinding
 from btlang.frontends.btcpp.models import nav2_models
 from btlang.frontends.btcpp.project import XmlProject
@@ -48,7 +47,9 @@ def project_problems(project: XmlProject, vocabulary: Lexicon, sources: CppSourc
     for problem in found:
         if problem.is_error and problem.code != "BT132":
             wrong.setdefault(_place(problem.span), set()).add(problem.code)
-    return in_order(not_allowed(each for each in found if not _follows(each, wrong.get(_place(each.span), set()))))
+    return sort_diagnostics(
+        not_allowed(each for each in found if not _follows(each, wrong.get(_place(each.span), set())))
+    )
 
 
 def _follows(problem: Diagnostic, wrong: set[str]) -> bool:

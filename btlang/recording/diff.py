@@ -10,7 +10,7 @@ from itertools import zip_longest
 
 from btlang.api import Mission, parse_file
 from btlang.backends.tree_diff import differences
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.engine.status import NAMES
 from btlang.recording.reader import is_recording, open_recording
 from btlang.recording.story import Story

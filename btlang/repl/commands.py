@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable
 from shutil import get_terminal_size
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.reading import read_source, unwritable
 from btlang.frontends.mission.symbols.definitions import find_definitions
 from btlang.frontends.mission.symbols.phrases import Phrases
@@ -16,9 +16,9 @@ from btlang.repl.store import DraftStore
 from btlang.robots.robot import Robot, RobotError
 from btlang.robots.worlds.world import said
 from btlang.support.record import Record
+from btlang.text.formatting import Table
 from btlang.text.output import can_draw, listing_width
 from btlang.text.source import Source
-from btlang.text.table import Table
 from btlang.text.words import split
 from btlang.vocabulary.listing import help_on, listing, overview
 from btlang.vocabulary.trie import longest

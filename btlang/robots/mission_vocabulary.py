@@ -7,8 +7,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
-from btlang.diagnostics.diagnostic import Diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError
 from btlang.frontends.table import XML_ENDINGS
 from btlang.text.source import Source, Span
 from btlang.text.words import split

@@ -15,8 +15,7 @@ from collections.abc import Iterator
 
 from btlang.api import Mission, parse_tree
 from btlang.components.words import words_of
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.diagnostics.reading import OUTSIDE, included_path, is_below, read_source
 from btlang.frontends.mission.symbols.needs import WORDS as NEEDED_WORDS
 from btlang.printer.layout import laid_out

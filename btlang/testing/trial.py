@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from threading import Event, Timer
 
 from btlang.api import Mission
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.editing.messages import offsets
 from btlang.recording.film import Film, check_words
 from btlang.run.controls import Controls

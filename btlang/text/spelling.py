@@ -1,4 +1,4 @@
-"""The nearest known words to what was written."""
+"""Spelling: the known words that are nearest to a written one."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def distance(written: str, meant: str) -> int:
 
 
 def _once(word: str) -> str:
-    """A word with each double letter once."""
+    """Return a word with each double letter once."""
     return "".join(letter for letter, _ in groupby(word))
 
 

@@ -10,12 +10,12 @@ from hypothesis import given, note
 from btlang.api import parse_tree
 from btlang.backends.english import to_english
 from btlang.backends.english.editors import without_editors
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.frontends.mission.reader import read_mission
 from btlang.passes import lower_mission
 from btlang.passes.compilation import Compilation
-from btlang.passes.lint.two_readings import two_readings
+from btlang.passes.lint.two_readings import find_two_readings
 from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.text.source import Source
 from btlang.tree.catalogue import CATALOGUE
@@ -44,7 +44,7 @@ def test_any_tree_is_said_and_read_back(tree: Tree) -> None:
         told = {model.id for model in tree.models if model.kind == "Condition"}
         conditions = {model.id for model in again.models if model.kind == "Condition"} - told
         assert all(id in ("IsOk", "CheckDoor") or vocabulary.entry(id) or CATALOGUE[id].kind for id in conditions)
-        assert not list(two_readings(Compilation(vocabulary, mission, again)))
+        assert not list(find_two_readings(Compilation(vocabulary, mission, again)))
 
 
 @pytest.mark.parametrize("path", CORPUS, ids=lambda path: path.stem)

@@ -8,7 +8,7 @@ import pytest
 
 from btlang.api import parse_file, parse_tree
 from btlang.cli import main
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.editing.words import Words
 from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.text.source import Source

@@ -13,7 +13,7 @@ from btlang.backends.btcpp import to_xml
 from btlang.backends.btcpp.onto import written_onto
 from btlang.backends.english import to_english
 from btlang.backends.english.editors import without_editors
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.frontends.btcpp.reader import read_xml
 from btlang.frontends.mission.reader import read_mission

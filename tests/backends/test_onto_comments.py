@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from btlang.backends.btcpp.onto import written_onto
 from btlang.backends.english import to_english
 from btlang.backends.english.comments import lines_of
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.frontends.btcpp.reader import read_xml
 from btlang.text.source import Source
 from btlang.tree.dump import plain

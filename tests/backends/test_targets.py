@@ -17,7 +17,7 @@ import btlang
 from btlang.api import Mission, format_mission
 from btlang.backends.targets import TARGETS, compiled, target_of
 from btlang.cli import main
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.frontends.json.reader import read_json
 from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.text.source import Source

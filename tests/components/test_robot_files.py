@@ -103,7 +103,7 @@ def test_the_command(tmp_path: Path) -> None:
 
 def test_a_text_from_elsewhere_runs_no_code(tmp_path: Path) -> None:
     for text in (machine(), WHEELS.replace("simulated", "os:system"), WHEELS.replace("simulated", "serial-board")):
-        from btlang.diagnostics.errors import MissionError
+        from btlang.diagnostics.diagnostic import MissionError
 
         source = Source(BODY.replace('over = "devices"', "") + text, str(tmp_path / "robot.toml"))
         with pytest.raises(MissionError, match="may only be in a robot file on this computer"):

@@ -10,7 +10,7 @@ from typing import TypeVar
 
 import pytest
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.frontends.btcpp.origin import XmlOrigin
 from btlang.frontends.btcpp.reader import read_xml

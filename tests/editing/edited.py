@@ -7,7 +7,7 @@ import sys
 from collections.abc import Sequence
 
 from btlang.api import parse_tree
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.editing.changes import Change, changed
 from btlang.editing.edits import Edit, Edited, edit, read_edit
 from btlang.editing.syntax import Syntax

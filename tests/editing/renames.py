@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import re
 
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.render import render
+from btlang.diagnostics.diagnostic import MissionError, render
 from btlang.editing.changes import Change, changed
 from btlang.editing.rename import rename
 from btlang.editing.words import Words

@@ -7,7 +7,7 @@ import json
 import pytest
 
 from btlang.api import parse_tree
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.editing.changes import changed
 from btlang.editing.edits import read_edit
 from btlang.editing.forms import FORMS

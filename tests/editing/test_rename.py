@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.editing.rename import rename
 from btlang.editing.words import Words
 from btlang.printer.mission import english

@@ -10,7 +10,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from btlang.api import format_mission, parse_tree
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.frontends.mission.reader import read_mission
 from btlang.passes import compile_mission
 from btlang.printer.layout import laid_out

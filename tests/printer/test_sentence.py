@@ -9,7 +9,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.frontends.mission.reader import read_mission
 from btlang.passes import compile_mission
 from btlang.printer import blocks

@@ -17,7 +17,7 @@ from btlang.editing.words import Words
 from btlang.server.http.access import AccessError
 from btlang.server.page import processes as checking
 from btlang.server.page.processes import DOES, Checker, answer, arguments_of, in_units
-from btlang.text.utf16 import Units
+from btlang.text.source import Units
 from tests.profiles import amount, searches
 from tests.server.doors import Door
 

@@ -9,7 +9,7 @@ import pytest
 import btlang
 from btlang.backends.comparing import comparing
 from btlang.backends.engine import bind_leaf
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
 from btlang.engine.instance import EngineError

@@ -7,8 +7,7 @@ from __future__ import annotations
 
 import re
 
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.frontends.btcpp.fragments import IN_TEXTS
 from btlang.frontends.btcpp.models import why_no_port
 from btlang.frontends.btcpp.origin import Element, Markup

@@ -11,8 +11,7 @@ from btlang.backends.btcpp.models import Uses
 from btlang.backends.btcpp.names import tree_ids
 from btlang.backends.btcpp.rewriting import Rewriter
 from btlang.backends.english.comments import lines_of
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.frontends.btcpp.file import SPOKEN_NAME, XmlFile
 from btlang.frontends.btcpp.reader import MAIN, read_xml
 from btlang.frontends.btcpp.scan import Note, scanned

@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator, Mapping
 from btlang.engine.instance import blackboard_key
 from btlang.engine.script.tokens import ScriptError, Tokens
 from btlang.engine.script.values import literal
-from btlang.passes.scripts import script
+from btlang.passes.scripts import make_script
 from btlang.support.record import Record
 from btlang.tree.catalogue import CATALOGUE, SEQUENCE, SUBTREE
 from btlang.tree.node import Node, Tree
@@ -222,7 +222,7 @@ class _Typing:
 
     def _own_key(self, code: str, scripts: list[Node]) -> str:
         self._made += 1
-        scripts.append(script(f"_{self._made} := {code}"))
+        scripts.append(make_script(f"_{self._made} := {code}"))
         return f"{{_{self._made}}}"
 
     def _code(self, name: str, code: str) -> str:

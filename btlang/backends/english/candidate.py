@@ -10,8 +10,7 @@ from collections.abc import Mapping
 
 from btlang.backends.english.type_inference import Around
 from btlang.passes.lower import lower_one
-from btlang.passes.lowered import Lowered
-from btlang.passes.scope import Scope
+from btlang.passes.scope import Lowered, Scope
 from btlang.support.record import Record
 from btlang.tree import ast
 from btlang.tree.node import Node

@@ -13,8 +13,7 @@ from btlang.backends.english.loops import Loop
 from btlang.backends.english.names import Names
 from btlang.backends.english.type_inference import Around
 from btlang.backends.english.values import assigned, can_say, chosen, compared, remembered, texts_of
-from btlang.passes.lowered import Lowered
-from btlang.passes.scope import Scope
+from btlang.passes.scope import Lowered, Scope
 from btlang.printer.phrase import leaf_words
 from btlang.printer.printer import Printer
 from btlang.printer.sentence import PRINTERS

@@ -9,13 +9,12 @@ from btlang.backends.english.comments import Comments, comments_of
 from btlang.backends.english.editors import without_editors
 from btlang.backends.english.lift import Lifter
 from btlang.backends.english.names import Names, Refused, given_keys
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.frontends.btcpp.kept import marked, parts_of
 from btlang.frontends.btcpp.origin import XmlOrigin
 from btlang.frontends.mission.reader import read_mission
 from btlang.passes import lower_mission
-from btlang.passes.order import used_first
+from btlang.passes.compilation import sort_by_use
 from btlang.printer.exact import is_one_piece
 from btlang.printer.mission import mission_lines
 from btlang.printer.printer import Printer
@@ -110,7 +109,7 @@ def _mission(
         known = Names(tree, vocabulary, refused, values=values, given="values" in level, sure=level == "sure values")
         raiser = Lifter(tree, vocabulary, known, comments, natural=level != "ids")
         bodies = {loop.name for loop in known.loops.values()}
-        named = [(name, root) for name, root in used_first(tree)[:-1] if name not in bodies]
+        named = [(name, root) for name, root in sort_by_use(tree)[:-1] if name not in bodies]
         definitions = tuple(raiser.definition(name, root) for name, root in named)
         mission = Program(raiser.main(tree.root), definitions, NOWHERE, name=tree.name)
         before, refused = refused, known.refused_by(mission, refused, raiser.refused)

@@ -13,8 +13,7 @@ from btlang.backends.engine import bind_leaf
 from btlang.backends.py_trees import choosing, decorating, in_order, node
 from btlang.backends.py_trees.plan import ON_COMPLETION, Name, Part, plan_of
 from btlang.backends.py_trees.values import engine_leaf, values_of
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.instance import EngineError
 from btlang.text.source import NOWHERE

@@ -12,8 +12,7 @@ from btlang.backends.py_trees import decorating, node
 from btlang.backends.py_trees.build import CLASSES
 from btlang.backends.py_trees.plan import NUMBERS, ON_COMPLETION, OURS, THEIRS, Name
 from btlang.backends.py_trees.values import EngineLeaf
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.engine.leaves.leaf import REFUSED, ActionFailed, Failed
 from btlang.text.source import NOWHERE, Span
 from btlang.tree.catalogue import CATALOGUE, SUBTREE, Port

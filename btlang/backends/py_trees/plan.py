@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from btlang.backends.checking import anything, tree_problems
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.clock import Clock
 from btlang.engine.compile import expand

@@ -71,7 +71,7 @@ def while_do_else(instance: NodeInstance, children: Sequence[Compiled]) -> Compi
     """Ask the condition at every tick and tick the second child, or the third (without one: FAILURE).
 
     When the answer changes, the other branch is halted first. A condition that is itself RUNNING leaves the branch as
-    it is; one that is an action interrupts it (see reactive.py).
+    it is; one that is an action interrupts it (see control.py).
     """
     ticks, halts = split_children(children)
     state = instance.state

@@ -30,7 +30,7 @@ def whenever(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
     completes. If it fails, the whole fails; else the work goes on. The condition must have been false before it counts
     again, which it never does with the port once="true"; one that is not known is neither. The whole ends with the
     status of the work. A condition that is RUNNING counts as false; one that is an action suspends what runs before it
-    starts (see reactive.py).
+    starts (see control.py).
     """
     ticks, halts = split_children(children)
     state = instance.state

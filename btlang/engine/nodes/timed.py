@@ -119,9 +119,7 @@ def _time_of_day(value: Any) -> float:
 
 
 def delay(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
-    """Return RUNNING until delay_msec have passed, then run its child; a SKIPPED child is ticked again without a
-    delay.
-    """
+    """Return RUNNING until delay_msec have passed, then run its child. A SKIPPED child is ticked again at once."""
     [(child, halt_child)] = children
     msec = instance.number("delay_msec")
     stopwatch = Stopwatch(instance.state.clock)

@@ -97,9 +97,7 @@ def find_name_uses(code: str) -> dict[str, set[str]]:
 
 
 def find_script_names(code: str) -> dict[str, set[str]]:
-    """Return READS, SETS or both by name, enums too, in the order of the code. Raises ScriptError if it is no
-    script.
-    """
+    """Return READS, SETS or both by name, enums too, in the order of the code. Raises ScriptError for other texts."""
     found: dict[str, set[str]] = {}
     tokens = Tokens(code)
     while tokens.kind != "end":

@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterable, Iterator
 from hashlib import sha256
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.frontends.btcpp.fragments import Notes, fragment
 from btlang.frontends.btcpp.models import ModelReader
 from btlang.frontends.btcpp.origin import Element, XmlOrigin

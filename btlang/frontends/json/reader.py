@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import re
 
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.text.json_text import NestedTooDeep, load_json
 from btlang.text.source import Source, Span
 from btlang.tree.model import NodeModel, PortModel

@@ -6,8 +6,7 @@ import os
 from collections.abc import Callable, Iterable, Mapping
 from importlib import import_module
 
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.diagnostics.reading import MOST_DEEP, TOO_DEEP, included_path, read_included, real_path
 from btlang.frontends.mission.grouping.grouping import Grouped, group
 from btlang.frontends.mission.parsers.build import Builder

@@ -24,7 +24,7 @@ _IN_XML = re.compile(r"(?i)<!--\s*allow\s*:([^<>]*)-->")
 _NAME = r"[^,\s](?:[^,]*[^,\s])?"
 
 
-def silence(compilation: Compilation) -> Iterator[Diagnostic]:
+def apply_allow(compilation: Compilation) -> Iterator[Diagnostic]:
     """Leaves out the warnings that a comment silences. BT056 for names in such comments that no warning has."""
     source, vocabulary = compilation.mission.span.source, compilation.vocabulary
     if "#" not in source.text or not re.search(_ALLOW, source.text):
@@ -69,8 +69,8 @@ def _named(words: Words) -> Iterator[tuple[Span, Span, str]]:
             yield comment, Span(comment.source, start, start + len(name[0])), code
 
 
-def silence_in_xml(compilation: Compilation) -> Iterable[Diagnostic]:
-    """The same for a tree from XML, without BT056."""
+def apply_allow_in_xml(compilation: Compilation) -> Iterable[Diagnostic]:
+    """Silence the warnings about a tree from XML, without BT056."""
     if not compilation.is_text and any(warning.span.source.text[:1] == "<" for warning in compilation.warnings):
         compilation.warnings = not_allowed(compilation.warnings)
     return ()
@@ -91,7 +91,7 @@ def not_allowed(problems: Iterable[Diagnostic]) -> list[Diagnostic]:
 
 
 def _scope(comment: Span, words: Words, vocabulary: Lexicon) -> tuple[int, int]:
-    """The characters that a comment counts for."""
+    """Return the characters that a comment counts for."""
     source = words.source
     lines = words.lines
     own = bisect(lines, comment.start, key=lambda line: words.starts[line.first]) - 1

@@ -1,4 +1,4 @@
-"""BT068: conditions that are asked only once, where people expect the robot to keep an eye on them.
+"""Lint BT068: conditions that are asked only once, when people expect the robot to keep an eye on them.
 
 `When C, A` as a whole statement, and `stop when C`, which can stop nothing: the commands before it have ended. The same
 where C is about a journey that is over: `bring the cup to Bob. If he isn't there, ...`.
@@ -25,7 +25,7 @@ _QUOTED_ENDS = ('."', '!"', '?"')
 _ON_THE_WAY, _BUMPED = ("SomeoneInTheWay", "SomethingInTheWay"), "Bumped"
 
 
-def asked_once(compilation: Compilation) -> Iterator[Diagnostic]:
+def find_asked_once(compilation: Compilation) -> Iterator[Diagnostic]:
     """Among the statements of the mission, of definitions and of blocks."""
     vocabulary = compilation.vocabulary
     for body in ast.bodies(compilation.mission):
@@ -46,7 +46,7 @@ def asked_once(compilation: Compilation) -> Iterator[Diagnostic]:
 
 
 def _sentence_before(items: Sequence[ast.Ast], at: int) -> Sequence[ast.Ast]:
-    """The items before one, as far back as no sentence ends between them."""
+    """Return the items before one, as far back as no sentence ends between them."""
     first = max(at - 1, 0)
     while first > 0:
         before = items[first - 1].span
@@ -57,7 +57,7 @@ def _sentence_before(items: Sequence[ast.Ast], at: int) -> Sequence[ast.Ast]:
 
 
 def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> Iterator[Diagnostic]:
-    """A condition that decides about the journey before it, or watches what happens on it."""
+    """Report a condition that decides about the journey before it, or watches what happens on it."""
     asked = node.condition.condition if isinstance(node.condition, ast.Not) else node.condition
     if not isinstance(asked, ast.Phrase):
         return
@@ -113,7 +113,7 @@ def _is_event(condition: ast.Ast, vocabulary: Lexicon) -> bool:
 
 
 def _named(phrase: ast.Phrase) -> set[str]:
-    """The things that a phrase is about: their names, and the values that they are chosen into."""
+    """Return the names that a phrase is about, and the values that they are chosen into."""
     types = {slot.name: slot.type for slot in phrase.entry.slots}
     found: set[str] = set()
     for name, text in phrase.arguments:

@@ -14,7 +14,7 @@ from starlette.routing import BaseRoute, Route, WebSocketRoute
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocket
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.editing.words import Words
 from btlang.server.accounts.accounts import LONGEST, NEEDED, Accounts, Identity
 from btlang.server.fleet.fleet import Fleet

@@ -14,8 +14,7 @@ from starlette.routing import BaseRoute
 
 from btlang.backends.files import write_file
 from btlang.backends.targets import target_of
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.diagnostics.reading import MOST_DEEP, has_mark, read_included, read_source, unwritable
 from btlang.editing.onto import write_onto
 from btlang.editing.words import Words
@@ -30,7 +29,7 @@ from btlang.task.commands.answers import differences
 from btlang.task.commands.checks import refusal_error
 from btlang.task.messages import Answer
 from btlang.task.store.records import is_whole
-from btlang.text.escaping import one_line
+from btlang.text.formatting import one_line
 from btlang.text.output import show
 from btlang.text.source import Source, Span
 from btlang.text.words import split

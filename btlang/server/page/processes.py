@@ -14,7 +14,7 @@ from functools import partial
 from weakref import WeakValueDictionary
 
 from btlang.api import Mission, format_mission
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.editing.changes import Change, changed
 from btlang.editing.completion import complete
 from btlang.editing.document import document, text_messages
@@ -31,8 +31,7 @@ from btlang.server.http.access import AccessError, text_in
 from btlang.support.gc_pause import gc_paused
 from btlang.support.record import Record
 from btlang.testing.trial import results_of
-from btlang.text.source import Source
-from btlang.text.utf16 import Units
+from btlang.text.source import Source, Utf16Units
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -44,15 +43,15 @@ def in_units(answer: dict[str, Any], text: str) -> dict[str, Any]:
 
     Where it has `changes`, its own `start` and `end` are in the text with them.
     """
-    units = Units(text)
+    units = Utf16Units(text)
     made: dict[str, Any] = _convert(answer, units) if units.wide else answer
     if "changes" in answer and "start" in answer:
-        after = Units(changed(text, [Change(**change) for change in answer["changes"]]))
+        after = Utf16Units(changed(text, [Change(**change) for change in answer["changes"]]))
         made = {**made, "start": after.unit(answer["start"]), "end": after.unit(answer["end"])}
     return made
 
 
-def _convert(part: Any, units: Units) -> Any:
+def _convert(part: Any, units: Utf16Units) -> Any:
     if isinstance(part, Mapping):
         return {
             key: _place(value, units) if key in ("start", "end", "of") else _convert(value, units)
@@ -61,7 +60,7 @@ def _convert(part: Any, units: Units) -> Any:
     return [_convert(each, units) for each in part] if isinstance(part, list | tuple) else part
 
 
-def _place(value: Any, units: Units) -> Any:
+def _place(value: Any, units: Utf16Units) -> Any:
     if isinstance(value, int):
         return units.unit(value)
     return [units.unit(each) for each in value] if value is not None else None
@@ -192,7 +191,7 @@ def arguments_of(kind: str, data: Mapping[str, Any], text: str) -> dict[str, Any
     given = {name: data[name] for name in asked.takes if data.get(name) is not None}
     given |= {name: data.get(name) for name in asked.needs}
     if "at" in given:
-        units = Units(text)
+        units = Utf16Units(text)
         if type(given["at"]) is not int or not 0 <= given["at"] <= units.length:
             raise AccessError(400, "'at' must be a place in the text, a whole number of UTF-16 units.")
         given["at"] = units.character(given["at"])

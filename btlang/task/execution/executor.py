@@ -9,7 +9,7 @@ from collections.abc import Callable
 from functools import partial
 
 from btlang.api import Mission, value_key
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.engine.leaves.leaf import describe_exception
 from btlang.engine.status import RUNNING
 from btlang.run.outcome import EMERGENCY, SUSPENDED

@@ -1,4 +1,4 @@
-"""Changes of a text that its diagnostics offer: the corrections that are certain."""
+"""Fixes that diagnostics offer, applied to their texts: only the corrections that are certain."""
 
 from __future__ import annotations
 
@@ -16,30 +16,30 @@ if TYPE_CHECKING:
 _ROUNDS = 20  # a correction may show the next mistake, but no text has that many behind each other
 
 
-def _certain(problems: Iterable[Diagnostic]) -> list[Change]:
-    """The corrections that leave no choice."""
+def _find_certain(problems: Iterable[Diagnostic]) -> list[Change]:
+    """Return the corrections that leave no choice."""
     return [problem.fix for problem in problems if problem.fix is not None and not problem.readings]
 
 
-def mended(source: Source, problems_of: Callable[[Source], Iterable[Diagnostic]]) -> tuple[Source, int]:
-    """The source with all such changes, and their number; included texts stay as they are."""
+def apply_fixes(source: Source, problems_of: Callable[[Source], Iterable[Diagnostic]]) -> tuple[Source, int]:
+    """Return the source with all such changes, and their number. Included texts stay as they are."""
     count = 0
     for _ in range(_ROUNDS):
-        source, made = _applied(source, _certain(problems_of(source)))
+        source, made = _apply(source, _find_certain(problems_of(source)))
         if not made:
             break
         count += made
     return source, count
 
 
-def mended_together(
+def apply_fixes_together(
     sources: Sequence[Source], problems_of: Callable[[Sequence[Source]], Iterable[Diagnostic]]
 ) -> list[tuple[Source, int]]:
-    """Sources that are read together, with all corrections that leave no choice, and the number of each."""
+    """Return sources that are read together, with all corrections that leave no choice, and the number of each."""
     counts = [0] * len(sources)
     for _ in range(_ROUNDS):
-        changes = _certain(problems_of(sources))
-        done = [_applied(source, changes) for source in sources]
+        changes = _find_certain(problems_of(sources))
+        done = [_apply(source, changes) for source in sources]
         if not any(made for _, made in done):
             break
         sources = [source for source, _ in done]
@@ -47,8 +47,8 @@ def mended_together(
     return list(zip(sources, counts, strict=True))
 
 
-def _applied(source: Source, changes: Iterable[Change]) -> tuple[Source, int]:
-    """The source with the changes that are its own, and their number."""
+def _apply(source: Source, changes: Iterable[Change]) -> tuple[Source, int]:
+    """Return the source with the changes that are its own, and their number."""
     made, text, before = 0, source.text, len(source.text) + 1
     own = [change for change in changes if change[0].source.name == source.name]
     for span, words in sorted(own, key=lambda change: (change[0].start, change[0].end), reverse=True):

@@ -1,30 +1,107 @@
-"""The places where a sentence can be read in another way, each with both readings as syntax trees.
-
-The other reading is the one that brackets in the text would give. It is made of the parts of the tree, not by reading
-the text once more: parts keep what their names and pronouns mean, and a long mission stays quick.
-"""
+"""Other readings: the places where a sentence can be read in another way, each with both readings as syntax trees."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property, partial
 from itertools import pairwise
 
-from btlang.passes.lint.gaps import Gaps, balanced
 from btlang.support.record import Record
 from btlang.text.source import Span
 from btlang.tree import ast
+from btlang.tree.ast import Ast
 from btlang.vocabulary.lexicon import Lexicon
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+
+_LINE_END = re.compile(r"[\n;]|[.!?](?!\w)")
+_WORD = re.compile(r"\w")
+_QUOTED = re.compile(r'"[^"\n]*"')
+
+
+class Gaps:
+    """The gaps of one chain, whose parts are given in the order of the text."""
+
+    def __init__(self, items: Sequence[Ast], vocabulary: Lexicon) -> None:
+        self.items = items
+        self._clauses = vocabulary.roles["otherwise"]
+        self._openers = tuple(f" {word}" for role in ("either", "both") for word in vocabulary.roles[role])
+
+    def text(self, at: int) -> str:
+        """Return the text between a part and the one behind it."""
+        left, right = self.items[at].span, self.items[at + 1].span
+        return left.source.text[left.end : right.start]
+
+    def is_open(self, at: int) -> bool:
+        """Whether only a connective is in a gap: no comma, line end, or word that begins a clause or list."""
+        gap = self.text(at)
+        return "," not in gap and not self._ends(gap) and not gap.rstrip().lower().endswith(self._openers)
+
+    def is_alone(self, at: int) -> bool:
+        """Whether a part is a separate statement."""
+        before, behind = (
+            at == 0 or self._ends(self.text(at - 1)),
+            at == len(self.items) - 1 or self._ends(self.text(at)),
+        )
+        return before and behind
+
+    def run(self, at: int) -> tuple[int, int]:
+        """Return the first and the last part that hang together around a gap. A comma in a list doesn't separate
+        them.
+        """
+        first, last = at, at + 1
+        while first > 0 and not self._parts(first - 1):
+            first -= 1
+        while last + 1 < len(self.items) and not self._parts(last):
+            last += 1
+        return first, last
+
+    def comma(self, at: int) -> Span:
+        """Return the place, without any character, for a comma before the connective."""
+        gap, left = self.text(at), self.items[at].span
+        word = _WORD.search(gap)
+        place = left.end + len(gap[: word.start() if word else None].rstrip())
+        return Span(left.source, place, place)
+
+    def _ends(self, gap: str) -> bool:
+        words = " ".join(gap.strip(" ,()").lower().split())
+        return bool(_LINE_END.search(gap)) or any(
+            words == clause or words.startswith(clause + " ") for clause in self._clauses
+        )
+
+    def _parts(self, at: int) -> bool:
+        """Whether a comma beside a connective separates the parts; not the last comma of a list: `A, B, and C`."""
+        gap = self.text(at)
+        if self._ends(gap) or "," not in gap or not _WORD.search(gap):
+            return self._ends(gap)
+        return at == 0 or "," not in self.text(at - 1) or bool(_WORD.search(self.text(at - 1)))
+
+
+def balance_brackets(span: Span) -> Span:
+    """Widen the span to the brackets around its ends that are opened or closed in it."""
+    text, start, end = span.source.text, span.start, span.end
+    depth = lowest = 0
+    for bracket in re.findall(r"[()]", _QUOTED.sub("", text[start:end])):
+        depth += 1 if bracket == "(" else -1
+        lowest = min(lowest, depth)
+    for _ in range(-lowest):
+        start = text.rindex("(", 0, start)
+    for _ in range(depth - lowest):
+        end = text.index(")", end) + 1
+    return Span(span.source, start, end)
+
+
 MIXED, POSTFIX, LIST, NEGATED, AFTER = "mixed", "postfix", "list", "negated", "after"
 
 
 class Readings(Record):
-    """`span` is what both readings are about; `fix` is a change of the text that leaves only the one that was taken."""
+    """Two readings. `span` is what they are about; `fix` is a change of the text that leaves only the one that was
+    taken.
+    """
 
     taken: ast.Ast
     other: ast.Ast
@@ -33,14 +110,16 @@ class Readings(Record):
 
 
 class Attachment(Record):
-    """A place of one of the kinds above. Its readings are made when they are asked for: most are never reported."""
+    """A place with two readings. They are made when they are asked for: most are never reported."""
 
     kind: str
     start: int
     readings: Callable[[], Readings]
 
 
-def in_chain(chain: ast.Chain, items: Sequence[ast.Ast], is_part: bool, vocabulary: Lexicon) -> Iterator[Attachment]:
+def find_in_chain(
+    chain: ast.Chain, items: Sequence[ast.Ast], is_part: bool, vocabulary: Lexicon
+) -> Iterator[Attachment]:
     """Those between the parts of a chain; `is_part`: it is itself a part of another one, without brackets.
 
     The chain is no list of values; `items` are its parts in the order of the text.
@@ -76,7 +155,7 @@ def in_chain(chain: ast.Chain, items: Sequence[ast.Ast], is_part: bool, vocabula
 
 
 def _names_its_command(item: ast.Ast) -> bool:
-    """`A and find the cup. If you can't find it, B`: of all that stands before the stop B is about one command."""
+    """Whether `B` in `A and find the cup. If you can't find it, B` is about one of the commands before the stop."""
     source, parts = item.span.source.text, sorted(ast.parts(item), key=lambda part: part.span.start)
     return len(parts) > 1 and "." in source[parts[0].span.end : parts[1].span.start]
 
@@ -84,7 +163,7 @@ def _names_its_command(item: ast.Ast) -> bool:
 def _behind_after(
     chain: ast.Chain, items: Sequence[ast.Ast], is_part: bool, vocabulary: Lexicon
 ) -> Iterator[Attachment]:
-    """`A then B after C`, where C might come before both."""
+    """Find `A then B after C`, in which C could come before both."""
     spoken = {id(item): at for at, item in enumerate(chain.items)}
     gaps = Gaps(items, vocabulary)
     for at, (before, left, right) in enumerate(zip(items, items[1:], items[2:], strict=False)):
@@ -105,11 +184,11 @@ def _negated(chain: ast.Chain) -> Readings:
     """`not C or D`: not (C or D)."""
     first: Any = chain.items[0]
     inner = ast.Chain("any", (first.condition, *chain.items[1:]), True, chain.span)
-    return Readings(chain, ast.Not(inner, chain.span), chain.span, bracketed(first.span))
+    return Readings(chain, ast.Not(inner, chain.span), chain.span, add_brackets(first.span))
 
 
 class _Place:
-    """A gap in a chain, in what hangs together around it."""
+    """A gap in a chain, in the run of parts around it."""
 
     def __init__(self, chain: ast.Chain, gaps: Gaps, at: int, is_part: bool) -> None:
         self.chain, self.gaps, self.at, self.is_part = chain, gaps, at, is_part
@@ -126,19 +205,19 @@ class _Place:
         return self.gaps.run(self.at)[1]
 
     def mixed_right(self, right: Any) -> Readings:
-        """`A then B and C`: (A then B) and C."""
-        first = in_order(right.items)[0]
+        """Read `A then B and C` as (A then B) and C."""
+        first = sort_by_place(right.items)[0]
         group = self._joined(self.first, self.at + 1, {self.at + 1: first})
-        return self._readings(self.first, self.at + 1, with_part(right, first, group), self.at + 1)
+        return self._readings(self.first, self.at + 1, replace_part(right, first, group), self.at + 1)
 
     def mixed_left(self, left: Any) -> Readings:
-        """`A and B then C`: A and (B then C)."""
-        last = in_order(left.items)[-1]
+        """Read `A and B then C` as A and (B then C)."""
+        last = sort_by_place(left.items)[-1]
         group = self._joined(self.at, self.last, {self.at: last})
-        return self._readings(self.at, self.last, with_part(left, last, group), self.at)
+        return self._readings(self.at, self.last, replace_part(left, last, group), self.at)
 
     def postfix(self, right: Any, wrapped: Sequence[Any]) -> Readings:
-        """`A then B 3 times`: (A then B) 3 times."""
+        """Read `A then B 3 times` as (A then B) 3 times."""
         group: ast.Ast = self._joined(self.first, self.at + 1, {self.at + 1: wrapped[-1].body})
         for form in reversed(wrapped):
             group = form.replace(body=group)
@@ -157,7 +236,7 @@ class _Place:
         return self._readings(self.first, self.at + 1, other, self.at + 1)
 
     def after(self, right: ast.Ast) -> Readings:
-        """`A then B after C`: (A then B) after C."""
+        """Read `A then B after C` as (A then B) after C."""
         last = self.at + 1
         group, gone = self._joined(self.first, last, {}), {id(item) for item in self.items[self.first : last + 1]}
         whole = self._joined(self.first, self.last, {})
@@ -165,10 +244,10 @@ class _Place:
         items = tuple(item for pair in behind for item in pair)
         span = Span(right.span.source, self.items[self.first].span.start, self.items[self.last].span.end)
         other = ast.Chain("sequence", items, True, span)
-        return Readings(whole, other, balanced(span), (self.gaps.comma(self.at), ","))
+        return Readings(whole, other, balance_brackets(span), (self.gaps.comma(self.at), ","))
 
     def _joined(self, first: int, last: int, changed: dict[int, ast.Ast]) -> ast.Ast:
-        """These parts as a chain of their own, some of them changed."""
+        """Join these parts as a separate chain, some of them changed."""
         spoken: Sequence[int] = range(first, last + 1)
         if self.items is not self.chain.items:
             order = {id(self.items[at]): at for at in spoken}
@@ -184,9 +263,9 @@ class _Place:
         items = [other if item is self.items[place] else item for item in ast.parts(whole) if id(item) not in gone]
         changed = ast.Chain(self.chain.operator, tuple(items), True, self.chain.span) if len(items) > 1 else other
         commas = self.chain.operator == "sequence" or not self.is_part
-        fix = (self.gaps.comma(self.at), ",") if commas else bracketed(part)
+        fix = (self.gaps.comma(self.at), ",") if commas else add_brackets(part)
         span = Span(part.source, self.items[self.first].span.start, self.items[self.last].span.end)
-        return Readings(whole, changed, balanced(span), fix)
+        return Readings(whole, changed, balance_brackets(span), fix)
 
 
 def is_list(node: ast.Ast) -> bool:
@@ -206,7 +285,8 @@ def _is_open(node: ast.Ast) -> bool:
 
 
 def _after_its_body(node: ast.Ast) -> list[Any]:
-    """The forms that stand behind one command, the outermost first; none where brackets decide what they are about.
+    """List the forms that stand behind one command, the outermost first; none if brackets decide what they are
+    about.
 
     A form without words of its own, such as a round, isn't one of them.
     """
@@ -218,7 +298,7 @@ def _after_its_body(node: ast.Ast) -> list[Any]:
     return [] if isinstance(node, ast.Chain) and node.bracketed and not is_list(node) else forms
 
 
-def in_order(items: Sequence[ast.Ast]) -> Sequence[ast.Ast]:
+def sort_by_place(items: Sequence[ast.Ast]) -> Sequence[ast.Ast]:
     """In the order of the text: `A after B` holds its parts the other way round."""
     starts = [item.span.start for item in items]
     return items if starts == sorted(starts) else sorted(items, key=lambda item: item.span.start)
@@ -233,12 +313,12 @@ def is_in_brackets(span: Span) -> bool:
     return text[start - 1 : start] == "(" and text[end : end + 1] == ")"
 
 
-def bracketed(span: Span) -> tuple[Span, str]:
+def add_brackets(span: Span) -> tuple[Span, str]:
     return span, f"({span.text})"
 
 
-def with_part(outer: Any, part: ast.Ast, changed: ast.Ast) -> ast.Ast:
-    """A node with another part in the place of one."""
+def replace_part(outer: Any, part: ast.Ast, changed: ast.Ast) -> ast.Ast:
+    """Return a node with one of its parts replaced."""
     if isinstance(outer, ast.Chain):
         made: ast.Ast = outer.replace(items=tuple(changed if item is part else item for item in outer.items))
     else:
