@@ -9,8 +9,7 @@ from collections.abc import AsyncIterator, Callable, Collection, Generator, Iter
 from functools import cache, partial
 from importlib import import_module
 
-from btlang.backends.engine import bind_leaf
-from btlang.backends.touching import awaited
+from btlang.backends.engine import bind_leaf, find_awaited
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.clock import Clock, LeafTimer
@@ -474,7 +473,7 @@ class Run:
         for sink in sinks:
             self.bus.add(sink)
         connection.begin(self.bus)
-        bind = cache(partial(_bind, mission.vocabulary, connection, awaited(mission.tree)))
+        bind = cache(partial(_bind, mission.vocabulary, connection, find_awaited(mission.tree)))
         try:
             return trace_engine(
                 mission.tree, bind, bus=self.bus, services={"robot": connection.robot}, proxies={"robot": RobotProxy},

@@ -1,4 +1,4 @@
-"""A mission as it was read: each statement as written, in English whose brackets show the reading, and as a tree."""
+"""Explanations of a mission: each statement as written, in English whose brackets show the reading, and as a tree."""
 
 from __future__ import annotations
 
@@ -7,9 +7,8 @@ import textwrap
 from bisect import bisect_right
 from collections.abc import Callable, Iterator
 
-from btlang.printer.blocks import lines_of
-from btlang.printer.mission import printer_of
-from btlang.printer.pieces import is_longer
+from btlang.printer.fragments import is_longer
+from btlang.printer.mission import lines_of, printer_of
 from btlang.printer.printer import Printer
 from btlang.printer.sentence import statements
 from btlang.support.record import Record
@@ -31,7 +30,7 @@ _NO_LIMIT = 10_000
 
 
 class Statement(Record):
-    """What one sentence became: its place in the text, its nodes, and what they were lowered to."""
+    """A sentence and what it became: its place in the text, its nodes, and what they were lowered to."""
 
     at: int
     items: tuple[ast.Ast, ...]
@@ -40,7 +39,7 @@ class Statement(Record):
 
 
 class Understood(Record):
-    """How one sentence was understood: its number, and English whose brackets show it."""
+    """A sentence as it was understood: its number, and English whose brackets show it."""
 
     number: int
     english: str
@@ -91,7 +90,7 @@ def _definitions(mission: ast.Program, tree: Tree, sentences: Sentences) -> Iter
 
 
 def _commands(body: ast.Ast | None, root: Node, sentences: Sentences) -> Iterator[Statement]:
-    """The commands of a mission by the sentence in which they stand."""
+    """Yield the commands of a mission by the sentence in which they stand."""
     if body is None:
         return
     items, joined = [item for item, _ in statements(body)], next(statements(body))[1]
@@ -132,7 +131,7 @@ def _reading(statement: Statement, printer: Printer, width: int) -> Iterator[str
 
 
 def _pruned(root: Node, most: int) -> Node:
-    """The tree without what is deeper than any line can show: drawing that costs the square of its depth."""
+    """Return the tree without what is deeper than any line can show: drawing that costs the square of its depth."""
 
     def parts(item: tuple[Node, int]) -> list[tuple[Node, int]]:
         node, depth = item
@@ -152,7 +151,7 @@ def _cut(line: str, width: int) -> str:
 
 
 class Sentences:
-    """The sentences of a text: what stands between line ends, `;` and full stops outside brackets and blocks."""
+    """The sentences of a text: what is between line ends, `;` and full stops outside brackets and blocks."""
 
     def __init__(self, source: Source, vocabulary: Lexicon) -> None:
         self._words: Words = split(source, vocabulary.orthography)
@@ -163,7 +162,7 @@ class Sentences:
                 self._add(line.first, line.last)
 
     def _add(self, first: int, last: int) -> None:
-        """The sentences of a line; of one with a block, its first line."""
+        """Add the sentences of a line; of one with a block, its first line."""
         words, depth = self._words, 0
         for at in range(first, last + 1):
             word = words.words[at]
@@ -177,17 +176,17 @@ class Sentences:
         return len(self._sentences)
 
     def number(self, offset: int) -> int:
-        """The sentence that a character belongs to, counted from 0."""
+        """Return the sentence that a character belongs to, counted from 0."""
         return bisect_right(self._sentences, (offset, math.inf, 0)) - 1
 
     def reach(self, number: int) -> tuple[int, int]:
-        """The characters of a sentence, with the block below it."""
+        """Return the characters of a sentence, with the block below it."""
         text = self._words.source.text
         end = self._sentences[number + 1][0] if number + 1 < len(self._sentences) else len(text)
         return self._words.begin(self._sentences[number][1]), end
 
     def written(self, number: int) -> tuple[int, str]:
-        """The line (from 1) and the text of a sentence."""
+        """Return the line (from 1) and the text of a sentence."""
         words, (_, first, last) = self._words, self._sentences[number]
         start = words.begin(first)
         end = words.ends[last if words.words[last] == END_OF_STATEMENT else last - 1]

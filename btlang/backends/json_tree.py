@@ -13,8 +13,7 @@ from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.frontends.json.reader import FORMAT, PORT_KEYS
 from btlang.printer.phrase import phrase_of
 from btlang.text.source import NOWHERE
-from btlang.tree.model import NodeModel
-from btlang.tree.node import Node, Tree
+from btlang.tree.node import Node, NodeModel, Tree
 from btlang.vocabulary.lexicon import Lexicon
 
 TYPE_CHECKING = False
@@ -54,7 +53,7 @@ def to_json(tree: Tree, vocabulary: Lexicon) -> str:
 
 
 def _items(root: Node, vocabulary: Lexicon) -> list[dict[str, Any]]:
-    """The nodes in preorder; what is empty is left out, but for the id."""
+    """List the nodes in preorder; what is empty is left out, but for the id."""
     items: list[dict[str, Any]] = []
     stack: list[tuple[Node, int]] = [(root, -1)]
     while stack:

@@ -1,4 +1,4 @@
-"""The words for a node that has none yet: what people could say, made of its id and of the names of its ports."""
+"""Wording for a node that has no words yet: what people could say, made of its id and the names of its ports."""
 
 from __future__ import annotations
 
@@ -67,7 +67,9 @@ def phrases(node_id: str, ports: SpokenPorts, articles: Collection[str], *, is_c
 
 
 def _state(words: list[str]) -> tuple[list[str], list[str]] | None:
-    """What a condition is about, and what is said of it: `IsDoorOpen` is `door`, `is open`. None for anything else."""
+    """Return what a condition is about, and what is said about it: `IsDoorOpen` is `door`, `is open`. None for anything
+    else.
+    """
     if words and words[0] in _CHECKING:
         words = words[1:]
     if len(words) < 2:
@@ -86,7 +88,9 @@ def _state(words: list[str]) -> tuple[list[str], list[str]] | None:
 
 
 def _slots(words: list[str], ports: SpokenPorts, articles: Collection[str]) -> Iterator[str]:
-    """The slots behind words. One needs no name: the one that the words end with, or a text that is the only one."""
+    """Yield the slots behind words. One needs no name: the one that the words end with, or a text that is the only
+    one.
+    """
     bare = _named_last(words, ports.required)
     if not bare and len(ports.required) == 1 and ports.required[0] in ports.texts:
         [bare] = ports.required
@@ -102,12 +106,12 @@ def _slots(words: list[str], ports: SpokenPorts, articles: Collection[str]) -> I
 
 
 def _named_last(words: list[str], ports: Sequence[str]) -> str:
-    """The port whose name the words end with, "" if there is none."""
+    """Return the port whose name the words end with, "" if there is none."""
     return next((port for port in ports if words[-len(id_words(port)) or len(words) :] == id_words(port)), "")
 
 
 def _label(port: str, words: list[str], articles: Collection[str]) -> str:
-    """The words of a port, without those of the node that they begin with."""
+    """Return the words of a port, without those of the node that they begin with."""
     own = id_words(port)
     if own[: len(words)] == words and own[len(words) :]:
         own = own[len(words) :]

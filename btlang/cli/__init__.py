@@ -8,7 +8,7 @@ import sys
 from importlib import import_module
 
 from btlang.diagnostics.diagnostic import MissionError
-from btlang.diagnostics.reading import os_error_reason
+from btlang.diagnostics.files import os_error_reason
 from btlang.text.output import show
 
 TYPE_CHECKING = False
@@ -32,10 +32,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         from btlang.cli.missions import add_robot_files
         from btlang.cli.parser import parse_arguments
         from btlang.cli.verbs import VERBS
-        from btlang.diagnostics.report import Report
+        from btlang.diagnostics.report import DiagnosticReport
 
         options = parse_arguments(arguments)
-        options.report = Report(options.format, on_output=options.verb in ("check", "world"))
+        options.report = DiagnosticReport(options.format, on_output=options.verb in ("check", "world"))
         try:
             add_robot_files(options)
             code = _run_handler(options, VERBS[options.verb].handler)

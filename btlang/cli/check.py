@@ -10,7 +10,7 @@ from contextlib import contextmanager
 
 from btlang.cli.missions import hint_at_text, mission_of, parse_mission, read_typed
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError
-from btlang.diagnostics.reading import has_mark, read_source
+from btlang.diagnostics.files import has_mark, read_source
 from btlang.frontends.table import frontend_of
 from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.support.test_files import is_test_file
@@ -71,7 +71,7 @@ class _FileCheck:
                 self._put(source, count)
 
     def _put(self, source: Source, count: int) -> None:
-        from btlang.backends.files import replace_text
+        from btlang.diagnostics.files import replace_text
 
         aside = sys.stderr if self._options.report.is_for_programs else sys.stdout
         if self._options.text is not None or source.name == "-":

@@ -8,7 +8,7 @@ import textwrap
 from collections.abc import Iterable, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
-from btlang.diagnostics.reading import unwritable
+from btlang.diagnostics.files import unwritable
 from btlang.support.record import Record
 from btlang.text.source import Source, Span
 from btlang.vocabulary.shipped import shipped

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from btlang.components.checking import check_robot, describe_apart, levels
 from btlang.components.component import ComponentError
 from btlang.diagnostics.diagnostic import MissionError
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.files import read_source
 from btlang.robots.bodies.body import Body, ComponentPart
 from btlang.robots.bodies.body_file import BodyError, read_body
 from btlang.robots.bodies.urdf import urdf

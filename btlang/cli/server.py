@@ -13,7 +13,7 @@ from contextlib import suppress
 from ipaddress import ip_address
 
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
-from btlang.diagnostics.reading import os_error_reason
+from btlang.diagnostics.files import os_error_reason
 from btlang.robots.files import socket_folder
 from btlang.support.user_dirs import user_dir
 from btlang.task.commands.companion import require_server

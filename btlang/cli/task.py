@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 from btlang.cli.parser import check_act, check_count
 from btlang.cli.verbs import VERBS
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.files import read_source
 from btlang.task import messages
 from btlang.task.commands.client import RobotClient
 from btlang.task.messages import Answer, Command, wrong

@@ -11,9 +11,8 @@ from contextlib import suppress
 from functools import cache, partial
 from xml.etree import ElementTree
 
-from btlang.backends.files import write_file
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.files import read_source, write_file
 from btlang.support.record import Record
 from btlang.support.test_files import ENDING
 from btlang.testing.observations import measure_coverage

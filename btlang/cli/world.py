@@ -6,9 +6,8 @@ import os
 import sys
 from shutil import get_terminal_size
 
-from btlang.backends.files import write_file
 from btlang.diagnostics.diagnostic import MissionError
-from btlang.diagnostics.reading import read_source, unwritable
+from btlang.diagnostics.files import read_source, unwritable, write_file
 from btlang.maps.summary import summarize
 from btlang.robots.registry import body_of
 from btlang.robots.worlds.world_file import read_world

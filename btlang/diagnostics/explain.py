@@ -12,7 +12,7 @@ from collections.abc import Iterable
 
 from btlang.diagnostics.codes import CODES, NAMES, PLAIN
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
-from btlang.text.formatting import Table, joined
+from btlang.text.formatting import TextTable, joined
 from btlang.text.source import Source, Span
 
 PAGES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "pages")
@@ -46,9 +46,9 @@ def pointer(codes: Iterable[str]) -> str:
     return f"For more, run: btc explain CODE, where CODE is {joined(known, 'or')}"
 
 
-def all_codes() -> Table:
+def all_codes() -> TextTable:
     """Each code with the title of its page."""
-    return Table(tuple((code, title_of(code)) for code in sorted(CODES)))
+    return TextTable(tuple((code, title_of(code)) for code in sorted(CODES)))
 
 
 def title_of(code: str) -> str:

@@ -17,7 +17,7 @@ FORMATS = ("text", "json")
 CHECK_FORMATS = (*FORMATS, "sarif", "github")
 
 
-class Report:
+class DiagnosticReport:
     """The report of one command. Text is printed as it is added, a document by `close`. After text, `close` points to
     pages.
 

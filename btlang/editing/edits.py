@@ -1,4 +1,4 @@
-"""Changes of a mission by its tree: what somebody does to nodes, done to the English that says them.
+"""Edits of a mission by its tree: what somebody does to nodes is done to the English that says them.
 
 The English afterwards compiles to exactly the tree that was meant, only what was touched is rewritten, and all
 comments stay. Which form says a node is looked up in the syntax (btlang.editing.syntax).
@@ -9,12 +9,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
-from btlang.editing.changes import Change, changed
-from btlang.editing.forms import FORMS, amount_of
-from btlang.editing.paths import at_path, difference, path_of, place_of
-from btlang.editing.syntax import Step, Syntax, Unplaced, are_equal, joined
-from btlang.editing.values import valued
-from btlang.editing.words import Words
+from btlang.editing.changes import Change, apply_changes, find_at_path, find_difference, find_path, find_place
+from btlang.editing.palette import FORMS, amount_of
+from btlang.editing.syntax import ChangeStep, Syntax, Unplaced, are_equal, joined
+from btlang.editing.values import find_place_of_value
+from btlang.editing.words import RobotWords
 from btlang.editing.writing import Writer
 from btlang.frontends.mission.reader import read_mission
 from btlang.frontends.table import frontend_of
@@ -29,7 +28,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from btlang.editing.paths import Path
+    from btlang.editing.changes import Path
 
 
 class Edit(Record):
@@ -38,8 +37,8 @@ class Edit(Record):
     - `delete`: it goes, with what only serves it.
     - `insert`: the commands or conditions `words` come `place` ("before", "after", "inside") the node.
     - `copy`, `move`: the node comes `place` the node `to`.
-    - `wrap`: it becomes the body of the `form` (a key of btlang.editing.forms.FORMS), with `words` for what that needs:
-    a condition, a number, a duration or a time.
+    - `wrap`: it becomes the body of the `form` (a key of btlang.editing.palette.FORMS), with `words` for what that
+      needs: a condition, a number, a duration or a time.
     - `unwrap`: the parts of a form or chain take its place, conditions and amounts go.
     - `turn`: a condition, or that of a form, becomes its opposite; the parts of a chain of commands change their order.
     - `value`: its `port` gets the value `words`.
@@ -82,7 +81,7 @@ class Edited(Record):
     end: int
 
 
-def edit(source: Source, words: Words, edit: Edit) -> dict[str, Any]:
+def edit(source: Source, words: RobotWords, edit: Edit) -> dict[str, Any]:
     """Return the `changes` of a mission in English, and `start` and `end` of what they touched, in the text that they
     make.
 
@@ -121,8 +120,8 @@ class Editor:
         read = read_mission(self._source.with_text(text), self._vocabulary).mission
         if not are_equal(compile_mission(read, self._vocabulary), lower_mission(program, self._vocabulary)):
             raise Unplaced("no English says it there")
-        start, end = place_of(focus, Syntax(program, self._vocabulary), read)
-        return Edited(text, difference(self._source.text, text), start, end)
+        start, end = find_place(focus, Syntax(program, self._vocabulary), read)
+        return Edited(text, find_difference(self._source.text, text), start, end)
 
     # -- what is done, as the text and the syntax afterwards, and what of that was touched
 
@@ -156,7 +155,7 @@ class Editor:
         copied = Syntax(program, self._vocabulary)
         if any(id(node) not in copied.slots for node in nodes):  # it holds the copy now
             raise Unplaced("it can't come into itself")
-        paths = [path_of(node, copied) for node in nodes]
+        paths = [find_path(node, copied) for node in nodes]
         text, _ = self._replaced(text, paths, ())
         return text, copied.changed(copied.steps(nodes, ())[-1]), focus
 
@@ -212,7 +211,7 @@ class Editor:
 
     def value(self, wanted: Edit) -> _Done:
         node = self._node(wanted.node)
-        place = valued(node, wanted.port)
+        place = find_place_of_value(node, wanted.port)
         new = place.filled(amount_of(place.kind, wanted.words, self._vocabulary))
         first = self._writer().values(node, place.kind, place.text, wanted.words)
         return self._write(self._syntax.steps((node,), (new,)), new, first)
@@ -228,7 +227,7 @@ class Editor:
         body = joined(nodes, self._operator(nodes[0]))
         defined = ast.Definition(name, (), body, nodes[0].span, nodes[0].span)
         mission = self._syntax.mission
-        step = Step(mission, "definitions", len(mission.definitions), (), (defined,))
+        step = ChangeStep(mission, "definitions", len(mission.definitions), (), (defined,))
         writer, program = self._writer(), self._syntax.changed(step)
         near = self._statement(nodes[0])
         try:
@@ -236,8 +235,8 @@ class Editor:
         except (Unplaced, MissionError):
             change = writer.written([step], program)
         used = ast.Name(name, (), nodes[0].span)
-        paths = [path_of(node, self._syntax) for node in nodes]
-        return *self._replaced(changed(self._source.text, [change]), paths, (used,)), used
+        paths = [find_path(node, self._syntax) for node in nodes]
+        return *self._replaced(apply_changes(self._source.text, [change]), paths, (used,)), used
 
     # -- parts of edits
 
@@ -247,19 +246,19 @@ class Editor:
         """
         source = self._source.with_text(text)
         syntax = Syntax(read_mission(source, self._vocabulary).mission, self._vocabulary)
-        old = [at_path(path, syntax.mission) for path in paths]
+        old = [find_at_path(path, syntax.mission) for path in paths]
         steps = syntax.steps(old, new)
         after = syntax.changed(steps[-1])
         writer = Writer(source, syntax)
         change = writer.written(steps, after, gone=writer.comments_of(old, self._source.text))
-        return changed(text, [change]), after
+        return apply_changes(text, [change]), after
 
     def _operator(self, node: ast.Ast) -> str:
         """Return the operator of the chain that a node is a part of, or would be with others in its place."""
         around = self._syntax.holder(node)
         return around.operator if isinstance(around, ast.Chain) else "sequence"
 
-    def _placed(self, target: ast.Ast, place: str, new: Sequence[ast.Ast]) -> list[Step]:
+    def _placed(self, target: ast.Ast, place: str, new: Sequence[ast.Ast]) -> list[ChangeStep]:
         """Return what comes before, after or inside a node."""
         syntax = self._syntax
         if place == "inside":
@@ -285,14 +284,14 @@ class Editor:
     def _writer(self) -> Writer:
         return Writer(self._source, self._syntax, self._given)
 
-    def _write(self, steps: list[Step], focus: ast.Ast | None, first: Iterable[Change] = ()) -> _Done:
+    def _write(self, steps: list[ChangeStep], focus: ast.Ast | None, first: Iterable[Change] = ()) -> _Done:
         program = self._syntax.changed(steps[-1])
         if program.body is None and self._syntax.mission.body is not None:
             raise Unplaced("a mission needs a command")
         return self._done(self._writer().written(steps, program, first=first), program, focus)
 
     def _done(self, change: Change, program: ast.Program, focus: ast.Ast | None) -> _Done:
-        return changed(self._source.text, [change]), program, focus
+        return apply_changes(self._source.text, [change]), program, focus
 
     def _read(self, words: str, is_condition: bool) -> list[ast.Ast]:
         """Read new commands or a condition, where all names of the mission are known."""

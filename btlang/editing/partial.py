@@ -1,4 +1,4 @@
-"""What is understood of a text that is refused, sentence by sentence, and what may be said for the rest.
+"""Partial reading: what is understood of a refused text, sentence by sentence, and what may be said for the rest.
 
 A language model rewrites what was not understood with it, and shows people how the rest is read.
 """

@@ -1,4 +1,4 @@
-"""Another name for a definition and all its uses, if the mission means the same then."""
+"""Renaming of a definition and all its uses, if the mission means the same then."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from functools import partial
 
 from btlang.api import Mission
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
-from btlang.editing.changes import Change, changed
-from btlang.editing.words import Words
+from btlang.editing.changes import Change, apply_changes
+from btlang.editing.words import RobotWords
 from btlang.frontends.mission.reader import lexed
 from btlang.frontends.mission.tokens.lexer import Lexer
-from btlang.printer.exact import is_one_piece, quoted
+from btlang.printer.exact import is_one_piece, quote
 from btlang.support.record import Record
 from btlang.text.source import Source, Span
 from btlang.tree import ast
@@ -39,7 +39,7 @@ class _Use(Record):
     is_exact: bool
 
 
-def rename(source: Source, at: int, words: Words, name: str | None = None) -> dict[str, Any]:
+def rename(source: Source, at: int, words: RobotWords, name: str | None = None) -> dict[str, Any]:
     """Return what gives the definition that is named at a character another name: `changes`, from the front of the
     text.
 
@@ -108,14 +108,14 @@ def _changes(mission: Mission, source: Source, definition: ast.Definition, name:
     vocabulary = mission.vocabulary
     lexer = lexed(source, vocabulary)
     own = definition.name_span
-    text = quoted(name, vocabulary) if definition.is_quoted else _like(own.text, name)
+    text = quote(name, vocabulary) if definition.is_quoted else _like(own.text, name)
     changes = {own.start: Change(own.start, own.end, text)}
     for use in _uses(mission, definition.name):
         if use.span.source is not source or use.span.start in changes:
             continue
         if use.is_exact:
             place = _quote(use.span, definition.name, lexer)
-            text = quoted(name if definition.is_quoted else " ".join(vocabulary.orthography.words(name)), vocabulary)
+            text = quote(name if definition.is_quoted else " ".join(vocabulary.orthography.words(name)), vocabulary)
         else:
             place, text = use.span, _like(use.span.text, _filled(use.span, definition.name, name, lexer))
         if place is not None:
@@ -160,11 +160,11 @@ def _written(first: int, last: int, lexer: Lexer) -> str:
 
 
 def _verify(
-    mission: Mission, source: Source, definition: ast.Definition, changes: Iterable[Change], words: Words,
+    mission: Mission, source: Source, definition: ast.Definition, changes: Iterable[Change], words: RobotWords,
     refuse: partial[MissionError],
 ) -> None:  # fmt: skip
     """Return the new text has to compile to the same tree, but for the name."""
-    text = changed(source.text, changes)
+    text = apply_changes(source.text, changes)
     try:
         renamed = words.mission(source.with_text(text))
     except MissionError as error:

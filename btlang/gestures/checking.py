@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.files import read_source
 from btlang.robots.bodies.body import Body
 from btlang.robots.bodies.gesture import Gesture
 from btlang.robots.bodies.gesture_file import GestureError, load_gestures

@@ -8,10 +8,10 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 
-from btlang.backends.files import write_file
 from btlang.devices.device_set import DeviceSet
 from btlang.devices.driver import SIMULATED, Device, DeviceError
 from btlang.devices.kinds import JointState, JointTarget
+from btlang.diagnostics.files import write_file
 from btlang.robots.bodies.body import Body
 from btlang.robots.bodies.body_file import unusable_robot
 from btlang.robots.bodies.gesture_file import GestureError, load_gestures

@@ -11,7 +11,7 @@ from math import cos, radians, sin
 
 import numpy as np
 
-from btlang.diagnostics.reading import is_below, os_error_reason, real_path
+from btlang.diagnostics.files import is_below, os_error_reason, real_path
 from btlang.maps.data_text import missing_package, number, numbers, shown
 from btlang.robots.geometry import Point, Pose
 from btlang.support.record import Record

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
-from btlang.passes.scope import Lowered, Scope, new_node, new_round
+from btlang.passes.scope import Lowered, LoweringScope, new_node, new_round
 from btlang.passes.scripts import make_script, run_before
 from btlang.tree import ast
 from btlang.tree.catalogue import MOST_NODES
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 _LARGE = MOST_NODES // 10  # nodes
 
 
-def _retry(item: ast.Retry, done: list[Lowered], scope: Scope) -> Lowered:
+def _retry(item: ast.Retry, done: list[Lowered], scope: LoweringScope) -> Lowered:
     body = new_round(done[0])
     scripts: list[Node] = []
     if item.pause:
@@ -30,7 +30,7 @@ def _retry(item: ast.Retry, done: list[Lowered], scope: Scope) -> Lowered:
     return Lowered(run_before(scripts, node))
 
 
-def _timed(seconds: str, scope: Scope) -> tuple[list[Node], str]:
+def _timed(seconds: str, scope: LoweringScope) -> tuple[list[Node], str]:
     """Return a time as whole milliseconds of a port; one that is only known when it runs is computed before."""
     [key] = list(keys_in(seconds)) or [""]
     if not key:
@@ -49,17 +49,17 @@ def _clock(time: str) -> Node:
     return Node("WaitForTime", (), (("time", time),))
 
 
-def _within(item: ast.Within, done: list[Lowered], scope: Scope) -> Lowered:
+def _within(item: ast.Within, done: list[Lowered], scope: LoweringScope) -> Lowered:
     scripts, limit = _timed(item.seconds, scope)
     return Lowered(run_before(scripts, new_node("Timeout", [new_round(done[0])], item.span, msec=limit)))
 
 
-def _for(item: ast.For, done: list[Lowered], scope: Scope) -> Lowered:
+def _for(item: ast.For, done: list[Lowered], scope: LoweringScope) -> Lowered:
     scripts, time = _timed(item.seconds, scope)
     return Lowered(run_before(scripts, _again_beside(_timer(time), item, done[0])))
 
 
-def _until_time(item: ast.UntilTime, done: list[Lowered], _scope: Scope) -> Lowered:
+def _until_time(item: ast.UntilTime, done: list[Lowered], _scope: LoweringScope) -> Lowered:
     return Lowered(_again_beside(_clock(item.time), item, done[0]))
 
 
@@ -69,20 +69,20 @@ def _again_beside(timer: Node, item: ast.Ast, body: Lowered) -> Node:
     return new_node("Parallel", (timer, again), item.span, success_count="1", failure_count="1")
 
 
-def _up_to(item: ast.UpTo, done: list[Lowered], scope: Scope) -> Lowered:
+def _up_to(item: ast.UpTo, done: list[Lowered], scope: LoweringScope) -> Lowered:
     scripts, time = _timed(item.seconds, scope)
     children = _timer(time), new_round(done[0])
     return Lowered(run_before(scripts, new_node("Parallel", children, item.span, success_count="1", failure_count="1")))
 
 
-def _every(item: ast.Every, done: list[Lowered], scope: Scope) -> Lowered:
+def _every(item: ast.Every, done: list[Lowered], scope: LoweringScope) -> Lowered:
     scripts, time = _timed(item.seconds, scope)
     together = new_node("Parallel", (new_round(done[0]), _timer(time)), item.span)
     node = new_node("Repeat", [together], item.span, num_cycles=item.rounds or "-1")
     return Lowered(run_before(scripts, node), False, item.rounds in ("", "-1"))
 
 
-def _apart(item: ast.Apart, done: list[Lowered], scope: Scope) -> Lowered:
+def _apart(item: ast.Apart, done: list[Lowered], scope: LoweringScope) -> Lowered:
     """Make the first round, then the others with a delay before each. BT042 if what is said twice is too large."""
     body = new_round(done[0])
     if item.rounds == "1":
@@ -111,18 +111,18 @@ def _is_large(root: Node) -> bool:
     return found >= _LARGE
 
 
-def _delay(item: ast.Delay, done: list[Lowered], scope: Scope) -> Lowered:
+def _delay(item: ast.Delay, done: list[Lowered], scope: LoweringScope) -> Lowered:
     scripts, time = _timed(item.seconds, scope)
     node = new_node("Delay", [done[0].node], item.span, delay_msec=time)
     return Lowered(run_before(scripts, node), done[0].can_skip and not scripts, done[0].endless)
 
 
-def _wait(item: ast.Wait, _done: list[Lowered], scope: Scope) -> Lowered:
+def _wait(item: ast.Wait, _done: list[Lowered], scope: LoweringScope) -> Lowered:
     scripts, time = _timed(item.seconds, scope)
     return Lowered(run_before(scripts, new_node("Sleep", (), item.span, msec=time)))
 
 
-def _wait_until(item: ast.WaitUntil, done: list[Lowered], scope: Scope) -> Lowered:
+def _wait_until(item: ast.WaitUntil, done: list[Lowered], scope: LoweringScope) -> Lowered:
     scripts: list[Node] = []
     asked = done[0].node
     if item.held:
@@ -131,7 +131,7 @@ def _wait_until(item: ast.WaitUntil, done: list[Lowered], scope: Scope) -> Lower
     return Lowered(run_before(scripts, new_node("RetryUntilSuccessful", [asked], item.span, num_attempts="-1")))
 
 
-def _wait_time(item: ast.WaitTime, _done: list[Lowered], _scope: Scope) -> Lowered:
+def _wait_time(item: ast.WaitTime, _done: list[Lowered], _scope: LoweringScope) -> Lowered:
     """Wait for the first of several times, with a node for each beside one another."""
     times = item.time.split(";")
     if len(times) == 1:
@@ -140,7 +140,7 @@ def _wait_time(item: ast.WaitTime, _done: list[Lowered], _scope: Scope) -> Lower
     return Lowered(new_node("Parallel", clocks, item.span, success_count="1", failure_count="1"))
 
 
-TIMED: dict[type[ast.Ast], Callable[[Any, list[Lowered], Scope], Lowered]] = {
+TIMED: dict[type[ast.Ast], Callable[[Any, list[Lowered], LoweringScope], Lowered]] = {
     ast.Retry: _retry,
     ast.Within: _within,
     ast.For: _for,

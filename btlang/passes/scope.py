@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from btlang.passes.compilation import Origins
 
 
-class Scope:
+class LoweringScope:
     """The state of lowering one mission, whose defined names and types of values are given.
 
     `skipping` are the names whose trees can end SKIPPED, `endless` those whose trees run until they fail, `free` the

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from btlang.passes.scope import Scope
+from btlang.passes.scope import LoweringScope
 from btlang.tree.catalogue import SEQUENCE
 from btlang.tree.node import Node
 from btlang.vocabulary.references import Choice, Reference, choice_of, pieces
@@ -41,7 +41,7 @@ def is_prepared(node: Node) -> bool:
 
 
 def prepare_ports(
-    arguments: Iterable[tuple[str, str]], scope: Scope, kinds: Mapping[str, str] = {}
+    arguments: Iterable[tuple[str, str]], scope: LoweringScope, kinds: Mapping[str, str] = {}
 ) -> tuple[list[Node], Ports]:
     """Return the ports of a node, and the scripts before it. `kinds` are the types of those of a SubTree."""
     scripts: list[Node] = []
@@ -69,7 +69,7 @@ def _would_change(text: str) -> bool:
         return False
 
 
-def _port(text: str, scope: Scope) -> tuple[list[Node], str]:
+def _port(text: str, scope: LoweringScope) -> tuple[list[Node], str]:
     choice = choice_of(text)
     if choice is not None:
         return [make_choice(choice, choice.key)], f"{{{choice.key}}}"
@@ -83,13 +83,13 @@ def _port(text: str, scope: Scope) -> tuple[list[Node], str]:
     return _own_key(text, scope)
 
 
-def _own_key(text: str, scope: Scope) -> tuple[list[Node], str]:
+def _own_key(text: str, scope: LoweringScope) -> tuple[list[Node], str]:
     scripts, value = concatenate(text, scope)
     key = scope.new_key()
     return [*scripts, make_script(f"{key} := {value}")], f"{{{key}}}"
 
 
-def compile_assignment(key: str, operation: str, text: str, kind: str, scope: Scope) -> tuple[list[Node], str]:
+def compile_assignment(key: str, operation: str, text: str, kind: str, scope: LoweringScope) -> tuple[list[Node], str]:
     """Compile the code that sets, increases or decreases the value of a key, and what it needs before it."""
     if not scope.is_number(kind):
         scripts, value = concatenate(text, scope)
@@ -102,7 +102,7 @@ def compile_assignment(key: str, operation: str, text: str, kind: str, scope: Sc
 
 
 def compile_comparison(
-    key: str, arguments: Iterable[tuple[str, str]], kind: str, scope: Scope
+    key: str, arguments: Iterable[tuple[str, str]], kind: str, scope: LoweringScope
 ) -> tuple[list[Node], str]:
     """Compile the code of a condition on a key, and what it needs before it."""
     scripts: list[Node] = []
@@ -120,7 +120,7 @@ def _plain_or_key(text: str) -> str:
     return piece.key if isinstance(piece, Reference) else piece
 
 
-def concatenate(text: str, scope: Scope) -> tuple[list[Node], str]:
+def concatenate(text: str, scope: LoweringScope) -> tuple[list[Node], str]:
     """Compile the expression of a text, and what it needs before it: a string of a script holds no single quote."""
     scripts: list[Node] = []
     quote = ""

@@ -6,7 +6,7 @@ import os
 from importlib.util import find_spec
 
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
-from btlang.diagnostics.reading import unwritable
+from btlang.diagnostics.files import unwritable
 from btlang.text.formatting import joined
 from btlang.text.source import Source, Span
 

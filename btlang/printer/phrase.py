@@ -1,4 +1,4 @@
-"""A leaf as its phrase, in the first words that its keyword entry offers and that read back as the same leaf."""
+"""Phrases of leaves, in the first words that a keyword entry offers and that are read back as the same leaf."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from btlang.text.source import PythonSource, Source, Span
 from btlang.text.words import split
 from btlang.tree.catalogue import SUBTREE
-from btlang.tree.dump import described
+from btlang.tree.dump import describe_node
 from btlang.tree.node import Node
 from btlang.vocabulary.entry import MEASURED, POINT, Entry
 from btlang.vocabulary.lexicon import DEFINING, Lexicon
@@ -21,7 +21,7 @@ MARKUP = ("<", '"')  # what XML and JSON begin with, and no sentence
 
 
 def phrase_of(node: Node, vocabulary: Lexicon) -> str:
-    """The English of a node: `move forward 2 m`, `wait 5 s`, the name of a subtree; else `Id port=value`.
+    """Return the English of a node: `move forward 2 m`, `wait 5 s`, the name of a subtree; else `Id port=value`.
 
     What works with values of the mission is shown as it was written.
     """
@@ -37,7 +37,7 @@ def phrase_of(node: Node, vocabulary: Lexicon) -> str:
         return f"{vocabulary.word('wait_time')} {node.port('time')}"
     if node.id in ("AlwaysSuccess", "AlwaysFailure"):
         return vocabulary.word("nothing" if node.id == "AlwaysSuccess" else "fail")
-    return leaf_words(node.id, dict(node.ports), vocabulary) or described(node)
+    return leaf_words(node.id, dict(node.ports), vocabulary) or describe_node(node)
 
 
 def is_sentence(span: Span) -> bool:
@@ -52,7 +52,7 @@ def is_written(node: Node) -> bool:
 
 
 def _filled_name(node: Node) -> str:
-    """The name of a subtree with its arguments in place of its parameters."""
+    """Return the name of a subtree with its arguments in place of its parameters."""
     ports = dict(node.ports)
     parts = name_form(node.port("ID"))
     return " ".join(ports.get(part.name, f"{{{part.name}}}") if isinstance(part, Slot) else part for part in parts)
@@ -71,7 +71,7 @@ def leaf_words(
     *,
     exactly: bool = False,
 ) -> str:
-    """The phrase of a leaf with these ports, "" where no phrase of it has just these slots.
+    """Return the phrase of a leaf with these ports, "" if no phrase of it has just these slots.
 
     Preferred is one that is read back as the leaf where `names` are defined; with `exactly` no other will do. A port
     may hold its default.
@@ -101,7 +101,7 @@ def leaf_words(
 
 
 def _with_point(entry: Entry, spoken: dict[str, str], vocabulary: Lexicon) -> dict[str, str]:
-    """The ports of a point as one value in the slot of a place."""
+    """Return the ports of a point as one value in the slot of a place."""
     place = next((slot.name for slot in entry.slots if slot.type == PLACE), None)
     if place is None or not entry.point_ports or not spoken.keys() >= {"x", "y"} or place in spoken:
         return spoken
@@ -114,7 +114,9 @@ def _default(entry: Entry, slot: str) -> str | None:
 
 
 def _fitting(entry: Entry, spoken: Mapping[str, str]) -> Iterator[tuple[Form, Mapping[str, str]]]:
-    """The forms that say the values, the shortest of each phrase first; those that say a default too come last."""
+    """Yield the forms that say the values, the shortest of each phrase first; those that say a default too come
+    last.
+    """
     defaults = {slot.name: slot.default for slot in entry.slots if slot.default is not None}
     wordy: list[tuple[Form, Mapping[str, str]]] = []
     for phrase in entry.phrases:
@@ -143,7 +145,7 @@ def _reads_back(
 
 
 def value_of(text: str, kind: ValueType, vocabulary: Lexicon) -> str:
-    """A port text as a user would say it: `2 m`, `20%`, `hello`, `"two words"`.
+    """Return a port text as a user would say it: `2 m`, `20%`, `hello`, `"two words"`.
 
     A text that could be taken for something else is quoted.
     """
@@ -151,7 +153,7 @@ def value_of(text: str, kind: ValueType, vocabulary: Lexicon) -> str:
 
 
 def _read_back_value(text: str, kind: ValueType, vocabulary: Lexicon) -> str:
-    """The first way to say a text that is read back as it, "" where none is."""
+    """Return the first way to say a text that is read back as it, "" if there is none."""
     ways = _ways(text, kind, vocabulary)
     if len(ways) == 1:
         return ways[0]
@@ -161,7 +163,7 @@ def _read_back_value(text: str, kind: ValueType, vocabulary: Lexicon) -> str:
 
 
 def _ways(text: str, kind: ValueType, vocabulary: Lexicon) -> list[str]:
-    """The ways to say a text, the most natural first."""
+    """List the ways to say a text, the most natural first."""
     if text.startswith("{") and kind.kind != "text":
         choice = choice_of(text)
         return [vocabulary.values.choice_words(choice) if choice is not None else text]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 
-from btlang.backends.checking import anything, bound, misnamed, tree_problems
+from btlang.backends.checking import accept_anything, bind_placeholder, misnamed, tree_problems
 from btlang.diagnostics.diagnostic import Diagnostic, sort_diagnostics
 from btlang.engine.leaves.leaf import LeafBinding
 from btlang.frontends.btcpp.models import nav2_models
@@ -27,8 +27,7 @@ from btlang.projects.ports import (
 from btlang.projects.unused import keys_read, unknown_nodes, unread_subtree_ports, unread_values, unused_trees
 from btlang.text.source import NOWHERE, Span
 from btlang.tree.catalogue import BEHAVIOR_TREE_CPP, CATALOGUE, SEQUENCE, SUBTREE
-from btlang.tree.model import NodeModel, PortModel
-from btlang.tree.node import Node, Tree
+from btlang.tree.node import Node, NodeModel, PortModel, Tree
 from btlang.tree.visit import fold
 from btlang.vocabulary.lexicon import Lexicon
 
@@ -231,7 +230,7 @@ class _Check:
         return own.replace(id=SEQUENCE, ports=ports)  # type: ignore[no-any-return]
 
     def _bind(self, node_id: str) -> LeafBinding:
-        return bound(self._vocabulary, node_id) or LeafBinding(anything)
+        return bind_placeholder(self._vocabulary, node_id) or LeafBinding(accept_anything)
 
     def _whole(self, trees: Mapping[str, Node]) -> Tree:
         """Return one tree that uses them all."""

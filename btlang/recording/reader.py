@@ -10,7 +10,7 @@ from functools import cached_property
 
 from btlang.api import Mission
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
-from btlang.diagnostics.reading import os_error_reason
+from btlang.diagnostics.files import os_error_reason
 from btlang.engine.compile import outline
 from btlang.engine.status import NAMES
 from btlang.engine.status_trace import Changes

@@ -11,7 +11,7 @@ from contextlib import suppress
 
 from btlang.api import Mission
 from btlang.diagnostics.diagnostic import MissionError
-from btlang.diagnostics.reading import unwritable
+from btlang.diagnostics.files import unwritable
 from btlang.recording.bundle import files_of
 from btlang.recording.channels import RecordingChannel, messages
 from btlang.run.bus import BLOCK

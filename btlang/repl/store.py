@@ -7,7 +7,7 @@ import os
 import time
 from pathlib import Path
 
-from btlang.diagnostics.reading import os_error_reason
+from btlang.diagnostics.files import os_error_reason
 from btlang.support.record import Record
 from btlang.support.user_dirs import user_dir
 

@@ -13,7 +13,7 @@ from importlib.machinery import PathFinder
 from importlib.util import module_from_spec
 
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
-from btlang.diagnostics.reading import read_bytes
+from btlang.diagnostics.files import read_bytes
 from btlang.text.source import NOWHERE, Source
 from btlang.text.toml import line_of, parse_toml
 from btlang.text.toml_table import Problem, Table

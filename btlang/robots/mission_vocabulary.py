@@ -42,7 +42,7 @@ def mission_vocabulary(
     first = _FIRST_LINE.match(source.text)
     if first is None or _QUOTES.isdisjoint(first[1]):
         return world_vocabulary(keywords, world, language), world
-    from btlang.diagnostics.reading import OUTSIDE, included_path, is_below
+    from btlang.diagnostics.files import OUTSIDE, included_path, is_below
     from btlang.frontends.mission.symbols.needs import WORDS, find_needs, unusable
 
     vocabulary = load_vocabulary([word for word in keywords if not _is_xml(word)], None, language)

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext, suppress
 
 from btlang.diagnostics.diagnostic import MissionError, render
-from btlang.diagnostics.reading import unwritable
+from btlang.diagnostics.files import unwritable
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.status import FAILURE
 from btlang.run.controls import PATIENCE, Controls, emergency_signal

@@ -13,8 +13,8 @@ from importlib.util import find_spec
 import btlang
 from btlang.api import Mission, parse_tree
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic, sort_diagnostics
+from btlang.diagnostics.files import MOST_BYTES
 from btlang.diagnostics.formats import to_data
-from btlang.diagnostics.reading import MOST_BYTES
 from btlang.editing.partial import partial_reading
 from btlang.recording.film import simulate
 from btlang.robots.mission_vocabulary import world_vocabulary

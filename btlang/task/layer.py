@@ -11,7 +11,7 @@ from functools import partial
 
 from btlang.api import Mission
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.files import read_source
 from btlang.robots.files import DataFileError, as_mission_error, load_data
 from btlang.robots.preflight import check_mission, needs_of_tree
 from btlang.robots.registry import runs_on

@@ -56,7 +56,7 @@ class MissionTestFile(pytest.File):
     def collect(self) -> Iterator[MissionTestItem]:
         """Yield its tests, in their order."""
         from btlang.diagnostics.diagnostic import MissionError
-        from btlang.diagnostics.reading import read_source
+        from btlang.diagnostics.files import read_source
         from btlang.testing.test_file import read_tests
 
         try:

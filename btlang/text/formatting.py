@@ -65,7 +65,7 @@ def nth(number: int) -> str:
     return f"{size}{ending}{' last' if number < 0 else ''}"
 
 
-class Table(Record):
+class TextTable(Record):
     """Rows of equally many texts, shown below each other.
 
     As a text, columns are as wide as their texts and at least `widths`, `gap` apart; on a terminal rich folds them.

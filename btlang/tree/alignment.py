@@ -1,4 +1,4 @@
-"""Which nodes of old trees have become which of new ones, as a careful reader would pair them."""
+"""Alignment of trees: which nodes of old trees have become which of new ones, as a careful reader would pair them."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterable, Sequence
 from difflib import SequenceMatcher
 
 from btlang.tree.node import Node, Tree
-from btlang.tree.subtree_numbers import SubtreeNumbers
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -16,11 +15,44 @@ if TYPE_CHECKING:
 
     Nodes: TypeAlias = Sequence[Node]
 
+
+class SubtreeNumbers:
+    """The numbers of nodes; those of equal subtrees are the same. Nodes are keyed by identity.
+
+    `features` gives what counts in a node beside its id, its name and its children.
+    """
+
+    def __init__(self, features: Callable[[Node], Iterable[tuple[str, str]]]) -> None:
+        self._features = features
+        self._kinds: dict[object, int] = {}
+        self._numbers: dict[int, int] = {}
+        self._kept: list[Node] = []  # so that no identity is given to another node
+
+    def add(self, nodes: Iterable[Node]) -> None:
+        """Give numbers to nodes, each behind its children."""
+        for node in nodes:
+            below = tuple([self._numbers[id(child)] for child in node.children])
+            key = node.id, node.name, tuple(self._features(node)), below
+            self._numbers[id(node)] = self._kinds.setdefault(key, len(self._kinds))
+            self._kept.append(node)
+
+    def of(self, nodes: Iterable[Node]) -> list[int]:
+        """Return the numbers of nodes."""
+        return [self._numbers[id(node)] for node in nodes]
+
+    def __getitem__(self, node: Node) -> int:
+        return self._numbers[id(node)]
+
+    def are_equal(self, one: Node, other: Node) -> bool:
+        """Whether two nodes and all that is below them are equal."""
+        return self[one] == self[other]
+
+
 _MOST = 40_000  # comparisons of two lists of nodes; of longer ones only equal nodes are paired
 
 
 class Alignment:
-    """Pairs new nodes with old ones. Nodes are keyed by identity, and none is in two places.
+    """Pairs of new and old nodes. Nodes are keyed by identity, and none is in two places.
 
     Top down, then equal subtrees wherever they are, then what stands in or around something new: the phases of GumTree
     (Falleri et al., Fine-grained and accurate source code differencing, 2014), with children in their order.
@@ -52,11 +84,11 @@ class Alignment:
             self._pair_around(*self._gaps.popleft())
 
     def old(self, new: Node) -> Node | None:
-        """What a new node was; None where it was not there."""
+        """Return what a new node was; None if it didn't exist."""
         return self._old.get(id(new))
 
     def new(self, old: Node) -> Node | None:
-        """What an old node has become; None where it is gone."""
+        """Return what an old node has become; None if it is gone."""
         return self._new.get(id(old))
 
     def is_equal(self, old: Node, new: Node) -> bool:
@@ -64,7 +96,7 @@ class Alignment:
         return self._numbers.are_equal(old, new)
 
     def _counted(self, root: Node) -> list[Node]:
-        """The nodes of a tree, parents first, which get their numbers and positions."""
+        """List the nodes of a tree, parents first, which get their numbers and positions."""
         nodes = list(Tree(root).walk())
         start = len(self._ranges)
         sizes: dict[int, int] = {}
@@ -139,7 +171,7 @@ class Alignment:
         return 1 + shared + _overlap(self._features(old), self._features(new)) + (old.name == new.name != "")
 
     def _shared(self, one: Node, other: Node) -> float:
-        """The share of their children that both have."""
+        """Return the share of their children that both have."""
         return _overlap(self._numbers.of(one.children), self._numbers.of(other.children))
 
     def _holds(self, node: Node, inner: Node) -> bool:
@@ -185,7 +217,7 @@ class Alignment:
 
 
 def _overlap(one: Iterable[object], other: Iterable[object]) -> float:
-    """The share of items that two collections have in common, from 0 to 1; 0 for empty ones."""
+    """Return the share of items that two collections have in common, from 0 to 1; 0 for empty ones."""
     first, second = Counter(one), Counter(other)
     total = max(first.total(), second.total())
     return (first & second).total() / total if total else 0.0

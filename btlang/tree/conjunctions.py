@@ -1,4 +1,4 @@
-"""What `and` between commands means: at the same time for what can go along with others, else one after the other.
+"""Conjunctions: `and` between commands means at the same time for what can go together, else one after the other.
 
 Both parsers make a chain of the operator "and". When all names and included missions are known, `resolve` makes each
 of them a "parallel" or a "sequence"; only then do equal chains melt into one.
@@ -20,7 +20,7 @@ from btlang.vocabulary.lexicon import Lexicon
 
 
 class Traits(Record):
-    """What a command is to those beside it.
+    """The traits of a command that matter to those beside it.
 
     `accompanies`: it can go along with others. `holds` are the resources that it needs for itself. `endless`: it runs
     until it fails or is stopped.
@@ -35,7 +35,7 @@ _TASK = Traits(False)
 
 
 def resolve(mission: ast.Program, vocabulary: Lexicon) -> tuple[ast.Program, list[Diagnostic]]:
-    """The mission with a meaning for each `and`, and what has to be said about them (BT050, BT174)."""
+    """Return the mission with a meaning for each `and`, and messages about them (BT050, BT174)."""
     if not _has_conjunction(mission):
         return mission, []
     definitions = {definition.name: definition.body for definition in ast.all_definitions(mission)}
@@ -52,7 +52,7 @@ def _is_conjunction(node: ast.Ast) -> bool:
 
 
 class Conjunctions:
-    """Gives each `and` of one mission, and of those that it includes, a meaning. `problems` is what there is to say."""
+    """The conjunctions of one mission, and of those that it includes. `problems` are messages about them."""
 
     def __init__(self, definitions: Mapping[str, ast.Ast], vocabulary: Lexicon) -> None:
         self.problems: list[Diagnostic] = []
@@ -62,7 +62,7 @@ class Conjunctions:
         self._noted: dict[int, tuple[ast.Ast, Traits]] = {}  # with its node, which keeps the identity
 
     def program(self, mission: ast.Program) -> ast.Program:
-        """A text with those that it includes."""
+        """Resolve a text with those that it includes."""
         return ast.with_bodies(mission, self._body, self.program)
 
     def _body(self, body: ast.Ast) -> ast.Ast:
@@ -73,7 +73,7 @@ class Conjunctions:
             self._resolved(item)[0] if item.parts and any(map(_is_conjunction, ast.parents_first(item))) else item
             for item in body.items
         ]
-        return _melted(body.replace(items=tuple(items)))
+        return _flatten(body.replace(items=tuple(items)))
 
     def _resolved(self, root: ast.Ast) -> tuple[ast.Ast, Traits]:
         return fold(root, ast.parts, self._one)
@@ -95,10 +95,10 @@ class Conjunctions:
             operator = self._meaning(chain, traits)
         made: ast.Ast = chain
         if operator != chain.operator or any(new is not old for new, old in zip(items, chain.items, strict=True)):
-            made = _melted(ast.Chain(operator, tuple(items), chain.bracketed, chain.span))
+            made = _flatten(ast.Chain(operator, tuple(items), chain.bracketed, chain.span))
         endless = [each.endless for each in traits]
         never = any(endless) if operator == "sequence" else all(endless)
-        return made, Traits(all(each.accompanies for each in traits), _joined(traits), never)
+        return made, Traits(all(each.accompanies for each in traits), _union(traits), never)
 
     def _meaning(self, chain: ast.Chain, traits: Sequence[Traits]) -> str:
         """Whether the parts run at the same time."""
@@ -119,10 +119,6 @@ class Conjunctions:
         """Whether `and` between such commands means that they all run at the same time."""
         traits = [self._traits(item) for item in items]
         return all(each.accompanies for each in traits) and not (_shared(traits) or _speaks_first(traits))
-
-    def are_independent(self, items: Iterable[ast.Ast]) -> bool:
-        """Whether no two of the commands need the same part of the robot."""
-        return _shared([self._traits(item) for item in items]) is None
 
     def _traits(self, root: ast.Ast) -> Traits:
         """Those of a command in which each `and` has its meaning; noted, since they are asked for at every depth."""
@@ -149,7 +145,7 @@ class Conjunctions:
 
     def _report_endless(self, chain: ast.Chain) -> None:
         """BT050 for a last part that never ends: it may be meant to go along with the ones before it."""
-        joint = next(_joints(chain, self._vocabulary.word("and")), None)
+        joint = next(_connectives(chain, self._vocabulary.word("and")), None)
         if joint is None:
             return
         text, span = chain.span.text, chain.span
@@ -176,7 +172,7 @@ class Conjunctions:
         return Traits(any(entry.accompaniment for entry in entries), holds)
 
     def _name(self, name: str) -> Traits:
-        """What a defined name is; one that reaches itself is a task."""
+        """Return the traits of a defined name; one that reaches itself is a task."""
         if name not in self._named:
             self._named[name] = _TASK
             if name in self._definitions:
@@ -186,10 +182,10 @@ class Conjunctions:
         return self._named[name]
 
     def _form(self, node: ast.Ast, commands: Sequence[Traits]) -> Traits:
-        """A form has the kind of its commands."""
+        """Return the traits of a form, which has the kind of its commands."""
         if isinstance(node, ast.Check | ast.WaitUntil) or not commands:
             return _TASK
-        return Traits(all(each.accompanies for each in commands), _joined(commands), _is_endless(node, commands))
+        return Traits(all(each.accompanies for each in commands), _union(commands), _is_endless(node, commands))
 
 
 def _is_endless(node: ast.Ast, commands: Sequence[Traits]) -> bool:
@@ -210,8 +206,8 @@ def _is_endless(node: ast.Ast, commands: Sequence[Traits]) -> bool:
     return False
 
 
-def _melted(chain: ast.Chain) -> ast.Ast:
-    """The chain with the items of equal chains in it that have no brackets."""
+def _flatten(chain: ast.Chain) -> ast.Ast:
+    """Return the chain with the items of equal chains in it that have no brackets."""
     items: list[ast.Ast] = []
     for item in chain.items:
         is_equal = type(item) is ast.Chain and item.operator == chain.operator and not item.bracketed
@@ -219,12 +215,12 @@ def _melted(chain: ast.Chain) -> ast.Ast:
     return chain.replace(items=tuple(items)) if len(items) != len(chain.items) else chain
 
 
-def _joined(traits: Iterable[Traits]) -> frozenset[str]:
+def _union(traits: Iterable[Traits]) -> frozenset[str]:
     return frozenset().union(*(each.holds for each in traits))
 
 
 def _shared(traits: Sequence[Traits]) -> tuple[str, int, int] | None:
-    """A resource that two of them hold, and which two."""
+    """Return a resource that two of them hold, and which two."""
     holders: dict[str, int] = {}
     for at, each in enumerate(traits):
         for resource in each.holds:
@@ -240,8 +236,8 @@ def _speaks_first(traits: Sequence[Traits]) -> bool:
     return any(MOVES in each.holds for each in traits[speech + 1 :])
 
 
-def _joints(chain: ast.Chain, word: str) -> Iterator[Span]:
-    """The words `and` between the parts, the last first."""
+def _connectives(chain: ast.Chain, word: str) -> Iterator[Span]:
+    """Find the words `and` between the parts, the last first."""
     items = sorted(chain.items, key=lambda item: item.span.start)
     for left, right in reversed(list(pairwise(items))):
         source = left.span.source

@@ -6,7 +6,7 @@ import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.files import read_source
 from btlang.text.source import Source, Span
 from btlang.vocabulary.cache import cached, recent, stamp
 from btlang.vocabulary.entry import Entry

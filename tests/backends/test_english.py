@@ -9,9 +9,9 @@ from hypothesis import given, note
 
 from btlang.api import parse_tree
 from btlang.backends.english import to_english
-from btlang.backends.english.editors import without_editors
+from btlang.backends.english.target import remove_editor_attributes
 from btlang.diagnostics.diagnostic import MissionError
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.files import read_source
 from btlang.frontends.mission.reader import read_mission
 from btlang.passes import lower_mission
 from btlang.passes.compilation import Compilation
@@ -38,7 +38,7 @@ def test_any_tree_is_said_and_read_back(tree: Tree) -> None:
     for parser in PARSERS:
         mission = read_mission(Source(text), vocabulary, parser).mission
         again = lower_mission(mission, vocabulary)
-        assert plain(again) == plain(without_editors(tree))
+        assert plain(again) == plain(remove_editor_attributes(tree))
         for models in (tree.models, (*tree.models, *again.models), again.models):
             assert to_english(again.replace(models=models), vocabulary) == text
         told = {model.id for model in tree.models if model.kind == "Condition"}
@@ -53,7 +53,7 @@ def test_trees_of_the_corpus(path: Path) -> None:
     text = str(tree.to("english"))
     for parser in PARSERS:
         again = lower_mission(read_mission(Source(text), tree.vocabulary, parser).mission, tree.vocabulary)
-        assert plain(again) == plain(without_editors(tree.tree))
+        assert plain(again) == plain(remove_editor_attributes(tree.tree))
 
 
 def test_comments_stand_before_what_they_are_about() -> None:
@@ -110,7 +110,7 @@ def said(xml: str) -> list[str]:
     text = str(tree.to("english"))
     for parser in PARSERS:
         again = parse_tree(text, parser=parser)
-        assert plain(again.tree) == plain(without_editors(tree.tree))
+        assert plain(again.tree) == plain(remove_editor_attributes(tree.tree))
         again_said = str(again.to("english")).splitlines()
         assert again_said == [line for line in text.splitlines() if line[:1] != "#"]
     return [line for line in text.splitlines() if not line.startswith("#:")]

@@ -11,7 +11,7 @@ import pytest
 from btlang.components.checking import check_robot, circle, levels
 from btlang.components.component import ComponentError
 from btlang.components.manager import class_of
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.files import read_source
 from btlang.robots.bodies.body import ComponentPart, RosNode
 from btlang.robots.bodies.body_file import read_body
 from btlang.text.source import Source

@@ -13,7 +13,7 @@ import pytest
 import btlang
 from btlang.cli import main
 from btlang.diagnostics.diagnostic import MissionError, render
-from btlang.diagnostics.reading import MOST_BYTES, read_source
+from btlang.diagnostics.files import MOST_BYTES, read_source
 from btlang.text.source import Source
 
 XML = '<root BTCPP_format="4"><include path="{}"/><BehaviorTree ID="M"><AlwaysSuccess/></BehaviorTree></root>'

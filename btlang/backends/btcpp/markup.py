@@ -1,4 +1,4 @@
-"""XML as text: tags, attributes and parts of files.
+"""Markup: tags, attributes and parts of XML files as text.
 
 Strings are put together by hand: the writer of ElementTree is slower, and drops the comments around the outermost tag.
 """
@@ -32,12 +32,12 @@ def sound_comment(text: str) -> str:
 
 
 def margin(depth: int) -> str:
-    """The spaces before a line."""
+    """Return the spaces before a line."""
     return INDENT * min(depth, _DEEPEST)
 
 
 class Markers:
-    """Writes attributes. `problems` are names and texts that no XML file can hold, each reported once."""
+    """A writer of attributes. `problems` are names and texts that no XML file can hold, each reported once."""
 
     def __init__(self) -> None:
         self.problems: list[Diagnostic] = []
@@ -72,12 +72,12 @@ class Markers:
         self.problems.append(diagnostic("BT129", span or NOWHERE, words=words, reason=reason))
 
     def finish(self) -> None:
-        """Raises MissionError where something was wrong."""
+        """Raise MissionError if something was wrong."""
         if self.problems:
             raise MissionError(self.problems)
 
     def part(self, root: Element, depth: int) -> list[str]:
-        """The lines of a part of a file that is no tree."""
+        """Return the lines of a part of a file that is no tree."""
         lines: list[str] = []
         stack: list[tuple[Element | Markup | str, int]] = [(root, depth)]
         while stack:

@@ -1,15 +1,19 @@
-"""TreeNodesModel: what editors such as Groot2 need to know of nodes that BehaviorTree.CPP does not have itself."""
+"""TreeNodesModel and IDs of trees: what editors such as Groot2 need to know.
+
+They need models of nodes that BehaviorTree.CPP doesn't have itself. BehaviorTree.CPP 4.10 and Groot2 refuse some IDs of
+trees that a mission may use, such as those with spaces.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterable, Iterator
 
 from btlang.frontends.btcpp.models import nav2_models
 from btlang.frontends.btcpp.origin import Element
-from btlang.frontends.btcpp.spelling import AUTOREMAP, IN_3, KINDS, MODEL, TRUE
+from btlang.frontends.btcpp.spelling import AUTOREMAP, IN_3, IN_NO_ID, KINDS, MAIN_TREE, MODEL, TRUE
 from btlang.tree.catalogue import BEHAVIOR_TREE_CPP, CATALOGUE, SUBTREE
-from btlang.tree.model import NodeModel, PortModel
-from btlang.tree.node import Node, Tree
+from btlang.tree.node import Node, NodeModel, PortModel, Tree
 from btlang.vocabulary.entry import COMPARISONS, MEASURED, Entry
 from btlang.vocabulary.lexicon import Lexicon
 
@@ -69,7 +73,7 @@ class Uses:
             self._given[name] = self._given.get(name, ports) & ports
 
     def kind(self, node_id: str) -> str:
-        """Action, Condition, Control or Decorator: as declared, else as it is used."""
+        """Return Action, Condition, Control or Decorator: as declared, else as it is used."""
         found = self._kinds.get(node_id)
         if found is None:
             found = self._kinds[node_id] = self._kind(node_id)
@@ -99,7 +103,7 @@ class Uses:
         return model if given is None else model.replace(ports=tuple(p for p in model.ports if p.name in given))
 
     def port_types(self, node_id: str) -> dict[str, str]:
-        """The C++ types of the ports of such a node; none for any other."""
+        """Return the C++ types of the ports of such a node; none for any other."""
         found = self._types.get(node_id)
         if found is None:
             ports = self._model(node_id).ports if node_id in self._ports else ()
@@ -155,3 +159,28 @@ def _port(port: PortModel) -> Element:
     pairs = (("name", port.name), ("type", port.type or None), ("default", port.default))
     attributes = tuple((key, text) for key, text in pairs if text is not None)
     return Element(f"{port.direction}_port", attributes, (port.text,) if port.text else ())
+
+
+_REFUSED = re.compile(f"[{IN_NO_ID}{{}}]+")
+"""Also braces, which they take; but a name in braces looks like a reference."""
+_RESERVED = frozenset(("", "Root", "root", *KINDS, *CATALOGUE))
+
+
+def tree_ids(tree: Tree, leaves: Iterable[str], dialect: int) -> dict[str, str]:
+    """Return the ID of each tree by its name, "" being the name of a main tree without one.
+
+    No two are the same, none is the id of a node, and in format 4 each keeps to the rules.
+    """
+    ids = {tree.name: tree.name or MAIN_TREE}
+    taken = {*_RESERVED, *leaves}
+    wanted = [tree.name or MAIN_TREE, *(name for name, _ in tree.subtrees)]
+    for at, name in enumerate(wanted):
+        plain = _REFUSED.sub("_", name).strip("_") if dialect == 4 else name
+        made = plain or "tree"
+        number = 2
+        while made in taken:
+            made = f"{plain or 'tree'}_{number}"
+            number += 1
+        taken.add(made)
+        ids[tree.name if at == 0 else name] = made
+    return ids

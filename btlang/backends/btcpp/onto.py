@@ -1,4 +1,4 @@
-"""A tree written onto the XML file that it came from: only what was edited changes, all other bytes stay."""
+"""Writing a tree onto the XML file that it came from: only what was edited changes, all other bytes stay."""
 
 from __future__ import annotations
 
@@ -7,8 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from difflib import SequenceMatcher
 
 from btlang.backends.btcpp.markup import sound_comment
-from btlang.backends.btcpp.models import Uses
-from btlang.backends.btcpp.names import tree_ids
+from btlang.backends.btcpp.models import Uses, tree_ids
 from btlang.backends.btcpp.rewriting import Rewriter
 from btlang.backends.english.comments import lines_of
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
@@ -37,8 +36,8 @@ if TYPE_CHECKING:
     """How often comments stand at the lines of a mission."""
 
 
-def written_onto(original: Source, tree: Tree, vocabulary: Lexicon) -> str:
-    """The text of the XML file `original` with the nodes and comments of a tree from a mission.
+def write_onto(original: Source, tree: Tree, vocabulary: Lexicon) -> str:
+    """Return the text of the XML file `original` with the nodes and comments of a tree from a mission.
 
     Nodes that have not changed keep their bytes, as do comments, models and all else. Raises MissionError where the
     file is no tree (BT120 to BT129), or where the tree changes what a file has that this one includes (BT135).
@@ -50,8 +49,8 @@ _OWN_TAGS = CATALOGUE.keys() | TO_4.keys() | {SUBTREE}
 """Tags that have no kind."""
 
 
-class _Said(Record):
-    """A comment of the file with the line of the mission that it belongs to; `lines` are what English says of it."""
+class _FileComment(Record):
+    """A comment of the file with the line of the mission that it belongs to; `lines` are its lines in English."""
 
     note: Note
     lines: tuple[str, ...]
@@ -63,8 +62,8 @@ class _Onto:
         self._file = XmlFile(scanned(original))
         is_there = tree.name in (head.name for head in self._file.heads)  # then it is the main tree in any case
         self._before = read_xml(original, tree.name if is_there else "")
-        subtrees = tuple((name, _apart(root)) for name, root in tree.subtrees)
-        self._after = tree.replace(root=_apart(tree.root), subtrees=subtrees)
+        subtrees = tuple((name, _copy_shared(root)) for name, root in tree.subtrees)
+        self._after = tree.replace(root=_copy_shared(tree.root), subtrees=subtrees)
         document = self._file.document
         self._dialect = self._file.dialect
         self._heads = {head.name: head for head in self._file.heads}
@@ -93,7 +92,7 @@ class _Onto:
     # -- what is what
 
     def _find_renamed(self) -> dict[str, str]:
-        """New names by old ones, where one tree alone has another name."""
+        """Find new names by old ones, if one tree alone has another name."""
         gone = [name for name in self._old if name not in self._new]
         come = [name for name in self._new if name not in self._old and name not in self._elsewhere]
         return {gone[0]: come[0]} if len(gone) == len(come) == 1 else {}
@@ -112,7 +111,7 @@ class _Onto:
         return alignment
 
     def _written_ids(self) -> dict[str, str]:
-        """The ID of each tree in the file by its name, those of new trees as the file's dialect allows them."""
+        """Return the ID of each tree in the file by its name, those of new trees as the file's dialect allows them."""
         nodes = {node.id for node in self._after.walk()}
         made = tree_ids(self._after, nodes, self._dialect)
         heads = {name: head.written for name, head in self._heads.items() if head.written and name in self._new}
@@ -142,7 +141,7 @@ class _Onto:
     # -- writing
 
     def written(self) -> str:
-        """See `written_onto`."""
+        """See `write_onto`."""
         for node in self._after.walk():
             old = self._alignment.old(node)
             if old is not None and id(old) in self._elements:
@@ -173,7 +172,7 @@ class _Onto:
             self._text.attributes(number, kept, wanted)
 
     def _name_trees(self) -> None:
-        """The IDs of trees that have other names now."""
+        """Change the IDs of trees that have other names now."""
         for name, head in self._heads.items():
             old = name if name in self._old else ""
             new = self._renamed.get(old, old)
@@ -191,7 +190,7 @@ class _Onto:
     # -- comments
 
     def _change_comments(self) -> None:
-        """Makes the comments those of the mission, where its text is there."""
+        """Change the comments to those of the mission, if its text is there."""
         if self._mission is None:
             return
         nodes = list(self._after.walk())
@@ -249,10 +248,10 @@ class _Onto:
         return old, new
 
     def _changed_line(
-        self, there: list[_Said], wanted: list[str], stays: tuple[Counter[str], Counter[str]], raw: Raw
+        self, there: list[_FileComment], wanted: list[str], stays: tuple[Counter[str], Counter[str]], raw: Raw
     ) -> list[str]:
-        """Changes the comments of one statement to those that are wanted, but for old and new ones that stay elsewhere;
-        returns those that are new.
+        """Change the comments of one statement to the wanted ones, but for old and new ones that stay elsewhere; return
+        those that are new.
         """
         has = [(said, at, text) for said in there for at, text in enumerate(said.lines)]
         texts = [text for _, _, text in has]
@@ -267,8 +266,8 @@ class _Onto:
         for tag, first, last, begin, end in codes:
             if tag == "equal":
                 continue
-            old = [each for each in has[first:last] if not _taken(old_stay, each[2])]
-            new = [text for text in wanted[begin:end] if not _taken(new_stay, text)]
+            old = [each for each in has[first:last] if not _take(old_stay, each[2])]
+            new = [text for text in wanted[begin:end] if not _take(new_stay, text)]
             for (said, at, _), text in zip(old, new, strict=False):
                 changed[id(said)][at] = text
             for said, at, _ in old[len(new) :]:
@@ -279,7 +278,7 @@ class _Onto:
                 self._change_comment(said, changed[id(said)])
         return list(_comments(come, raw))
 
-    def _change_comment(self, said: _Said, lines: Mapping[int, str | None]) -> None:
+    def _change_comment(self, said: _FileComment, lines: Mapping[int, str | None]) -> None:
         if len(lines) == len(said.lines) and not any(lines.values()):
             self._text.remove_comment(said.note)
             return
@@ -302,17 +301,17 @@ class _Onto:
         self._text.change(*self._text.span_of(said.note), f"<!--{inner}-->")
 
     def _raw(self, note: Note) -> str:
-        """A comment with its line ends."""
+        """Return a comment with its line ends."""
         start, end = self._text.span_of(note)
         return self._file.document.source.text[start:end]
 
-    def _comments_by_line(self, top: float) -> tuple[dict[float, list[_Said]], list[_Said]]:
-        """The comments of the file by the line of the mission in which their node is said; and those of nodes that are
-        gone. What stands before all trees belongs to the first statement. What English can't say (processing
-        instructions) goes from a node that is gone to the next one that isn't.
+    def _comments_by_line(self, top: float) -> tuple[dict[float, list[_FileComment]], list[_FileComment]]:
+        """Return the comments of the file by the line of the mission in which their node is said, and those of removed
+        nodes. What stands before all trees belongs to the first statement. What English can't say (processing
+        instructions) moves from a removed node to the next one that isn't.
         """
-        found: defaultdict[float, list[_Said]] = defaultdict(list)
-        gone: list[_Said] = []
+        found: defaultdict[float, list[_FileComment]] = defaultdict(list)
+        gone: list[_FileComment] = []
         unsaid: list[str] = []
 
         def put(notes: Iterable[Note], node: Node | None, line: float | None = None) -> None:
@@ -321,11 +320,11 @@ class _Onto:
                 if node is None and line is None:
                     self._text.remove_comment(note)
                     if lines:
-                        gone.append(_Said(note, lines))
+                        gone.append(_FileComment(note, lines))
                     else:
                         unsaid.append(self._raw(note))
                 elif lines:
-                    found[line_of(node) if node is not None else line].append(_Said(note, lines))  # type: ignore[index]
+                    found[line_of(node) if node is not None else line].append(_FileComment(note, lines))  # type: ignore[index]
 
         notes, document = self._file.notes, self._file.document
         put(notes.before(0), None, top)
@@ -361,7 +360,7 @@ def _features(node: Node) -> list[tuple[str, str]]:
 
 
 def _comments(lines: Sequence[str], raw: Raw) -> Iterator[str]:
-    """New comments; several lines that were one comment are one again, as it was written."""
+    """Yield new comments; several lines that were one comment are one again, as it was written."""
     at = 0
     while at < len(lines):
         same = [old for old in raw if tuple(lines[at : at + len(old)]) == old]
@@ -370,16 +369,16 @@ def _comments(lines: Sequence[str], raw: Raw) -> Iterator[str]:
         at += len(longest) or 1
 
 
-def _taken(counter: Counter[str], text: str) -> bool:
-    """Takes one of them, if there is one."""
+def _take(counter: Counter[str], text: str) -> bool:
+    """Take one of them, if there is one."""
     if counter[text] <= 0:
         return False
     counter[text] -= 1
     return True
 
 
-def _apart(root: Node) -> Node:
-    """The tree with no node in two places, as the body of a loop may be."""
+def _copy_shared(root: Node) -> Node:
+    """Return the tree with no node in two places, as the body of a loop may be."""
 
     def combine(node: Node, children: list[Node]) -> Node:
         return node.replace(children=tuple(children))  # type: ignore[no-any-return]

@@ -1,4 +1,4 @@
-"""The text of an XML file with other nodes in it, in which all that is not touched stays as it is, byte by byte."""
+"""Rewriting of an XML file with other nodes in it. What isn't touched stays as it is, byte by byte."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class _Slice(Record):
 
 
 class _Element(Record):
-    """A node to be written at a margin. `lead` is what stands before it, where that isn't what the file has there, and
+    """A node to be written at a margin. `lead` is what stands before it, if that isn't what the file has there, and
     `bare` whether its comments are written already.
     """
 
@@ -52,8 +52,8 @@ class _Element(Record):
 
 
 class Rewriter:
-    """Rebuilds the text. `known` gives the number of the element that a node is already, `spell` how a node
-    is written. Changes of single places (`change`) come first, then `write`.
+    """A rewriter of the text. `known` returns the number of the element that a node is already, `spell` how a node is
+    written. Changes of single places (`change`) come first, then `write`.
     """
 
     def __init__(
@@ -90,11 +90,11 @@ class Rewriter:
             opened.append(number)
 
     def span_of(self, note: Note) -> tuple[int, int]:
-        """The characters of a comment."""
+        """Return the characters of a comment."""
         return self._spans[id(note)]
 
     def _margin(self, number: int) -> str | None:
-        """The blanks before an element, None where it doesn't stand first on its line."""
+        """Return the blanks before an element, None if it isn't first on its line."""
         start = self._layout.places[number].start
         line = self._text.rfind("\n", 0, start) + 1
         return self._text[line:start] if self._text[line:start].isspace() or line == start else None
@@ -132,7 +132,7 @@ class Rewriter:
     # -- changes
 
     def change(self, start: int, end: int, text: str) -> None:
-        """Puts a text in place of some characters, which no other change touches."""
+        """Put a text in place of some characters, which no other change touches."""
         self._changes.append((start, end, text))
 
     def add_comments(self, node: Node, comments: list[str]) -> None:
@@ -162,7 +162,7 @@ class Rewriter:
         self.change(start, end, "")
 
     def attributes(self, number: int, before: Pairs, after: Pairs) -> None:
-        """Changes the attributes of an element from what one node says to what another one says."""
+        """Change the attributes of an element from those of one node to those of another one."""
         there = {each.name: each for each in self._layout.attributes(number)}
         old, new = dict(before), dict(after)
         touched = [key for key in old if old[key] != new.get(key)]
@@ -193,7 +193,7 @@ class Rewriter:
         return written if mark == '"' else f"'{written[1:-1].replace(chr(39), '&apos;').replace('&quot;', chr(34))}'"
 
     def rename(self, number: int, tag: str) -> None:
-        """Gives an element another tag."""
+        """Give an element another tag."""
         self.change(*self._layout.tag(number), tag)
         place = self._layout.places[number]
         if place.foot < place.end:
@@ -203,8 +203,9 @@ class Rewriter:
     # -- writing
 
     def write(self, trees: dict[int, Node | None], added: list[tuple[Pairs, Node]]) -> str:
-        """The whole text. `trees` are the roots by the number of their BehaviorTree, None for one that is gone; `added`
-        are further ones with the attributes of their BehaviorTree. Raises MissionError where XML can't hold a text.
+        """Return the whole text. `trees` are the roots by the number of their BehaviorTree, None for one that is gone;
+        `added` are further ones with the attributes of their BehaviorTree. Raises MissionError if XML can't hold a
+        text.
         """
         self._changes.sort(key=lambda change: change[:2])
         parts = self._children[0]
@@ -273,10 +274,10 @@ class Rewriter:
                 at = end
             index += 1
         made.append(self._text[at : piece.end])
-        return _shifted("".join(made), piece.shift, piece.in_tag)
+        return _shift("".join(made), piece.shift, piece.in_tag)
 
     def _again(self, item: _Element, number: int) -> list[Work]:
-        """A node that is in the file already."""
+        """Write a node that is in the file already."""
         place, shift = self._layout.places[number], item.shift
         work: list[Work] = [_Slice(self._lead(number), place.start, shift) if item.lead is None else item.lead]
         margin = self._margin(number)
@@ -299,12 +300,12 @@ class Rewriter:
         return [*work, _Slice(begin, place.end, own), _Slice(place.end, self._ended(number), own)]
 
     def _own_notes(self, number: int, item: _Element) -> list[Work]:
-        """The comments before a node, which goes elsewhere."""
+        """Write the comments before a node, which goes elsewhere."""
         left = [note for note in self._notes.before(number) if id(note) not in self._removed]
         return [part for note in left for part in (_Slice(*self.span_of(note), STAYS), self.line_end + item.margin)]
 
     def _inner(self, children: tuple[Node, ...], parent: int, shift: Shift, margin: str) -> list[Work]:
-        """What is inside a node that is in the file already."""
+        """Write the inside of a node that is in the file already."""
         work: list[Work] = []
         before: int | None = -1
         for child in children:
@@ -334,7 +335,7 @@ class Rewriter:
         return _moved(found, shift)
 
     def _new(self, item: _Element) -> list[Work]:
-        """A node that isn't in the file yet. What stood before the first one in it stands before it now."""
+        """Write a node that isn't in the file yet. What stood before the first one in it stands before it now."""
         tag, pairs = self._spell(item.node)
         head = f"<{tag}{self._markers.attributes(pairs)}"
         children = item.node.children
@@ -369,8 +370,8 @@ def _moved(margin: str, shift: Shift) -> str:
     return after + margin[len(before) :] if margin.startswith(before) else margin
 
 
-def _shifted(text: str, shift: Shift, in_tag: bool) -> str:
-    """The text with its lines moved; lines inside a value stay."""
+def _shift(text: str, shift: Shift, in_tag: bool) -> str:
+    """Return the text with its lines moved; lines inside a value stay."""
     if shift[0] == shift[1]:
         return text
     if in_tag:

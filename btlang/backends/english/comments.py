@@ -1,4 +1,4 @@
-"""The comments of an XML file as those of a mission: before the statement in which their node is said."""
+"""Comments of an XML file as those of a mission: before the statement in which their node is said."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def _of_tree(root: Node, origin: TreeOrigin) -> dict[int, tuple[str, ...]]:
 
 
 def lines_of(texts: Iterable[str]) -> Iterator[str]:
-    """What English says of comments: their lines but for rulers, which have no letter."""
+    """Yield the lines of comments that English keeps: all but rulers, which have no letter."""
     for text in texts:
         if text.startswith(_OPEN):
             lines = text.removeprefix(_OPEN).removesuffix(_CLOSE).split("\n")

@@ -115,7 +115,7 @@ class GeneratorLeaf:
             _stop(self.instance, running.close)
 
 
-class Kept(dict[str, "Any"]):
+class KeptValues(dict[str, "Any"]):
     """The values that a generator keeps while it is suspended."""
 
     def saved(self) -> dict[str, Any]:
@@ -130,7 +130,7 @@ class Kept(dict[str, "Any"]):
 
 def keeping_leaf(instance: NodeInstance, call: Callable[..., Any], stored: Stored) -> Compiled:
     """Compile a generator function that takes what it kept when it was suspended."""
-    kept = Kept()
+    kept = KeptValues()
     leaf = GeneratorLeaf(instance, partial(call, **{KEPT: kept}), stored)
 
     def tick() -> int:

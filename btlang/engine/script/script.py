@@ -63,7 +63,7 @@ _LEVELS = {
 _PREFIXES = ("-", "~", "!")
 
 
-class _Waiting:
+class _PendingOperator:
     """An operator that waits for its right operand, or a bracket or `?` that waits for its end."""
 
     __slots__ = ("level", "name", "position", "signs")
@@ -80,7 +80,7 @@ def parse(text: str, enums: Enums) -> list[Run]:
     statements = []
     tokens = Tokens(text)
     while tokens.kind != "end":
-        statements.append(_Statement(tokens, enums).parse())
+        statements.append(_StatementParser(tokens, enums).parse())
         while tokens.sign == ";":
             tokens.advance()
     if not statements:
@@ -88,7 +88,7 @@ def parse(text: str, enums: Enums) -> list[Run]:
     return statements
 
 
-class _Statement:
+class _StatementParser:
     """A statement that is being read: operands and their operators on two stacks."""
 
     def __init__(self, tokens: Tokens, enums: Enums) -> None:
@@ -96,7 +96,7 @@ class _Statement:
         self.enums = enums
         self.constants = {**enums, **BOOLEANS}
         self.operands: list[tuple[Run, int, str]] = []  # with their depth, and the name where one stands alone
-        self.waiting: list[_Waiting] = []
+        self.waiting: list[_PendingOperator] = []
 
     def parse(self) -> Run:
         wanted = True
@@ -120,10 +120,10 @@ class _Statement:
         """Take a value, a prefix or an opening bracket; return whether a value is still wanted after it."""
         token = self.tokens
         if token.sign in _PREFIXES:
-            self._wait(_Waiting(token.sign, _PREFIX, token.position))
+            self._wait(_PendingOperator(token.sign, _PREFIX, token.position))
             return True
         if token.sign == "(":
-            self._wait(_Waiting("(", 0, token.position))
+            self._wait(_PendingOperator("(", 0, token.position))
             return True
         if token.kind == "number":
             run = closures.constant(token.number())
@@ -150,9 +150,9 @@ class _Statement:
             _, _, name = self.operands.pop()
             if not name:
                 raise ScriptError(f"only a name can come before {sign}", position)
-            self._wait(_Waiting(sign, level, position, name))
+            self._wait(_PendingOperator(sign, level, position, name))
         else:
-            self._wait(_Waiting(sign, 0 if sign == "?" else level, position))
+            self._wait(_PendingOperator(sign, 0 if sign == "?" else level, position))
 
     def _close(self) -> bool:
         """Take `)` or `:`; return whether a value is wanted after it."""
@@ -165,15 +165,15 @@ class _Statement:
         if opened.signs != [begin]:
             raise self._not_closed(opened)
         if sign == ":":
-            self.waiting.append(_Waiting(":", _CHOOSE, opened.position))
+            self.waiting.append(_PendingOperator(":", _CHOOSE, opened.position))
         return sign == ":"
 
-    def _not_closed(self, opened: _Waiting) -> ScriptError:
+    def _not_closed(self, opened: _PendingOperator) -> ScriptError:
         if opened.signs == ["("]:
             return ScriptError("this ( is not closed", opened.position)
         return ScriptError("this ? has no :", opened.position)
 
-    def _wait(self, operator: _Waiting) -> None:
+    def _wait(self, operator: _PendingOperator) -> None:
         if len(self.waiting) == MOST_LEVELS:
             raise ScriptError(f"this is nested more than {MOST_LEVELS} levels deep", operator.position)
         self.waiting.append(operator)
@@ -189,7 +189,7 @@ class _Statement:
                 raise ScriptError(f"this is nested more than {MOST_LEVELS} levels deep", operator.position)
             self.operands[-count:] = [(self._made(operator, [run for run, _, _ in parts]), depth, "")]
 
-    def _made(self, operator: _Waiting, parts: list[Run]) -> Run:
+    def _made(self, operator: _PendingOperator, parts: list[Run]) -> Run:
         sign = operator.signs[0]
         if operator.level == _PREFIX:
             return closures.prefix(sign, *parts)
@@ -202,7 +202,7 @@ class _Statement:
         return closures.infix(sign, *parts)
 
 
-def _operands_of(operator: _Waiting) -> int:
+def _operands_of(operator: _PendingOperator) -> int:
     if operator.level == _COMPARE:
         return len(operator.signs) + 1
     return {_PREFIX: 1, _ASSIGN: 1, _CHOOSE: 3}.get(operator.level, 2)

@@ -18,7 +18,7 @@ from btlang.frontends.btcpp.spelling import MODEL
 from btlang.support.record import Record
 from btlang.text.source import Source
 from btlang.tree.comments import KEPT
-from btlang.tree.model import NodeModel
+from btlang.tree.node import NodeModel
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

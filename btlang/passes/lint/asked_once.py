@@ -13,7 +13,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
 from btlang.text.source import Span
 from btlang.tree import ast
-from btlang.tree.asked import ABOUT_ANSWERS
+from btlang.tree.answers import ABOUT_ANSWERS
 from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.lexicon import Lexicon

@@ -141,7 +141,7 @@ def find_in_chain(
         gaps = gaps or Gaps(items, vocabulary)
         if not gaps.is_open(at):
             continue
-        place, start, gap = _Place(chain, gaps, at, is_part), left.span.start, gaps.text(at)
+        place, start, gap = _GapPlace(chain, gaps, at, is_part), left.span.start, gaps.text(at)
         if _is_open(right) and not _names_its_command(right):
             yield Attachment(MIXED, start, partial(place.mixed_right, right))
         elif _is_open(left):
@@ -169,7 +169,7 @@ def _behind_after(
     for at, (before, left, right) in enumerate(zip(items, items[1:], items[2:], strict=False)):
         is_after = spoken[id(before)] < spoken[id(right)] < spoken[id(left)]
         if is_after and gaps.is_open(at) and gaps.is_open(at + 1) and "\n" not in right.span.text:
-            place = _Place(chain, gaps, at, is_part)
+            place = _GapPlace(chain, gaps, at, is_part)
             yield Attachment(AFTER, before.span.start, partial(place.after, right))
 
 
@@ -187,7 +187,7 @@ def _negated(chain: ast.Chain) -> Readings:
     return Readings(chain, ast.Not(inner, chain.span), chain.span, add_brackets(first.span))
 
 
-class _Place:
+class _GapPlace:
     """A gap in a chain, in the run of parts around it."""
 
     def __init__(self, chain: ast.Chain, gaps: Gaps, at: int, is_part: bool) -> None:

@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Collection
 from functools import cache
 
-from btlang.diagnostics.reading import is_below, real_path
+from btlang.diagnostics.files import is_below, real_path
 from btlang.robots.bodies import joint_tables
 from btlang.robots.bodies.body import (
     PATIENCE,

@@ -9,7 +9,7 @@ from functools import cache
 from zlib import crc32
 
 from btlang.diagnostics.diagnostic import MissionError
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.files import read_source
 from btlang.robots.bodies.body import Body
 from btlang.robots.bodies.gesture import Gesture, joints_of
 from btlang.robots.bodies.gesture_file import TARGET, GestureError, phrase_forms
@@ -64,7 +64,7 @@ def gesture_words(body: Body) -> str | None:
 
 def _problem(path: str, text: str) -> MissionError | None:
     """Return why a text can't be the keyword file there."""
-    from btlang.backends.files import write_file  # only a file that is new is written
+    from btlang.diagnostics.files import write_file  # only a file that is new is written
 
     write_file(path, text)
     try:

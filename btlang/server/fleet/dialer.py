@@ -20,7 +20,7 @@ from contextlib import suppress
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, WebSocketException
 
-from btlang.diagnostics.reading import os_error_reason
+from btlang.diagnostics.files import os_error_reason
 from btlang.server.accounts.certificate import pin, write_private
 from btlang.server.fleet.fleet import pin_in
 from btlang.server.http.access import AccessError

@@ -10,7 +10,7 @@ import socket
 from contextlib import suppress
 
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
-from btlang.diagnostics.reading import os_error_reason
+from btlang.diagnostics.files import os_error_reason
 from btlang.robots.files import socket_folder
 from btlang.support.user_dirs import user_dir
 from btlang.task.execution.emergency import latch_path, shut_latch

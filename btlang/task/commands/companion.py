@@ -12,7 +12,7 @@ from contextlib import contextmanager, suppress
 from importlib.util import find_spec
 
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
-from btlang.diagnostics.reading import os_error_reason
+from btlang.diagnostics.files import os_error_reason
 from btlang.task.commands.client import data_folder
 from btlang.text.source import NOWHERE
 

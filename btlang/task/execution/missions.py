@@ -8,7 +8,7 @@ from functools import lru_cache
 
 from btlang.api import Mission, parse_tree
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
-from btlang.diagnostics.reading import is_below, read_source
+from btlang.diagnostics.files import is_below, read_source
 from btlang.engine.leaves.leaf import describe_exception
 from btlang.task.store.records import MissionText
 from btlang.text.formatting import one_line

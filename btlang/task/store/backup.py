@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from contextlib import suppress
 
-from btlang.diagnostics.reading import os_error_reason
+from btlang.diagnostics.files import os_error_reason
 from btlang.task.store.database import Database, Mode, store_error
 from btlang.task.store.migrations import MIGRATIONS, migrate, open_database, stored_version, tables_of
 from btlang.task.store.rows import marks

@@ -10,7 +10,7 @@ import time
 from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext, suppress
 
-from btlang.diagnostics.reading import os_error_reason
+from btlang.diagnostics.files import os_error_reason
 from btlang.task.store.database import OWNED, PATIENCE, Database, Mode, StoreError, owned_error, store_error
 
 TYPE_CHECKING = False

@@ -7,7 +7,7 @@ from functools import cached_property
 from btlang.frontends.mission.token import BEFORE_CONDITIONS, Called, Listed, Token, run_start, statement_start
 from btlang.frontends.mission.tokens.addressed_texts import AddressedTexts
 from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of
-from btlang.tree.asked import ABOUT_ANSWERS, ANSWERED, ASK, UNANSWERED, asking_verbs
+from btlang.tree.answers import ABOUT_ANSWERS, ANSWERED, ASK, UNANSWERED, asking_verbs
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.value_type import PERSON, TEXT
 from btlang.vocabulary.word_tree import find

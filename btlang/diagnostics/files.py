@@ -1,15 +1,18 @@
-"""Reading files as sources. Everything that can be wrong with a file, even one to be written, becomes a diagnostic."""
+"""Reading and writing whole files. Everything that can be wrong with a file becomes a diagnostic."""
 
 from __future__ import annotations
 
 import errno
 import os
+import shutil
 import stat
 import sys
 from codecs import BOM_UTF8
 from collections.abc import Callable
+from contextlib import nullcontext
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
+from btlang.text.output import pass_on
 from btlang.text.source import Source, Span
 
 MOST_BYTES = 10_000_000
@@ -127,3 +130,51 @@ def os_error_reason(error: OSError) -> str:
     """Return the reason in the words of the operating system, to be used in a sentence."""
     reason = error.strerror or str(error)
     return reason[:1].lower() + reason[1:]
+
+
+def write_output(made: str | bytes, path: str | None) -> None:
+    """Write into the file, or else to standard output."""
+    if path is not None:
+        write_file(path, made)
+    elif isinstance(made, bytes):
+        sys.stdout.buffer.write(made)
+    else:
+        pass_on(made)
+
+
+def replace_text(path: str, text: str) -> None:
+    """Give an existing file another text, as `write_file` does."""
+    try:
+        with open(path, "r+b"):
+            pass
+    except OSError as error:
+        raise MissionError([unwritable(path, error)]) from None
+    write_file(path, text)
+
+
+def write_file(path: str, content: str | bytes) -> None:
+    """Write a file, new or not, at once. Raises MissionError (BT009) if that fails; the file is then as it was.
+
+    What a mission may hold and UTF-8 does not becomes an escape, which JSON and Python read back.
+    """
+    data = content.encode(errors="backslashreplace") if isinstance(content, str) else content
+    target = os.path.realpath(path)
+    new = f"{target}.{os.getpid()}.new"
+    try:
+        with open(target, "ab") if os.path.exists(target) else nullcontext():  # a protected file stays as it is
+            pass
+        if os.path.exists(target) and not os.path.isfile(target):  # a device such as /dev/stdout cannot be replaced
+            with open(target, "wb") as device:
+                device.write(data)
+            return
+        try:
+            with open(new, "xb") as file:
+                file.write(data)
+            if os.path.exists(target):
+                shutil.copymode(target, new)
+            os.replace(new, target)
+        finally:
+            if os.path.exists(new):
+                os.remove(new)
+    except OSError as error:
+        raise MissionError([unwritable(path, error)]) from None

@@ -1,4 +1,4 @@
-"""Whose answer a command depends on: `whenever bumped, ask Bob "Ok?". If so, wave` waves for the answer in the rule.
+"""Answers: commands that depend on what somebody answers are put where that person is asked.
 
 A command that depends on the answer and follows a form whose commands ask belongs to those commands: elsewhere it
 would be asked where nobody has answered.
@@ -15,6 +15,11 @@ from btlang.tree.visit import fold
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.value_type import TEXT
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+
 ASK, ANSWERED, UNANSWERED = "Ask", "AnswerIs", "NobodyAnswered"
 """The ids of the question, and of the conditions about its answer."""
 ABOUT_ANSWERS = frozenset((ANSWERED, UNANSWERED))
@@ -22,24 +27,20 @@ _ONCE = (ast.Retry, ast.Try, ast.Within, ast.UpTo, ast.StopWhen, ast.Constrained
 """Forms whose commands are done before what comes behind the form."""
 _EXAMPLE = 'ask Alice "Tea?". If so, wave'
 
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from typing import Any
-
 
 def asking_verbs(vocabulary: Lexicon) -> frozenset[str]:
-    """The words with which somebody is asked."""
+    """Return the words with which somebody is asked."""
     return frozenset(phrase.split()[0] for entry in vocabulary.entries.get(ASK, ()) for phrase in entry.phrases)
 
 
 def with_answers(mission: ast.Program) -> tuple[ast.Program, list[Diagnostic]]:
-    """The mission with what depends on an answer where somebody asks, and what is wrong with it (BT144)."""
+    """Return the mission with dependent commands where somebody asks, and what is wrong with it (BT144)."""
     problems: list[Diagnostic] = []
 
     def body(root: ast.Ast) -> ast.Ast:
         if not _asks(root):
             return root
-        return fold(root, ast.parts, lambda node, done: _gathered(ast.with_parts(node, done), problems))
+        return fold(root, ast.parts, lambda node, done: _gather(ast.with_parts(node, done), problems))
 
     def program(part: ast.Program) -> ast.Program:
         return ast.with_bodies(part, body, program)
@@ -57,8 +58,8 @@ def _depends(node: ast.Ast) -> bool:
     return isinstance(node, ast.If) and _asks(node.condition)
 
 
-def _gathered(node: ast.Ast, problems: list[Diagnostic]) -> ast.Ast:
-    """A sequence in which commands that depend on an answer stand where it is given."""
+def _gather(node: ast.Ast, problems: list[Diagnostic]) -> ast.Ast:
+    """Return a sequence in which commands that depend on an answer stand where it is given."""
     if not isinstance(node, ast.Chain) or node.operator != "sequence" or not any(map(_depends, node.items)):
         return node
     made: list[ast.Ast] = []
@@ -84,7 +85,7 @@ def _gathered(node: ast.Ast, problems: list[Diagnostic]) -> ast.Ast:
 
 
 def _behind_silence(question: ast.Ast, item: ast.If) -> ast.Ast | None:
-    """A reply that would hold in silence, too, behind what is done then: `if she doesn't answer, A. If not, B`."""
+    """Put a reply that would hold in silence, too, behind what is done then: `if she doesn't answer, A. If not, B`."""
     if isinstance(question, ast.IfWorks) and _questions(question.tried):
         span = Span(item.span.source, question.body.span.start, item.span.end)
         body = ast.Chain("sequence", (question.body, item), True, span)
@@ -98,7 +99,7 @@ def _behind_silence(question: ast.Ast, item: ast.If) -> ast.Ast | None:
 
 
 def _reply(items: list[ast.Ast], asking: int | None, item: ast.Ast) -> None:
-    """Adds a command to those behind a question, if there is one."""
+    """Add a command to those behind a question, if there is one."""
     if asking is not None and isinstance(item, ast.If) and _asks(item.condition, (UNANSWERED,)):
         items[asking:] = _with_silence(items[asking:], item)
     else:
@@ -106,7 +107,7 @@ def _reply(items: list[ast.Ast], asking: int | None, item: ast.Ast) -> None:
 
 
 def _with_silence(items: Sequence[ast.Ast], item: ast.If) -> list[ast.Ast]:
-    """A question and what follows, with a command that says what silence does: nobody has to answer then.
+    """Return a question and what follows, with a command that says what silence does: nobody has to answer then.
 
     `If so, A. If not, B. If she says nothing, C`: silence is no `not`.
     """
@@ -132,13 +133,13 @@ def _questions(node: ast.Ast) -> list[ast.Phrase]:
 
 
 def _question(node: ast.Phrase) -> str:
-    """What it asks."""
+    """Return the text of a question."""
     types = {slot.name: slot.type for slot in node.entry.slots}
     return next((text for name, text in node.arguments if types.get(name) == TEXT), "")
 
 
 def _form_that_asks(node: ast.Ast) -> list[Any]:
-    """The forms around the last question of a command, the outermost first; none where it is asked in any case."""
+    """List the forms around the last question of a command, the outermost first; none if it is asked in any case."""
     path: list[Any] = []
     last = _questions(node)[-1]
     while node is not last:
@@ -151,7 +152,7 @@ def _form_that_asks(node: ast.Ast) -> list[Any]:
 
 
 def _with_last(form: Sequence[Any], item: ast.Ast) -> ast.Ast:
-    """The outermost of some forms, whose innermost has one more command at its end."""
+    """Return the outermost of some forms, whose innermost has one more command at its end."""
     body = form[-1][1]
     items = body.items if isinstance(body, ast.Chain) and body.operator == "sequence" else (body,)
     made = list(items)

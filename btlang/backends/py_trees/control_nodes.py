@@ -1,4 +1,4 @@
-"""Nodes that ask again at every tick, that choose, or that do several things at once; see node.py."""
+"""Control nodes that ask again at every tick, that choose, or that do several things at once; see node.py."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from btlang.backends.py_trees.node import FAILURE, RUNNING, SKIPPED, SUCCESS, UN
 
 
 class Reactive(Node):
-    """From the first child at every tick; one that decides or is RUNNING halts those behind it."""
+    """A node that ticks from the first child each time; one that decides or is RUNNING halts those behind it."""
 
     passes = SUCCESS
     running, asked = -1, 0
@@ -64,7 +64,7 @@ class ReactiveFallback(Reactive, composites.Selector):
 
 
 class Parallel(Node, composites.Parallel):
-    """Ticks all that have not completed; ends with the child that decides. A negative count is counted from all."""
+    """A node that ticks all that haven't completed, until one decides. A negative count is counted from all."""
 
     def __init__(self, name: str, children: Sequence[Behaviour], successes: int = -1, failures: int = 1) -> None:
         self.successes, self.failures = successes, failures
@@ -106,7 +106,7 @@ class Parallel(Node, composites.Parallel):
 
 
 class ParallelAll(Parallel):
-    """Ticks all until each has completed; FAILURE where so many have failed."""
+    """A node that ticks all until each has completed; FAILURE if so many have failed."""
 
     def run(self) -> Asking:
         count = len(self.children)
@@ -124,7 +124,7 @@ class ParallelAll(Parallel):
 
 
 class IfThenElse(Node):
-    """Asks the first child once, then ticks the second, or the third."""
+    """A node that asks the first child once, then ticks the second, or the third."""
 
     position = 0
 
@@ -157,7 +157,9 @@ class IfThenElse(Node):
 
 
 class WhileDoElse(Node):
-    """Asks the first child at every tick and ticks the second, or the third; another answer halts the branch."""
+    """A node that asks the first child each time and ticks the second, or the third; another answer halts the
+    branch.
+    """
 
     branch = 0
 
@@ -200,7 +202,7 @@ class WhileDoElse(Node):
 
 
 class Whenever(Node):
-    """Children: condition, reaction, work. The work is suspended while the reaction runs, once or each time."""
+    """A rule with condition, reaction and work. The work is suspended while the reaction runs, once or each time."""
 
     armed, fired, reacting, running = True, False, False, 0
 

@@ -1,4 +1,4 @@
-"""Nodes that tick one child after the other; see node.py."""
+"""Sequences and fallbacks, which tick one child after the other; see node.py."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from btlang.backends.py_trees.node import FAILURE, RUNNING, SKIPPED, SUCCESS, As
 
 
 class InOrder(Node):
-    """One child after the other at the status `passes`, from the one that was reached.
+    """A node that ticks one child after the other at the status `passes`, from the one that was reached.
 
     One that `remembers` goes on with the child that failed or was stopped, and is RUNNING after each child that passed
     at once.
@@ -53,14 +53,14 @@ class InOrder(Node):
 
 
 class SkippableSequence(InOrder, composites.Sequence):
-    """Sequence of the engine."""
+    """The Sequence of the engine."""
 
     def __init__(self, name: str, children: Sequence[Behaviour]) -> None:
         super().__init__(name, children, memory=True)
 
 
 class SkippableFallback(InOrder, composites.Selector):
-    """Fallback of the engine."""
+    """The Fallback of the engine."""
 
     passes = FAILURE
 
@@ -69,13 +69,13 @@ class SkippableFallback(InOrder, composites.Selector):
 
 
 class SequenceWithMemory(SkippableSequence):
-    """SequenceWithMemory of the engine."""
+    """The SequenceWithMemory of the engine."""
 
     remembers = True
 
 
 class TryCatch(InOrder):
-    """All but the last child are a sequence; when it fails, the last one runs to its end: FAILURE."""
+    """A sequence of all but the last child; when it fails, the last one runs to its end: FAILURE."""
 
     catching = False
 
@@ -110,7 +110,7 @@ class TryCatch(InOrder):
 
 
 class PipelineSequence(Node):
-    """Ticks all children up to the furthest one reached, again those that have completed."""
+    """A node that ticks all children up to the furthest one reached, again those that have completed."""
 
     reached = 0
 
@@ -137,7 +137,7 @@ class PipelineSequence(Node):
 
 
 class RecoveryNode(Node):
-    """When the first child fails, the second one recovers, and the first is tried again, at most so many times."""
+    """A node whose second child recovers when the first fails, which is then tried again, at most so many times."""
 
     position = count = 0
 
@@ -169,7 +169,7 @@ class RecoveryNode(Node):
 
 
 class RoundRobin(Node):
-    """One child after the other until one succeeds; the next run begins after that one."""
+    """A node that runs one child after the other until one succeeds; the next run begins after that one."""
 
     position = failed = 0
     runs = False

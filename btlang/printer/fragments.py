@@ -1,8 +1,4 @@
-"""Pieces of a sentence: how those of one form are put into those of another, and how they become text.
-
-A piece is what is read as one thing: a phrase, a name, a connective with its value, a punctuation mark. Pieces are kept
-in nested tuples until the end, so that a deep tree is not copied at each level.
-"""
+"""Fragments of a sentence: how those of one form are put into those of another, and how they become text."""
 
 from __future__ import annotations
 
@@ -19,52 +15,52 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, TypeAlias
 
-    Pieces: TypeAlias = tuple["Piece | Pieces", ...]
+    Fragments: TypeAlias = tuple["Fragment | Fragments", ...]
 else:
-    Pieces = tuple
+    Fragments = tuple
 
 LEAF, WORD, MARK = "leaf", "word", "mark"
 OPEN, CLOSE, COMMA, COLON = "(", ")", ",", ":"
 _NO_SPACE_BEFORE = frozenset((CLOSE, COMMA, COLON))
 
 
-class Piece(Record):
-    """`kind` is "leaf" (may stand in brackets of its own), "word" or "mark" (never read as a phrase)."""
+class Fragment(Record):
+    """A fragment; `kind` is "leaf" (may stand in brackets), "word" or "mark" (never read as a phrase)."""
 
     text: str
     kind: str
 
 
-def mark(text: str) -> Piece:
-    """A punctuation mark, or words that no phrase is looked for in."""
-    return Piece(text, MARK)
+def mark(text: str) -> Fragment:
+    """Make a punctuation mark, or words that no phrase is looked for in."""
+    return Fragment(text, MARK)
 
 
-def flat(pieces: Pieces) -> Iterator[Piece]:
-    """The pieces in order."""
+def flatten(pieces: Fragments) -> Iterator[Fragment]:
+    """Return the fragments in order."""
     stack: list[Any] = [pieces]
     while stack:
         item = stack.pop()
-        if isinstance(item, Piece):
+        if isinstance(item, Fragment):
             yield item
         else:
             stack.extend(reversed(item))
 
 
-def is_longer(pieces: Pieces, length: float) -> bool:
+def is_longer(pieces: Fragments, length: float) -> bool:
     """Whether their text has surely more characters than that; much cheaper than the text."""
-    return any(total > length for total in accumulate(len(piece.text) for piece in flat(pieces)))
+    return any(total > length for total in accumulate(len(piece.text) for piece in flatten(pieces)))
 
 
-def last_of(pieces: Pieces) -> Piece:
-    """The last piece."""
+def last_fragment(pieces: Fragments) -> Fragment:
+    """Return the last fragment."""
     item: Any = pieces
-    while not isinstance(item, Piece):
+    while not isinstance(item, Fragment):
         item = item[-1]
     return item
 
 
-def reads_on(first: Piece, second: Piece, vocabulary: Lexicon, names: TrieNode) -> bool:
+def reads_on(first: Fragment, second: Fragment, vocabulary: Lexicon, names: TrieNode) -> bool:
     """Whether a connective and what stands behind it would be read as one: `once` and `every 5 s`."""
     if first.kind != WORD:
         return False
@@ -72,15 +68,15 @@ def reads_on(first: Piece, second: Piece, vocabulary: Lexicon, names: TrieNode) 
     return _end(words, 0, vocabulary, names) > len(first.text)
 
 
-def text_of(pieces: Pieces, vocabulary: Lexicon, names: TrieNode) -> str:
-    """The text, in which each piece is read as it is meant.
+def join_fragments(pieces: Fragments, vocabulary: Lexicon, names: TrieNode) -> str:
+    """Join fragments to a text in which each is read as it is meant.
 
     Where a phrase would reach into what follows it (or a connective into it), it gets brackets, which change nothing.
     """
-    given = list(flat(pieces))
+    given = list(flatten(pieces))
     alone: set[int] = set()
     while True:
-        text, starts = _joined(given, alone)
+        text, starts = _join(given, alone)
         words = split(Source(text), vocabulary.orthography)
         at = {start: i for i, start in enumerate(words.starts)}
         wrong = set()
@@ -97,12 +93,12 @@ def text_of(pieces: Pieces, vocabulary: Lexicon, names: TrieNode) -> str:
         alone |= wrong
 
 
-def _next_leaf(given: list[Piece], at: int) -> set[int]:
+def _next_leaf(given: list[Fragment], at: int) -> set[int]:
     return {at + 1} if at + 1 < len(given) and given[at + 1].kind == LEAF else set()
 
 
-def _joined(given: list[Piece], alone: set[int]) -> tuple[str, dict[int, int]]:
-    """The text, and where each piece starts in it; those of `alone` get brackets."""
+def _join(given: list[Fragment], alone: set[int]) -> tuple[str, dict[int, int]]:
+    """Return the text, and where each fragment starts in it; those of `alone` get brackets."""
     parts: list[str] = []
     starts: dict[int, int] = {}
     length, spaced = 0, False

@@ -1,4 +1,4 @@
-"""Nodes of one child, and those that wait, which py_trees has not or that do something else there; see node.py."""
+"""Decorators and waiting leaves that py_trees doesn't have, or that do something else there; see node.py."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from btlang.backends.py_trees.node import FAILURE, RUNNING, SKIPPED, SUCCESS, UN
 
 
 class Around(Node):
-    """Its child, with another status."""
+    """A node of one child, with another status."""
 
     becomes: ClassVar[dict[object, object]] = {}
 
@@ -24,7 +24,7 @@ class SubTree(Around):
 
 
 class Inverter(Around):
-    """SUCCESS for FAILURE and the other way round; what is not known stays a FAILURE."""
+    """A node that turns SUCCESS into FAILURE and the other way round; what isn't known stays a FAILURE."""
 
     becomes: ClassVar = {SUCCESS: FAILURE, FAILURE: SUCCESS, UNKNOWN: FAILURE}
 
@@ -34,19 +34,19 @@ class Inverter(Around):
 
 
 class ForceSuccess(Around):
-    """SUCCESS for FAILURE."""
+    """A node that returns SUCCESS for FAILURE."""
 
     becomes: ClassVar = {FAILURE: SUCCESS}
 
 
 class ForceFailure(Around):
-    """FAILURE for SUCCESS."""
+    """A node that returns FAILURE for SUCCESS."""
 
     becomes: ClassVar = {SUCCESS: FAILURE}
 
 
 class KeepRunningUntilFailure(Around):
-    """RUNNING until its child fails."""
+    """A node that is RUNNING until its child fails."""
 
     becomes: ClassVar = {SUCCESS: RUNNING, SKIPPED: RUNNING}
 
@@ -66,7 +66,7 @@ class RestrictableZones(Protocol):
 
 
 class KeepOut(Node):
-    """Its child, while the robot keeps out of zones: until the child ends or is halted, also while it is suspended."""
+    """A node whose robot keeps out of zones until the child ends or is halted, even while it is suspended."""
 
     keeps_in = False
     held: HeldZones | None = None
@@ -123,13 +123,15 @@ class KeepOut(Node):
 
 
 class KeepIn(KeepOut):
-    """Its child, while the robot stays in zones."""
+    """A node whose robot stays in zones while the child runs."""
 
     keeps_in = True
 
 
 class Repeat(Node):
-    """Runs its child `most` times (-1: for ever) or until it fails; after a round of one tick it is RUNNING."""
+    """A node that runs its child `most` times (-1: for ever) or until it fails; after a round of one tick it is
+    RUNNING.
+    """
 
     again = SUCCESS
     count = 0
@@ -166,13 +168,15 @@ class Repeat(Node):
 
 
 class Retry(Repeat):
-    """Runs its child until it succeeds, at most so many times (-1: for ever)."""
+    """A node that runs its child until it succeeds, at most so many times (-1: for ever)."""
 
     again = FAILURE
 
 
 class RunOnce(Node):
-    """Runs its child until it completes, once; from then on it is skipped, or has the status of that run."""
+    """A node that runs its child until it completes, once; from then on it is skipped, or has the status of that
+    run.
+    """
 
     result = RUNNING
 
@@ -190,7 +194,7 @@ class RunOnce(Node):
 
 
 class Timed(Node):
-    """Measures time from its first tick; `now` gives the time in seconds."""
+    """A node that measures time from its first tick; `now` returns the time in seconds."""
 
     def __init__(
         self,
@@ -211,7 +215,7 @@ class Timed(Node):
         return self.kept + self.now() - self.since >= self.seconds - 1e-9
 
     def pause(self, keep: bool) -> None:
-        """Stops the watch; resets it where nothing is kept."""
+        """Stop the watch; reset it if nothing is kept."""
         if not keep:
             self.kept = 0.0
         elif self.since is not None:
@@ -224,7 +228,7 @@ class Timed(Node):
 
 
 class Sleep(Timed):
-    """A leaf: RUNNING until the time is over."""
+    """A leaf that is RUNNING until the time is over."""
 
     def run(self) -> Asking:
         if not self.reached():
@@ -235,7 +239,7 @@ class Sleep(Timed):
 
 
 class Delay(Timed):
-    """RUNNING until the time is over, then its child."""
+    """A node that is RUNNING until the time is over, then ticks its child."""
 
     def run(self) -> Asking:
         if not self.reached():
@@ -247,7 +251,7 @@ class Delay(Timed):
 
 
 class Timeout(Timed):
-    """Its child, which is halted and fails where it is RUNNING when the time is over. 0 is no limit."""
+    """A node whose child is halted and fails if it is RUNNING when the time is over. 0 is no limit."""
 
     def run(self) -> Asking:
         if self.seconds and self.reached():
@@ -260,7 +264,9 @@ class Timeout(Timed):
 
 
 class RateController(Timed):
-    """Ticks its child at the start, while it is RUNNING, and when the time is over since its last success."""
+    """A node that ticks its child at the start, while it is RUNNING, and when the time is over since its last
+    success.
+    """
 
     fresh, runs = True, False
 

@@ -1,10 +1,11 @@
-"""What was understood at a place of a text, with help on it."""
+"""Help at a place of a text: what was understood there, and what may follow."""
 
 from __future__ import annotations
 
 from btlang.api import Mission
 from btlang.diagnostics.diagnostic import MissionError
-from btlang.editing.words import Words
+from btlang.editing.words import RobotWords
+from btlang.frontends.mission.completion.completer import completions
 from btlang.frontends.mission.reader import lexed
 from btlang.frontends.mission.token import Assigned, Called, Each, Header, Listed, NodeCall, Remembered, Token
 from btlang.frontends.mission.tokens.lexer import Lexer
@@ -25,7 +26,7 @@ _NAMED = "A name of this mission"
 _ROLES: dict[type, str] = {Remembered: "remember", NodeCall: "do", Each: "each"}
 
 
-def hover(source: Source, at: int, words: Words) -> dict[str, Any]:
+def hover(source: Source, at: int, words: RobotWords) -> dict[str, Any]:
     """Return `found`: what is at a character, None for nothing.
 
     `start` and `end` are its characters; `words` what was understood, in canonical English; `help` and `example` those
@@ -51,7 +52,7 @@ def _in_tree(source: Source, at: int, mission: Mission) -> Found | None:
     return _found(span.start, span.end, mission.label(node), node.id, "node", entry or About())
 
 
-def _in_english(source: Source, at: int, words: Words, mission: Mission | None) -> Found | None:
+def _in_english(source: Source, at: int, words: RobotWords, mission: Mission | None) -> Found | None:
     lexer = lexed(source, words.vocabulary(source))
     token = next((token for token in lexer.tokens if token.start <= at < token.end), None)
     if token is None:
@@ -125,3 +126,17 @@ def _joined(part: ast.Ast, at: int) -> ast.Ast:
 def _english(part: ast.Ast, program: ast.Program | None, lexer: Lexer) -> str:
     names = ast.all_definitions(program) if program is not None else ()
     return english(part, lexer.vocabulary, names=names)
+
+
+_MOST = 200
+
+
+def complete(source: Source, words: RobotWords, at: int | None = None) -> dict[str, Any]:
+    """`completions` at a character, by default the end; see `Completion`. None in XML and JSON.
+
+    Raises MissionError for words that can't be used.
+    """
+    if frontend_of(source) != "english":
+        return {"completions": []}
+    found = completions(source.text[:at], words.vocabulary(source))
+    return {"completions": [each.as_dict() for each in found[:_MOST]]}
