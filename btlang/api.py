@@ -248,10 +248,10 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):
             check_mission(read_world(self.world, body), body, self.tree, self.vocabulary)
         if not self.says_ids:
             return
-        from btlang.backends.checking import misnamed, tree_problems
+        from btlang.backends.checking import find_misnamed, tree_problems
 
         named = self.vocabulary.with_places(tuple(fact.name for fact in self.facts))
-        problems = [*tree_problems(self.tree, self.vocabulary), *misnamed(self.tree, named)]
+        problems = [*tree_problems(self.tree, self.vocabulary), *find_misnamed(self.tree, named)]
         if problems:
             raise MissionError(problems)
 

@@ -54,12 +54,12 @@ def tree_problems(
         return not find_faults(Tree(node), bind, services)
 
     for error in found:
-        problems.append(_diagnosed(error, tree, vocabulary, entries, fits))
+        problems.append(_diagnose(error, tree, vocabulary, entries, fits))
         entries.pop(error.node.id, None)  # once is enough
     return sort_diagnostics(problems)
 
 
-def misnamed(tree: Tree, vocabulary: Lexicon) -> Iterator[Diagnostic]:
+def find_misnamed(tree: Tree, vocabulary: Lexicon) -> Iterator[Diagnostic]:
     """Names of places and the like that nothing has (BT132): no phrase could hold them."""
     for node in tree.walk():
         slots = {slot.name: slot.type for entry in vocabulary.entries.get(node.id, ()) for slot in entry.slots}
@@ -75,7 +75,7 @@ def misnamed(tree: Tree, vocabulary: Lexicon) -> Iterator[Diagnostic]:
             yield diagnostic("BT132", node.span or NOWHERE, id=node.id, reason=reason)
 
 
-def _diagnosed(
+def _diagnose(
     error: EngineError,
     tree: Tree,
     vocabulary: Lexicon,
@@ -88,9 +88,9 @@ def _diagnosed(
     if isinstance(error, UnknownSubTree):
         name = node.port("ID")
         near = nearest(name.lower(), names)
-        said = said_at(node, name, vocabulary)
+        said = find_said_id(node, name, vocabulary)
         fix = correct_subtree(said, names, vocabulary) if said is not None else None
-        return _add_help(diagnostic("BT126", span, fix=fix, name=name), _near(near), _defining(name, span))
+        return _add_help(diagnostic("BT126", span, fix=fix, name=name), _near(near), _advise_definition(name, span))
     missing = node.id not in CATALOGUE and node.id not in vocabulary.entries
     if not isinstance(error, UnknownNode) and not (node.children and missing):
         return diagnostic("BT132", span, id=node.id, reason=error.message)
@@ -98,7 +98,7 @@ def _diagnosed(
         near = nearest(node.id.lower(), [id for id, kind in CATALOGUE.items() if kind.most])
         return diagnostic("BT131", span, id=node.id, help=_near(near))
     ids = [*vocabulary.entries, *(id for id, kind in CATALOGUE.items() if not kind.least)]
-    said, fix = said_at(node, node.id, vocabulary), None
+    said, fix = find_said_id(node, node.id, vocabulary), None
     if said is not None and said.may_be_subtree:
         ids, fix = [*names, *ids], correct_subtree(said, names, vocabulary)
     if said is not None and fix is None:
@@ -121,7 +121,7 @@ def _place(error: EngineError) -> tuple[str, int]:
     return (span.source.name, span.start) if span else ("", 0)
 
 
-def _defining(name: str, span: Span) -> str:
+def _advise_definition(name: str, span: Span) -> str:
     if span.text[:1] == "<":
         return 'If it is in another file: <include path="..."/>'
     return f'Define it, at the left margin: "{name}" means: ...'
@@ -190,7 +190,7 @@ class SaidId(Record):
     is_sentence: bool = False
 
 
-def said_at(node: Node, node_id: str, vocabulary: Lexicon) -> SaidId | None:
+def find_said_id(node: Node, node_id: str, vocabulary: Lexicon) -> SaidId | None:
     """Where the words of a node say an id; None where they don't, as in XML."""
     if node.span is None or node.span.text[:1] == "<":
         return None

@@ -49,7 +49,7 @@ def understood(mission: ast.Program, tree: Tree, vocabulary: Lexicon, sentences:
     """Every statement and definition, in the order of the text; `sentences` are those of the text as it was written."""
     printer = printer_of(mission, vocabulary, "all")
     return [
-        Understood(each.at, "\n".join(_reading(each, printer, _NO_LIMIT)).removeprefix(_READ_AS))
+        Understood(each.at, "\n".join(_read_sentence(each, printer, _NO_LIMIT)).removeprefix(_READ_AS))
         for each in _all_statements(mission, tree, sentences)
     ]
 
@@ -68,10 +68,10 @@ def explain_mission(
     for statement in _all_statements(mission, tree, sentences):
         number, written = sentences.written(statement.at)
         lines = textwrap.wrap(f"line {number}: {written}", width, subsequent_indent=INDENT * 2)
-        lines += _reading(statement, printer, width)
+        lines += _read_sentence(statement, printer, width)
         if statement.node is not None:
             lines.append("")
-            shown = outline(Tree(_pruned(statement.node, width // len(_BRANCH))), label)
+            shown = outline(Tree(_prune(statement.node, width // len(_BRANCH))), label)
             lines += [_cut(INDENT + line, width) for line in shown.splitlines()]
         blocks.append("\n".join(lines))
     return "\n\n".join(blocks)
@@ -109,7 +109,7 @@ def _commands(body: ast.Ast | None, root: Node, sentences: Sentences) -> Iterato
         yield Statement(number, tuple(item for item, _ in pairs), node, joined)
 
 
-def _reading(statement: Statement, printer: Printer, width: int) -> Iterator[str]:
+def _read_sentence(statement: Statement, printer: Printer, width: int) -> Iterator[str]:
     """`read as:` and the sentence behind it, or its lines below it."""
     items, joined = statement.items, statement.joined
     whole = items[0] if len(items) == 1 else ast.Chain(joined, items, False, items[0].span)
@@ -130,7 +130,7 @@ def _reading(statement: Statement, printer: Printer, width: int) -> Iterator[str
             )
 
 
-def _pruned(root: Node, most: int) -> Node:
+def _prune(root: Node, most: int) -> Node:
     """Return the tree without what is deeper than any line can show: drawing that costs the square of its depth."""
 
     def parts(item: tuple[Node, int]) -> list[tuple[Node, int]]:

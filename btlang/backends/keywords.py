@@ -235,16 +235,16 @@ class SlotTypes:
         if port.direction != "output":
             names = _choices(port)
             if port.type == "bool" and set(texts) <= set(_BOOLEANS.names):
-                return self._named(_BOOLEANS, node_id)
+                return self._name_type(_BOOLEANS, node_id)
             if names and set(texts) <= set(names):
-                return self._named(ValueType(port.name, "names", names=names), node_id)
+                return self._name_type(ValueType(port.name, "names", names=names), node_id)
             if _WHOLE.fullmatch(port.type) and all(map(_is_whole, texts)):
-                return self._named(_WHOLE_NUMBERS, node_id)
+                return self._name_type(_WHOLE_NUMBERS, node_id)
             if (_DECIMAL.fullmatch(port.type) or (not port.type and texts)) and all(map(_is_number, texts)):
                 return self._known[NUMBER]
         return self._known[TEXT]
 
-    def _named(self, type: ValueType, node_id: str) -> ValueType:
+    def _name_type(self, type: ValueType, node_id: str) -> ValueType:
         """Return the type under its name, or under one with that of the node if something else has it."""
         for name in (type.name, f"{node_id}_{type.name}"):
             made: ValueType = type.replace(name=name)

@@ -116,9 +116,9 @@ def to_python(
         lines = [lines[0].replace(_TREE, f"\nfrom btlang.text.source import Source{_TREE}")]
     used: list[str] = []
     for name, root in tree.subtrees:
-        lines += _assigned(f"subtree_{len(used) + 1}", root)
+        lines += _assign(f"subtree_{len(used) + 1}", root)
         used.append(f"({format_literal(name)}, subtree_{len(used) + 1})")
-    lines += _assigned("root", tree.root)
+    lines += _assign("root", tree.root)
     arguments: list[str | SourceLines] = ["root"]
     if used:
         arguments.append(format_call("", used))
@@ -145,7 +145,7 @@ def to_python(
     return "\n".join([*lines, _FOOT])
 
 
-def _assigned(name: str, root: Node) -> list[str]:
+def _assign(name: str, root: Node) -> list[str]:
     """Statements that end with one that gives a tree the name."""
     before = Statements(f"{name}_part_")
     made = before.expression(root, _node)

@@ -47,11 +47,11 @@ class _Diff:
             if self._numbers.are_equal(one, other):
                 continue
             pairs: list[tuple[Node, Node]] = []
-            for line in self._compared(one, other, pairs):
+            for line in self._compare(one, other, pairs):
                 yield line + place
             pending += reversed(pairs)
 
-    def _compared(self, one: Node, other: Node, pairs: list[tuple[Node, Node]]) -> Iterator[str]:
+    def _compare(self, one: Node, other: Node, pairs: list[tuple[Node, Node]]) -> Iterator[str]:
         """Yield the lines about two nodes themselves; what is below them and may differ goes into `pairs`."""
         if one.id == other.id and bool(one.children) == bool(other.children):
             yield from self._ports(one, other)
@@ -88,7 +88,7 @@ class _Diff:
         for port in dict.fromkeys((*before, *after)):
             if before.get(port) != after.get(port):
                 texts = [_value(other, port, ports.get(port, "none")) for ports in (before, after)]
-                yield f"{_named(other, port)} of {words}: {texts[0]} to {texts[1]}"
+                yield f"{_port_label(other, port)} of {words}: {texts[0]} to {texts[1]}"
         if one.name != other.name:
             yield f"the name of {words}: '{one.name}' to '{other.name}'"
 
@@ -120,7 +120,7 @@ class _Diff:
         return f"new step '{self._say_new(children[at])}'{where}"
 
 
-def _named(node: Node, port: str) -> str:
+def _port_label(node: Node, port: str) -> str:
     """Return what a port is called: that of the rounds by what they are."""
     kind = CATALOGUE.get(node.id)
     if kind is not None and port == kind.rounds:
@@ -140,6 +140,6 @@ def _value(node: Node, port: str, text: str) -> str:
 
 def _head(node: Node) -> str:
     ports = ", ".join(
-        f"{_named(node, port).partition(' of ')[0]} {_value(node, port, text)}" for port, text in node.ports
+        f"{_port_label(node, port).partition(' of ')[0]} {_value(node, port, text)}" for port, text in node.ports
     )
     return f"{node.id} ({ports})" if ports else node.id

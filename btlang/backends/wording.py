@@ -57,7 +57,7 @@ def phrases(node_id: str, ports: SpokenPorts, articles: Collection[str], *, is_c
     state = _state(words)
     if state is not None:
         subject, said = state
-        about = _named_last(subject, ports.required)
+        about = _find_last_port(subject, ports.required)
         middle = [f"{{{about}}}"] if about else []
         others = tuple(port for port in ports.required if port != about)
         rest = ports.replace(required=others, texts=ports.texts if not about else frozenset())
@@ -91,7 +91,7 @@ def _slots(words: list[str], ports: SpokenPorts, articles: Collection[str]) -> I
     """Yield the slots behind words. One needs no name: the one that the words end with, or a text that is the only
     one.
     """
-    bare = _named_last(words, ports.required)
+    bare = _find_last_port(words, ports.required)
     if not bare and len(ports.required) == 1 and ports.required[0] in ports.texts:
         [bare] = ports.required
     if bare:
@@ -105,7 +105,7 @@ def _slots(words: list[str], ports: SpokenPorts, articles: Collection[str]) -> I
         yield f"[{_label(port, words, articles) if at else 'giving'} {{{port}}}]"
 
 
-def _named_last(words: list[str], ports: Sequence[str]) -> str:
+def _find_last_port(words: list[str], ports: Sequence[str]) -> str:
     """Return the port whose name the words end with, "" if there is none."""
     return next((port for port in ports if words[-len(id_words(port)) or len(words) :] == id_words(port)), "")
 

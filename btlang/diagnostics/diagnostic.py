@@ -67,7 +67,7 @@ def diagnostic(
     if fix is not None and (fix[0].text.lower() == fix[1].lower() or _grows_together(*fix)):
         fix = None
     said = CODES[code].message
-    shown = ((name, _shown(text) if f"{{{name}}}" in said else one_line(text)) for name, text in arguments.items())
+    shown = ((name, _shorten(text) if f"{{{name}}}" in said else one_line(text)) for name, text in arguments.items())
     return Diagnostic(code, span, tuple(shown), notes, fix)
 
 
@@ -77,7 +77,7 @@ def _grows_together(span: Span, words: str) -> bool:
     return any(len(pair) == 2 and pair.isalnum() for pair in (before, after))
 
 
-def _shown(text: str) -> str:
+def _shorten(text: str) -> str:
     short = text if len(text) <= _LONGEST else text[: _LONGEST // 2] + " ... " + text[-_LONGEST // 2 :]
     return one_line(short)
 
@@ -102,8 +102,8 @@ def render(diagnostic: Diagnostic, colour: bool = False) -> str:
     if diagnostic.span.source is NOWHERE.source:
         place = "btc"
     if diagnostic.span.source.hidden:
-        return f"{place}: {_painted(f'{severity} {diagnostic.code}', own)} (its text isn't shown here)"
-    label = _painted(f"{severity} {diagnostic.code}:", own)
+        return f"{place}: {_paint(f'{severity} {diagnostic.code}', own)} (its text isn't shown here)"
+    label = _paint(f"{severity} {diagnostic.code}:", own)
     lines = [f"{place}: {label} {diagnostic.message}", *underline(diagnostic.span, own)]
     lines += [f"  {line}" for line in diagnostic.hint.splitlines()]
     line = fix_line(diagnostic)
@@ -127,7 +127,7 @@ def fix_line(diagnostic: Diagnostic) -> str:
     if last > len(line) or "\n" in words:
         return ""
     before, after = line[:first], line[last:]
-    mended = _blanked(f"{before}{words}{after}".strip())
+    mended = _blank(f"{before}{words}{after}".strip())
     shown = mended  # a hint that has the words together with the one before them says enough
     if before.strip():
         shown = words if span.start < diagnostic.span.start else f"{before.split()[-1]} {words}"
@@ -149,14 +149,14 @@ def underline(span: Span, colour: str = "") -> list[str]:
         line = before + line[cut : cut + _WIDEST] + after
         first, last = first - cut + len(before), min(last - cut + len(before), len(line))
     marks = "^" * max(1, last - first)
-    return [f"  {_blanked(line)}".rstrip(), "  " + " " * first + _painted(marks, colour)]
+    return [f"  {_blank(line)}".rstrip(), "  " + " " * first + _paint(marks, colour)]
 
 
-def _painted(text: str, colour: str) -> str:
+def _paint(text: str, colour: str) -> str:
     return f"{colour}{text}{PLAIN}" if colour else text
 
 
-def _blanked(line: str) -> str:
+def _blank(line: str) -> str:
     """One character for each, so that what is underlined stays above its marks."""
     return "".join(c if c.isprintable() else " " for c in line)
 

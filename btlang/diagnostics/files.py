@@ -47,7 +47,7 @@ def read_included(path: str, source: Source) -> Source:
         with open(real, "rb", opener=lambda name, flags: os.open(name, flags | getattr(os, "O_NONBLOCK", 0))) as file:
             if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
                 raise OSError(errno.EINVAL, "it isn't a regular file")
-            return _limited(file.read(MOST_BYTES + 1))
+            return _limit(file.read(MOST_BYTES + 1))
 
     hides = source.hides_includes
     return _decode(Source("", where, os.path.dirname(where), source.roots, hidden=hides, hides_includes=hides), read)
@@ -76,9 +76,9 @@ def read_bytes(path: str) -> bytes:
         return _pipes[path]
     if path == "-":
         data = sys.stdin.buffer.read(MOST_BYTES + 1) if sys.stdin is not None else b""
-        return _limited(data)
+        return _limit(data)
     with open(path, "rb") as file:
-        data = _limited(file.read(MOST_BYTES + 1))
+        data = _limit(file.read(MOST_BYTES + 1))
         if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
             _pipes[path] = data
     return data
@@ -92,7 +92,7 @@ def has_mark(path: str) -> bool:
     return read_bytes(path).startswith(BOM_UTF8)
 
 
-def _limited(data: bytes) -> bytes:
+def _limit(data: bytes) -> bytes:
     if len(data) > MOST_BYTES:
         raise OSError(errno.EFBIG, f"it has more than {MOST_BYTES:,} bytes")
     return data

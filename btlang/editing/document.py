@@ -39,7 +39,7 @@ class _Read:
         except MissionError as error:
             self.problems = error.diagnostics
         else:
-            self.problems = (*self.mission.warnings, *_misnamed(self.mission))
+            self.problems = (*self.mission.warnings, *_report_misnamed(self.mission))
 
     def summary(self) -> dict[str, Any]:
         ok = self.mission is not None
@@ -87,7 +87,7 @@ def _cache_key(source: Source, words: RobotWords) -> tuple[object, ...]:
     return source.text, source.name, tuple(words.keywords), world, words.language
 
 
-def _misnamed(mission: Mission) -> tuple[Diagnostic, ...]:
+def _report_misnamed(mission: Mission) -> tuple[Diagnostic, ...]:
     """Return what would keep a tree from running that names its nodes by their ids."""
     try:
         mission.check()

@@ -62,13 +62,13 @@ def read_edit(data: object) -> Edit:
         kind = int if name in ("node", "last", "to") else str
         optional = value is None and name in ("last", "to")
         if name not in Edit.fields or not (type(value) is kind or optional):
-            raise _refused(f"'{name}' can't be {value!r}")
+            raise _refuse(f"'{name}' can't be {value!r}")
     if "do" not in fields or "node" not in fields:
-        raise _refused("it must be an object with 'do' and 'node'")
+        raise _refuse("it must be an object with 'do' and 'node'")
     return Edit(**fields)
 
 
-def _refused(reason: str, span: Span = NOWHERE) -> MissionError:
+def _refuse(reason: str, span: Span = NOWHERE) -> MissionError:
     return MissionError([diagnostic("BT220", span, reason=reason)])
 
 
@@ -89,12 +89,12 @@ def edit(source: Source, words: RobotWords, edit: Edit) -> dict[str, Any]:
     mission then, or is wrong with it now.
     """
     if frontend_of(source) != "english":
-        raise _refused("it isn't English")
+        raise _refuse("it isn't English")
     editor = Editor(source, words.vocabulary(source))
     try:
         done = editor.edited(edit)
     except Unplaced as error:
-        raise _refused(str(error), editor.span(edit)) from None
+        raise _refuse(str(error), editor.span(edit)) from None
     return {"changes": [done.change.as_dict()], "start": done.start, "end": done.end}
 
 
@@ -132,7 +132,7 @@ class Editor:
     def insert(self, wanted: Edit) -> _Done:
         target = self._node(wanted.node)
         new = self._read(wanted.words, self._takes_condition(target, wanted.place))
-        return self._write(self._placed(target, wanted.place, new), new[0])
+        return self._write(self._place(target, wanted.place, new), new[0])
 
     def copy(self, wanted: Edit) -> _Done:
         nodes = self._nodes(wanted)
@@ -140,7 +140,7 @@ class Editor:
         if self._takes_condition(target, wanted.place) != self._syntax.is_condition(nodes[0]):
             raise Unplaced("a condition stands where a condition is asked for, and a command elsewhere")
         copies = [node.replace(bracketed=True) if isinstance(node, ast.Chain) else node.replace() for node in nodes]
-        steps = self._placed(target, wanted.place, copies)
+        steps = self._place(target, wanted.place, copies)
         program = self._syntax.changed(steps[-1])
         writer = Writer(self._source, self._syntax, copies=dict(zip(map(id, copies), nodes, strict=True)))
         return self._done(writer.written(steps, program), program, copies[0])
@@ -156,7 +156,7 @@ class Editor:
         if any(id(node) not in copied.slots for node in nodes):  # it holds the copy now
             raise Unplaced("it can't come into itself")
         paths = [find_path(node, copied) for node in nodes]
-        text, _ = self._replaced(text, paths, ())
+        text, _ = self._replace(text, paths, ())
         return text, copied.changed(copied.steps(nodes, ())[-1]), focus
 
     def wrap(self, wanted: Edit) -> _Done:
@@ -236,11 +236,11 @@ class Editor:
             change = writer.written([step], program)
         used = ast.Name(name, (), nodes[0].span)
         paths = [find_path(node, self._syntax) for node in nodes]
-        return *self._replaced(apply_changes(self._source.text, [change]), paths, (used,)), used
+        return *self._replace(apply_changes(self._source.text, [change]), paths, (used,)), used
 
     # -- parts of edits
 
-    def _replaced(self, text: str, paths: Sequence[Path], new: Sequence[ast.Ast]) -> tuple[str, ast.Program]:
+    def _replace(self, text: str, paths: Sequence[Path], new: Sequence[ast.Ast]) -> tuple[str, ast.Program]:
         """Return the second step of an edit, in the text that the first one made: other nodes in the place of those at
         the end of some ways. Their comments go, as far as they stand elsewhere by then.
         """
@@ -258,7 +258,7 @@ class Editor:
         around = self._syntax.holder(node)
         return around.operator if isinstance(around, ast.Chain) else "sequence"
 
-    def _placed(self, target: ast.Ast, place: str, new: Sequence[ast.Ast]) -> list[ChangeStep]:
+    def _place(self, target: ast.Ast, place: str, new: Sequence[ast.Ast]) -> list[ChangeStep]:
         """Return what comes before, after or inside a node."""
         syntax = self._syntax
         if place == "inside":

@@ -49,7 +49,7 @@ def _in_tree(source: Source, at: int, mission: Mission) -> Found | None:
         return None
     span, node = min(around, key=lambda place: place[0].end - place[0].start)
     entry = mission.vocabulary.entry(node.id)
-    return _found(span.start, span.end, mission.label(node), node.id, "node", entry or About())
+    return _find(span.start, span.end, mission.label(node), node.id, "node", entry or About())
 
 
 def _in_english(source: Source, at: int, words: RobotWords, mission: Mission | None) -> Found | None:
@@ -66,35 +66,35 @@ def _in_english(source: Source, at: int, words: RobotWords, mission: Mission | N
         if part is None and isinstance(said, Called) and said.entry.sort in ("action", "condition"):
             part = ast.Phrase(said.entry, said.arguments, lexer.text.span(0, 0))
         understood = _english(part, program, lexer) if part is not None else source.text[token.start : token.end]
-        return _called(token, said.entry, understood, lexer)
+        return _describe_call(token, said.entry, understood, lexer)
     known = said.operation if isinstance(said, Assigned) else _ROLES.get(type(said), token.kind)
     role = next((role for role in (known, token.role) if role in lexer.vocabulary.about), "")
     if not role:
         return None
     understood = source.text[token.start : token.end]
     if part is not None:
-        understood = _english(_joined(part, at), program, lexer)
-    return _found(token.start, token.end, understood, role, "word", lexer.vocabulary.about[role])
+        understood = _english(_join(part, at), program, lexer)
+    return _find(token.start, token.end, understood, role, "word", lexer.vocabulary.about[role])
 
 
 def _definition(token: Token, header: Header, program: ast.Program | None, lexer: Lexer) -> Found:
     defined = program.definitions if program is not None else ()
     body = next((each.body for each in defined if each.name_span.start == header.span.start), None)
     understood = header.name if body is None else f"{header.name}: {_english(body, program, lexer)}"
-    return _found(token.start, token.end, understood, header.name, "name", About(help=_NAMED))
+    return _find(token.start, token.end, understood, header.name, "name", About(help=_NAMED))
 
 
-def _called(token: Token, entry: Entry, understood: str, lexer: Lexer) -> Found:
+def _describe_call(token: Token, entry: Entry, understood: str, lexer: Lexer) -> Found:
     if entry.sort == "name":
-        return _found(token.start, token.end, understood, entry.id, "name", About(help=_NAMED))
+        return _find(token.start, token.end, understood, entry.id, "name", About(help=_NAMED))
     if entry.sort == "value":
-        return _found(token.start, token.end, understood, "compare", "condition", lexer.vocabulary.about["compare"])
-    return _found(
+        return _find(token.start, token.end, understood, "compare", "condition", lexer.vocabulary.about["compare"])
+    return _find(
         token.start, token.end, understood, entry.id, "command" if entry.sort == "action" else entry.sort, entry
     )
 
 
-def _found(start: int, end: int, understood: str, id: str, kind: str, about: Entry | About) -> Found:
+def _find(start: int, end: int, understood: str, id: str, kind: str, about: Entry | About) -> Found:
     short = understood if len(understood) <= _LONGEST else f"{understood[: _LONGEST - 1]}…"
     return {
         "start": start, "end": end, "words": short, "help": " ".join(about.help.split()), "example": about.example,
@@ -115,7 +115,7 @@ def _smallest(program: ast.Program, source: Source, token: Token) -> ast.Ast | N
     return best
 
 
-def _joined(part: ast.Ast, at: int) -> ast.Ast:
+def _join(part: ast.Ast, at: int) -> ast.Ast:
     """Of a chain only the two that are joined at a character."""
     if not isinstance(part, ast.Chain) or len(part.items) < 3:
         return part

@@ -48,7 +48,7 @@ def palette(source: Source, words: RobotWords) -> dict[str, Any]:
     vocabulary = words.vocabulary(source)
     own = [*_names(source, vocabulary)] if frontend_of(source) == "english" else []
     topics = [{"topic": _OWN, "items": own}] if own else []
-    return {"topics": [*topics, *_shipped(vocabulary)], "forms": [*_forms(vocabulary)]}
+    return {"topics": [*topics, *_list_shipped(vocabulary)], "forms": [*_forms(vocabulary)]}
 
 
 def _forms(vocabulary: Lexicon) -> Iterator[dict[str, str]]:
@@ -63,17 +63,17 @@ def _names(source: Source, vocabulary: Lexicon) -> Iterator[dict[str, str]]:
     for header in definitions.headers.values():
         if header.name:
             types = dict(definitions.types.get(header.body, ()))
-            insert = _filled(name_form(header.name), types, vocabulary)
+            insert = _fill(name_form(header.name), types, vocabulary)
             if header.is_quoted:
                 insert = f"{vocabulary.word('do')} {quote(header.name, vocabulary)}"
             yield {"words": header.name, "help": "", "example": "", "sort": "name", "insert": insert}
 
 
 @lru_cache(maxsize=4)
-def _shipped(vocabulary: Lexicon) -> list[dict[str, Any]]:
+def _list_shipped(vocabulary: Lexicon) -> list[dict[str, Any]]:
     topics: dict[str, list[dict[str, str]]] = {}
     for item in items(vocabulary):
-        insert = _inserted(item, vocabulary)
+        insert = _insert(item, vocabulary)
         if insert:
             topics.setdefault(item.topic, []).append(
                 {
@@ -84,7 +84,7 @@ def _shipped(vocabulary: Lexicon) -> list[dict[str, Any]]:
     return [{"topic": topic, "items": found} for topic, found in topics.items()]
 
 
-def _inserted(item: Item, vocabulary: Lexicon) -> str:
+def _insert(item: Item, vocabulary: Lexicon) -> str:
     """Return the example where it is whole in this world and says the item; else the phrase with other values."""
     if item.sort == "value":
         return ""
@@ -111,10 +111,10 @@ def _example(entry: Entry, vocabulary: Lexicon) -> Iterator[str]:
     types = {slot.name: slot.type for slot in entry.slots}
     for phrase in entry.phrases:
         for form in reversed(forms(phrase)):
-            yield _filled(form, types, vocabulary)
+            yield _fill(form, types, vocabulary)
 
 
-def _filled(form: Form, types: dict[str, str], vocabulary: Lexicon) -> str:
+def _fill(form: Form, types: dict[str, str], vocabulary: Lexicon) -> str:
     return " ".join(
         _value(vocabulary.types[types.get(part.name, "text")], vocabulary) if isinstance(part, Slot) else part
         for part in form

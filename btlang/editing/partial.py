@@ -45,7 +45,7 @@ def partial_reading(text: str, vocabulary: Lexicon, compiled: Callable[[str], Mi
                 raise
             for problem in placed:
                 refused.setdefault(max(sentences.number(problem.span.start), 0), []).append(problem)
-    depending = _depending(sentences, refused, vocabulary)
+    depending = _find_depending(sentences, refused, vocabulary)
     read: dict[int, str] = {}
     if mission is not None and mission.syntax is not None:
         for each in understood(mission.syntax, mission.tree, mission.vocabulary, sentences):
@@ -64,7 +64,7 @@ def partial_reading(text: str, vocabulary: Lexicon, compiled: Callable[[str], Mi
     }
 
 
-def _depending(sentences: Sentences, refused: dict[int, list[Diagnostic]], vocabulary: Lexicon) -> set[int]:
+def _find_depending(sentences: Sentences, refused: dict[int, list[Diagnostic]], vocabulary: Lexicon) -> set[int]:
     """Return the sentences that go on with one that is refused, or may speak of its things: `it` would be something
     else.
     """

@@ -117,12 +117,12 @@ class Syntax:
                 return steps
             slot = self.slots[id(step.parent)]
             operator = getattr(slot.parent, "operator", step.operator)
-            step = ChangeStep(slot.parent, slot.field, slot.at, (step.parent,), _held(step), operator)
+            step = ChangeStep(slot.parent, slot.field, slot.at, (step.parent,), _link(step), operator)
 
     def changed(self, last: ChangeStep) -> ast.Program:
         """Return the mission after the last of some steps. Raises Unplaced."""
         if last.field == "definitions":
-            held = _put(self.mission.definitions, last)
+            held = _replace_part(self.mission.definitions, last)
             return self.mission.replace(definitions=held)  # type: ignore[no-any-return]
         body = joined(last.new, last.operator) if last.new else None
         return self.mission.replace(body=body)  # type: ignore[no-any-return]
@@ -151,24 +151,24 @@ def _sources(tree: Tree, origins: Origins) -> list[ast.Ast | None]:
     return found
 
 
-def _put(items: tuple[ast.Ast, ...], step: ChangeStep) -> tuple[ast.Ast, ...]:
+def _replace_part(items: tuple[ast.Ast, ...], step: ChangeStep) -> tuple[ast.Ast, ...]:
     assert step.at is not None
     return (*items[: step.at], *step.new, *items[step.at + len(step.old) :])
 
 
-def _held(step: ChangeStep) -> tuple[ast.Ast, ...]:
+def _link(step: ChangeStep) -> tuple[ast.Ast, ...]:
     """Return what takes the place of the parent of a step."""
     parent = step.parent
     if isinstance(parent, ast.Chain):
         items: list[ast.Ast] = []
-        for item in _put(parent.items, step):
+        for item in _replace_part(parent.items, step):
             melts = type(item) is ast.Chain and item.operator == parent.operator and not item.bracketed
             items += item.items if melts and isinstance(item, ast.Chain) else (item,)
         if len(items) > 1:
             return (parent.replace(items=tuple(items)),)
         return tuple(items)
     if step.at is not None:
-        items = list(_put(getattr(parent, step.field), step))
+        items = list(_replace_part(getattr(parent, step.field), step))
         if not items and isinstance(parent, ast.Exact):
             return ()
         if isinstance(parent, ast.AtLeast) and len(items) < max(parent.number, 2):

@@ -313,7 +313,7 @@ class Writer:
             return
         if not step.new or not (step.old or items):
             return
-        for said in self._said_in_line(step.new, step.operator, printer):
+        for said in self._is_said_in_line(step.new, step.operator, printer):
             if step.old:
                 yield Change(self._lines.place(step.old[0])[0], self._lines.place(step.old[-1])[1], said)
                 continue
@@ -326,7 +326,7 @@ class Writer:
                     start = places[step.at][0]
                     yield Change(start, start, said + joint)
 
-    def _said_in_line(self, nodes: Sequence[ast.Ast], operator: str, printer: Printer) -> Iterator[str]:
+    def _is_said_in_line(self, nodes: Sequence[ast.Ast], operator: str, printer: Printer) -> Iterator[str]:
         said = printer.say(joined(nodes, operator))
         if said.in_lines:
             return

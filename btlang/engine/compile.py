@@ -199,7 +199,7 @@ def _compile_built_in(instance: NodeInstance, kind: NodeKind, children: Sequence
     compiled = choose_compiler(SEMANTICS[kind.id], instance, children)(instance, children)
     if kind.id != SUBTREE:  # which is its child
         instance.memory = (compiled[0],)
-    return _checked(instance, compiled) if from_blackboard and not kind.any_ports else compiled
+    return _check_ports(instance, compiled) if from_blackboard and not kind.any_ports else compiled
 
 
 def _compile_leaf(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
@@ -222,7 +222,7 @@ def _how_many(kind: NodeKind) -> str:
     return str(kind.least) if kind.least == kind.most else f"{kind.least} or {kind.most}"
 
 
-def _checked(instance: NodeInstance, compiled: Compiled) -> Compiled:
+def _check_ports(instance: NodeInstance, compiled: Compiled) -> Compiled:
     """Wrap a node that reads a number from the blackboard: it fails if there is no number."""
     tick, halt = compiled
 

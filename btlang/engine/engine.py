@@ -91,7 +91,7 @@ class Engine:
         self.raised: dict[int, BaseException] = {}
         """The latest exception of each leaf that raised one other than ActionFailed, by the number of its node."""
         self._on_warning = on_warning
-        self._state.on_warning = self._warned
+        self._state.on_warning = self._warn
         with gc_paused:
             self._instances = expand(tree, self.blackboard, self._state)
             self._trace = None if listener is None else StatusTrace(self._state, listener)
@@ -285,10 +285,10 @@ class Engine:
         return self._text(fault) if fault is not None and fault.index == index else ""
 
     def _with_values(self, instance: NodeInstance) -> Node:
-        ports = tuple((port, _valued(instance.scope, port, text)) for port, text in instance.node.ports)
+        ports = tuple((port, _fill_value(instance.scope, port, text)) for port, text in instance.node.ports)
         return instance.node.replace(ports=ports)  # type: ignore[no-any-return]
 
-    def _warned(self, fault: Fault | NodeInstance) -> None:
+    def _warn(self, fault: Fault | NodeInstance) -> None:
         failure = self._failure(fault)
         if failure.exception is not None and not isinstance(failure.exception, ActionFailed):
             self.raised[failure.index] = failure.exception
@@ -345,11 +345,11 @@ class Engine:
     def _failure(self, fault: Fault | NodeInstance) -> Failure:
         around: list[Failure] = []
         while fault.cause is not None:
-            around.append(self._described(fault))
+            around.append(self._describe(fault))
             fault = fault.cause
-        return self._described(fault, tuple(reversed(around)))
+        return self._describe(fault, tuple(reversed(around)))
 
-    def _described(self, fault: Fault | NodeInstance, around: tuple[Failure, ...] = ()) -> Failure:
+    def _describe(self, fault: Fault | NodeInstance, around: tuple[Failure, ...] = ()) -> Failure:
         index = fault.index
         return Failure(
             index, self.node(index), self.path(index), self._text(fault), fault.exception, self.span(index), around
@@ -361,7 +361,7 @@ def _argument(scope: Blackboard, key: str, text: str) -> str:
     return as_text(value) if isinstance(value, str | int | float) else text
 
 
-def _valued(scope: Blackboard, port: str, text: str) -> str:
+def _fill_value(scope: Blackboard, port: str, text: str) -> str:
     key = blackboard_key(port, text)
     value = scope.get(key) if key is not None and key in scope else text
     return as_text(value) if isinstance(value, str | int | float) else text

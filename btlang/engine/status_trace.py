@@ -151,9 +151,9 @@ class NodeTrace:
         tick, halt = compiled
         leaf = find_function(tick)
         if leaf is not None and self.index and not self.every:
-            return self._traced_function(leaf), self._traced_halt(halt)
+            return self._trace_function(leaf), self._trace_halt(halt)
         if self.reported_by_leaf:
-            return tick, self._traced_halt(halt)
+            return tick, self._trace_halt(halt)
         trace = self.trace
 
         def traced_tick() -> int:
@@ -168,9 +168,9 @@ class NodeTrace:
             trace.thread = get_ident()
             return traced_tick()
 
-        return (traced_tick if self.index else root_tick), self._traced_halt(halt)
+        return (traced_tick if self.index else root_tick), self._trace_halt(halt)
 
-    def _traced_function(self, leaf: FunctionLeaf) -> Tick:
+    def _trace_function(self, leaf: FunctionLeaf) -> Tick:
         """Wrap the function itself, and do what FunctionLeaf.tick does: the two calls become one."""
 
         # defaults and not cells, as in control.py: there are many of them
@@ -205,7 +205,7 @@ class NodeTrace:
 
         return traced_tick
 
-    def _traced_halt(self, halt: Halt) -> Halt:
+    def _trace_halt(self, halt: Halt) -> Halt:
         def traced_halt(keep: bool) -> None:
             halt(keep)
             if self.last == RUNNING:

@@ -57,11 +57,11 @@ def _out_of_range(node: Node) -> str:
         if kind.interrupts and number == 0:
             return "a time limit is at least 0.001 s"  # 0 would mean no limit
         if not port.least <= number <= port.most:
-            return _wanted(port, name, number)
+            return _describe_range(port, name, number)
     return ""
 
 
-def _wanted(port: Port, name: str, number: int) -> str:
+def _describe_range(port: Port, name: str, number: int) -> str:
     if port.unit == "ms":
         return "a time is not negative" if number < 0 else "a time is at most 49 days"
     if port.unit == "rounds" and number > 0:

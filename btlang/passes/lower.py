@@ -70,7 +70,7 @@ def _models(exact: Sequence[ast.Exact], phrases: Sequence[ast.Phrase], vocabular
 
 def lower(root: ast.Ast, scope: LoweringScope) -> Lowered:
     """Make the tree of a command or condition."""
-    one = lower_one if scope.origins is None else _noted
+    one = lower_one if scope.origins is None else _note
     return fold(root, ast.parts, lambda item, done: one(item, done, scope))
 
 
@@ -79,7 +79,7 @@ def lower_one(item: ast.Ast, done: list[Lowered], scope: LoweringScope) -> Lower
     return _LOWER[type(item)](item, done, scope)
 
 
-def _noted(item: ast.Ast, done: list[Lowered], scope: LoweringScope) -> Lowered:
+def _note(item: ast.Ast, done: list[Lowered], scope: LoweringScope) -> Lowered:
     """As `lower_one`, and notes what the node was made of."""
     assert scope.origins is not None
     lowered = lower_one(item, done, scope)
@@ -159,7 +159,7 @@ def _for_each(item: ast.ForEach, done: list[Lowered], scope: LoweringScope) -> L
 
 def _chain(item: ast.Chain, done: list[Lowered], scope: LoweringScope) -> Lowered:
     if item.operator == "sequence" and any(isinstance(part, ast.Whenever) for part in item.items):
-        return _ruled(item, done, scope)
+        return _rule(item, done, scope)
     if item.operator == "parallel":
         return _parallel(item, done)
     children, endless = [part.node for part in done], [part.endless for part in done]
@@ -180,7 +180,7 @@ def _at_least(item: ast.AtLeast, done: list[Lowered], _scope: LoweringScope) -> 
     return Lowered(new_node("Parallel", [part.node for part in done], item.span, **ports))
 
 
-def _ruled(item: ast.Chain, done: list[Lowered], scope: LoweringScope) -> Lowered:
+def _rule(item: ast.Chain, done: list[Lowered], scope: LoweringScope) -> Lowered:
     """Standing rules round the other commands; the first one is the outermost, so that it wins."""
     rules = [part for part, own in zip(done, item.items, strict=True) if isinstance(own, ast.Whenever)]
     others = [part for part, own in zip(done, item.items, strict=True) if not isinstance(own, ast.Whenever)]

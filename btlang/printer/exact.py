@@ -106,7 +106,7 @@ def _ports(role: str, ports: Mapping[str, str], printer: Printer) -> str:
     vocabulary, said = printer.vocabulary, ""
     for name, text in ports.items():
         key = _key(name, vocabulary)
-        is_bare = _BARE.fullmatch(text) and text[1:-1] not in _claiming(vocabulary)
+        is_bare = _BARE.fullmatch(text) and text[1:-1] not in _claiming_words(vocabulary)
         value = text if is_bare else quote(text, vocabulary)
         is_free = said and _is_free(key, value, printer)
         said += f", {key} {value}" if is_free else f" {vocabulary.word(role)} {key} {value}"
@@ -156,10 +156,10 @@ def _is_words(name: str, vocabulary: Lexicon) -> bool:
     if any(first == phrase.split()[0] for phrase in vocabulary.roles["with"]):
         return False
     others = {phrase.split()[0] for role in ("newline", "character") for phrase in vocabulary.roles[role]}
-    others |= {*vocabulary.articles, *_claiming(vocabulary)}
+    others |= {*vocabulary.articles, *_claiming_words(vocabulary)}
     return others.isdisjoint((first, *rest))
 
 
-def _claiming(vocabulary: Lexicon) -> set[str]:
+def _claiming_words(vocabulary: Lexicon) -> set[str]:
     """Return the words that make names or values of the words beside them."""
     return {word for role in (*DEFINING, *CHANGING) for word in vocabulary.roles[role]}

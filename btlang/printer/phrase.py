@@ -26,7 +26,7 @@ def phrase_of(node: Node, vocabulary: Lexicon) -> str:
     What works with values of the mission is shown as it was written.
     """
     if node.id == SUBTREE:
-        return _filled_name(node)
+        return _fill_name(node)
     if node.span is not None and is_written(node) and is_sentence(node.span):
         return node.span.text
     if node.id in ("Choose", "ChooseAll"):
@@ -51,7 +51,7 @@ def is_written(node: Node) -> bool:
     return computed or bool(node.port(MEASURED))
 
 
-def _filled_name(node: Node) -> str:
+def _fill_name(node: Node) -> str:
     """Return the name of a subtree with its arguments in place of its parameters."""
     ports = dict(node.ports)
     parts = name_form(node.port("ID"))
@@ -90,7 +90,7 @@ def leaf_words(
         said = {name: _read_back_value(text, types[name], vocabulary) for name, text in spoken.items()}
         if exactly and not all(said.values()):
             continue  # nor is it read back in any phrase
-        for form, values in _fitting(entry, spoken):
+        for form, values in _find_forms(entry, spoken):
             for name, text in values.items():
                 said[name] = said.get(name) or value_of(text, types[name], vocabulary)
             words = " ".join(said[part.name] if isinstance(part, Slot) else part for part in form)
@@ -113,7 +113,7 @@ def _default(entry: Entry, slot: str) -> str | None:
     return next((known.default for known in entry.slots if known.name == slot), None)
 
 
-def _fitting(entry: Entry, spoken: Mapping[str, str]) -> Iterator[tuple[Form, Mapping[str, str]]]:
+def _find_forms(entry: Entry, spoken: Mapping[str, str]) -> Iterator[tuple[Form, Mapping[str, str]]]:
     """Yield the forms that say the values, the shortest of each phrase first; those that say a default too come
     last.
     """

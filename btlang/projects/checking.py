@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 
-from btlang.backends.checking import accept_anything, bind_placeholder, misnamed, tree_problems
+from btlang.backends.checking import accept_anything, bind_placeholder, find_misnamed, tree_problems
 from btlang.diagnostics.diagnostic import Diagnostic, sort_diagnostics
 from btlang.engine.leaves.leaf import LeafBinding
 from btlang.frontends.btcpp.models import nav2_models
@@ -209,7 +209,7 @@ class _Check:
                 problem = problem.replace(arguments=(("id", node.id), ("reason", reason)))
             yield problem
         if self._vocabulary.entries:
-            yield from misnamed(self._whole(self._project.trees), self._vocabulary)
+            yield from find_misnamed(self._whole(self._project.trees), self._vocabulary)
 
     def _is_older(self, span: Span, node_id: str) -> bool:
         """Return whether a node of version 3 only has the name of one that format 4 brought."""

@@ -29,17 +29,17 @@ def _printable(text: str) -> str:
     at = 0
     while at < len(text):
         colour = next((colour for colour in _COLOURS if text.startswith(colour, at)), "") if text[at] == "\x1b" else ""
-        parts.append(colour or _shown(text[at], "\t"))
+        parts.append(colour or _escape(text[at], "\t"))
         at += len(colour) or 1
     return "".join(parts)
 
 
 def one_line(text: str) -> str:
     """Return the text on one line: line ends, tabs and escape sequences are shown, too."""
-    return text if text.isprintable() else "".join(_shown(c, "") for c in text)
+    return text if text.isprintable() else "".join(_escape(c, "") for c in text)
 
 
-def _shown(character: str, kept: str) -> str:
+def _escape(character: str, kept: str) -> str:
     """Escape what could move the cursor, turn the direction of reading or begin a line; blanks of any width stay."""
     blank = character > "\x9f" and character.isspace() and character not in "\u2028\u2029"
     if character.isprintable() or blank or character in kept or character in _JOINERS:

@@ -99,7 +99,7 @@ class Table:
         """Return a finite number within the bounds, by default a million. Raises Problem."""
         if not self.has(key) and default is not None:
             return default
-        value = self._required(key, "a number")
+        value = self._require(key, "a number")
         if type(value) not in (int, float) or value != value:
             raise self.problem(key, f'"{key}" must be a number; write {key} = 1.5')
         if not is_coordinate(value):
@@ -111,7 +111,7 @@ class Table:
 
     def text(self, key: str) -> str:
         """Text that is not blank. Raises Problem."""
-        value = self._required(key, "a text")
+        value = self._require(key, "a text")
         if not isinstance(value, str) or not value.strip():
             raise self.problem(key, f'"{key}" must be text in quotes; write {key} = "kitchen"')
         return " ".join(value.split())
@@ -127,7 +127,7 @@ class Table:
         """One of the values. Raises Problem."""
         if not self.has(key) and default is not None:
             return default
-        value = self._required(key, "a text")
+        value = self._require(key, "a text")
         if value not in values:
             listed = ", ".join(f'"{known}"' for known in values) or "nothing, because there is none"
             raise self.problem(key, f'"{key}" must be one of {listed}')
@@ -156,7 +156,7 @@ class Table:
 
     def table(self, key: str) -> Table:
         """Return the table under the key. Raises Problem."""
-        value = self._required(key, "a table")
+        value = self._require(key, "a table")
         if not isinstance(value, dict):
             raise self.problem(key, f'"{key}" must be a table; write {key} = {{ x = 1, y = 1 }}')
         return Table(key, value, (*self._path, key))
@@ -188,7 +188,7 @@ class Table:
         """Make a Problem at this key."""
         return Problem(message, *self._path, key)
 
-    def _required(self, key: str, kind: str) -> Any:
+    def _require(self, key: str, kind: str) -> Any:
         if not self.has(key):
             raise self.problem(key, f'{self._name} needs {kind} "{key}"')
         return self._values[key]

@@ -280,7 +280,7 @@ def split(source: Source, orthography: Orthography) -> Words:
     starts.append(len(text))
     ends.append(len(text))
     if any(line.is_item for line in result.lines):
-        result.lines = list(_indented_items(words, result.lines))
+        result.lines = list(_indent_items(words, result.lines))
     return result
 
 
@@ -292,7 +292,7 @@ def _indent(margin: str) -> tuple[int, bool]:
     return len(blank.replace("\r", "").expandtabs(4)), len(blank) < len(margin)
 
 
-def _indented_items(words: Sequence[str], lines: Iterable[Line]) -> Iterator[Line]:
+def _indent_items(words: Sequence[str], lines: Iterable[Line]) -> Iterator[Line]:
     """Yield lines in which the items of a list behind a line with a colon are a block, even if they aren't indented."""
     before: Line | None = None
     margin: int | None = None  # of a list that is not indented

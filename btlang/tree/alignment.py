@@ -76,8 +76,8 @@ class Alignment:
         self._new: dict[int, Node] = {}
         self._gaps: deque[tuple[Nodes, Nodes]] = deque()
         roots, lost, found = list(pairs), list(gone), list(come)
-        before = [node for root in (*(old for old, _ in roots), *lost) for node in self._counted(root)]
-        after = [node for root in (*(new for _, new in roots), *found) for node in self._counted(root)]
+        before = [node for root in (*(old for old, _ in roots), *lost) for node in self._count(root)]
+        after = [node for root in (*(new for _, new in roots), *found) for node in self._count(root)]
         self._pair_lists([([old], [new]) for old, new in roots])
         self._pair_equal(before, after)
         while self._gaps:
@@ -95,7 +95,7 @@ class Alignment:
         """Whether two nodes and all that is below them are equal."""
         return self._numbers.are_equal(old, new)
 
-    def _counted(self, root: Node) -> list[Node]:
+    def _count(self, root: Node) -> list[Node]:
         """List the nodes of a tree, parents first, which get their numbers and positions."""
         nodes = list(Tree(root).walk())
         start = len(self._ranges)
@@ -161,16 +161,16 @@ class Alignment:
         """How much two nodes have in common; 0 where one has not become the other."""
         if self._holds(new, old) or self._holds(old, new):
             return 0.0  # something has come around it, or is gone from there
-        shared = self._shared(old, new)
+        shared = self._share(old, new)
         if old.id != new.id:
             return shared if old.children and new.children and shared >= 0.5 else 0.0
         for one, other in ((old, new), (new, old)):
             [*inner] = other.children
-            if len(inner) == 1 and inner[0].id == one.id and self._shared(one, inner[0]) > shared:
+            if len(inner) == 1 and inner[0].id == one.id and self._share(one, inner[0]) > shared:
                 return 0.0
         return 1 + shared + _overlap(self._features(old), self._features(new)) + (old.name == new.name != "")
 
-    def _shared(self, one: Node, other: Node) -> float:
+    def _share(self, one: Node, other: Node) -> float:
         """Return the share of their children that both have."""
         return _overlap(self._numbers.of(one.children), self._numbers.of(other.children))
 

@@ -68,14 +68,14 @@ class Conjunctions:
     def _body(self, body: ast.Ast) -> ast.Ast:
         """Statements without `and` stay as they are and aren't looked into."""
         if type(body) is not ast.Chain or body.operator != "sequence":
-            return self._resolved(body)[0] if any(map(_is_conjunction, ast.parents_first(body))) else body
+            return self._resolve(body)[0] if any(map(_is_conjunction, ast.parents_first(body))) else body
         items = [
-            self._resolved(item)[0] if item.parts and any(map(_is_conjunction, ast.parents_first(item))) else item
+            self._resolve(item)[0] if item.parts and any(map(_is_conjunction, ast.parents_first(item))) else item
             for item in body.items
         ]
         return _flatten(body.replace(items=tuple(items)))
 
-    def _resolved(self, root: ast.Ast) -> tuple[ast.Ast, Traits]:
+    def _resolve(self, root: ast.Ast) -> tuple[ast.Ast, Traits]:
         return fold(root, ast.parts, self._one)
 
     def _one(self, node: ast.Ast, done: list[tuple[ast.Ast, Traits]]) -> tuple[ast.Ast, Traits]:
@@ -92,7 +92,7 @@ class Conjunctions:
     def _chain(self, chain: ast.Chain, items: Sequence[ast.Ast], traits: Sequence[Traits]) -> tuple[ast.Ast, Traits]:
         operator = chain.operator
         if operator == "and":
-            operator = self._meaning(chain, traits)
+            operator = self._choose_meaning(chain, traits)
         made: ast.Ast = chain
         if operator != chain.operator or any(new is not old for new, old in zip(items, chain.items, strict=True)):
             made = _flatten(ast.Chain(operator, tuple(items), chain.bracketed, chain.span))
@@ -100,7 +100,7 @@ class Conjunctions:
         never = any(endless) if operator == "sequence" else all(endless)
         return made, Traits(all(each.accompanies for each in traits), _union(traits), never)
 
-    def _meaning(self, chain: ast.Chain, traits: Sequence[Traits]) -> str:
+    def _choose_meaning(self, chain: ast.Chain, traits: Sequence[Traits]) -> str:
         """Whether the parts run at the same time."""
         if any(each.endless for each in traits[:-1]):
             return "parallel"  # it lasts as long as what stands behind it
@@ -108,7 +108,7 @@ class Conjunctions:
             if traits[-1].endless:
                 self._report_endless(chain)
             return "sequence"
-        shared = _shared(traits)
+        shared = _find_shared(traits)
         if shared is not None:
             resource, first, second = shared
             self._report_shared(chain, resource, chain.items[first], chain.items[second])
@@ -118,7 +118,7 @@ class Conjunctions:
     def are_simultaneous(self, items: Iterable[ast.Ast]) -> bool:
         """Whether `and` between such commands means that they all run at the same time."""
         traits = [self._traits(item) for item in items]
-        return all(each.accompanies for each in traits) and not (_shared(traits) or _speaks_first(traits))
+        return all(each.accompanies for each in traits) and not (_find_shared(traits) or _speaks_first(traits))
 
     def _traits(self, root: ast.Ast) -> Traits:
         """Those of a command in which each `and` has its meaning; noted, since they are asked for at every depth."""
@@ -177,7 +177,7 @@ class Conjunctions:
             self._named[name] = _TASK
             if name in self._definitions:
                 problems, self.problems = self.problems, []  # they are reported where the name is defined
-                self._named[name] = self._resolved(self._definitions[name])[1]
+                self._named[name] = self._resolve(self._definitions[name])[1]
                 self.problems = problems
         return self._named[name]
 
@@ -219,7 +219,7 @@ def _union(traits: Iterable[Traits]) -> frozenset[str]:
     return frozenset().union(*(each.holds for each in traits))
 
 
-def _shared(traits: Sequence[Traits]) -> tuple[str, int, int] | None:
+def _find_shared(traits: Sequence[Traits]) -> tuple[str, int, int] | None:
     """Return a resource that two of them hold, and which two."""
     holders: dict[str, int] = {}
     for at, each in enumerate(traits):

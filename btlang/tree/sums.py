@@ -34,7 +34,7 @@ def with_sums(mission: ast.Program, vocabulary: Lexicon) -> ast.Program:
 
     def body(root: ast.Ast) -> ast.Ast:
         is_asked = any(map(_asks, ast.parents_first(root)))
-        return fold(root, ast.parts, sums.summed)[0] if is_asked else root
+        return fold(root, ast.parts, sums.add_sum)[0] if is_asked else root
 
     def program(part: ast.Program) -> ast.Program:
         return ast.with_bodies(part, body, program)
@@ -48,7 +48,7 @@ class _Sums:
     def __init__(self, count: Entry, number: str) -> None:
         self._count, self._number = count, number
 
-    def summed(self, node: ast.Ast, done: Sequence[_Made]) -> _Made:
+    def add_sum(self, node: ast.Ast, done: Sequence[_Made]) -> _Made:
         """Return a node with its parts, and whether it counts.
 
         In a sequence each command that counts several times is summed, if what follows asks for the number.
@@ -61,7 +61,7 @@ class _Sums:
         sums = False
         for at, (item, counting) in enumerate(done):
             if not counting:
-                made.append(fold(item, ast.parts, self._asking_sum) if sums else item)
+                made.append(fold(item, ast.parts, self._ask_sum) if sums else item)
                 continue
             chains, last = _last_count(item)
             sums = last is not None and any(map(_is_of_sum, ast.parents_first(last)))
@@ -77,15 +77,15 @@ class _Sums:
         begun = ast.Assign(_TOTAL, "set", self._number, "0", counting.span)
         keys = sorted(_keys(counting))
         told = [ast.Assign(key, "set", self._number, f"{{{_TOTAL}}}", counting.span) for key in keys]
-        made: list[ast.Ast] = [begun, fold(counting, ast.parts, partial(self._adding, keys)), *told]
+        made: list[ast.Ast] = [begun, fold(counting, ast.parts, partial(self._add_up, keys)), *told]
         for chain, part in zip(reversed(chains), reversed([*chains, counting][1:]), strict=True):
             at = next(at for at, item in enumerate(chain.items) if item is part)
-            behind = (fold(item, ast.parts, self._asking_sum) for item in chain.items[at + 1 :])
+            behind = (fold(item, ast.parts, self._ask_sum) for item in chain.items[at + 1 :])
             items = (*chain.items[:at], *made, *behind)
             made = [ast.Chain(chain.operator, items, chain.bracketed, chain.span)]
         return made
 
-    def _adding(self, told: Container[str], node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
+    def _add_up(self, told: Container[str], node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
         """Return a command that counts, with the number that it adds. A sum that is used later isn't kept in each
         place.
         """
@@ -99,7 +99,7 @@ class _Sums:
         more = ast.Assign(_TOTAL, "increase", self._number, f"{{{_LAST}}}", node.span)
         return ast.Chain("sequence", (node, number, more), False, node.span)
 
-    def _asking_sum(self, node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
+    def _ask_sum(self, node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
         if isinstance(node, ast.Remember) and _is_number(node):
             return ast.Assign(node.key, "set", self._number, f"{{{_TOTAL}}}", node.span)
         if isinstance(node, ast.Phrase) and node.entry.id == _COMPARED:

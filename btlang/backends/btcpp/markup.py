@@ -96,9 +96,9 @@ class Markers:
                 else:
                     lines.append(f"{head}>")
                     stack.append((f"</{item.tag}>", level))
-                    stack += [(_escaped(inner), level + 1) for inner in reversed(item.items)]
+                    stack += [(_escape(inner), level + 1) for inner in reversed(item.items)]
         return lines
 
 
-def _escaped(item: Element | Markup | str) -> Element | Markup | str:
+def _escape(item: Element | Markup | str) -> Element | Markup | str:
     return item.strip().translate(IN_TEXTS) if isinstance(item, str) else item

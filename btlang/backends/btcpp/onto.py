@@ -81,12 +81,12 @@ class _Onto:
         if "" not in self._old:
             self._elsewhere[""] = self._before.root
         self._renamed = self._find_renamed()
-        self._alignment = self._aligned()
-        self._ids = self._written_ids()
+        self._alignment = self._align()
+        self._ids = self._find_ids()
         uses = Uses(self._after, vocabulary, self._dialect)
         kinds = {model.id: model.kind for model in self._before.models}
         self._kind: Callable[[str], str] = lambda node_id: kinds.get(node_id) or uses.kind(node_id)
-        self._text = Rewriter(document, self._file.notes, self._known, self._spelled)
+        self._text = Rewriter(document, self._file.notes, self._find_known, self._spell)
         self._mission = tree.origin if isinstance(tree.origin, Source) else None
 
     # -- what is what
@@ -97,7 +97,7 @@ class _Onto:
         come = [name for name in self._new if name not in self._old and name not in self._elsewhere]
         return {gone[0]: come[0]} if len(gone) == len(come) == 1 else {}
 
-    def _aligned(self) -> Alignment:
+    def _align(self) -> Alignment:
         named = {self._renamed.get(name, name): root for name, root in self._old.items()}
         roots = [(root, self._new[name]) for name, root in named.items() if name in self._new]
         gone = [root for name, root in named.items() if name not in self._new]
@@ -110,7 +110,7 @@ class _Onto:
             raise MissionError(wrong)
         return alignment
 
-    def _written_ids(self) -> dict[str, str]:
+    def _find_ids(self) -> dict[str, str]:
         """Return the ID of each tree in the file by its name, those of new trees as the file's dialect allows them."""
         nodes = {node.id for node in self._after.walk()}
         made = tree_ids(self._after, nodes, self._dialect)
@@ -118,14 +118,14 @@ class _Onto:
         written = {name: id for name, id in heads.items() if id not in nodes}  # what is new may have the ID of a tree
         return made | written
 
-    def _known(self, node: Node) -> int | None:
+    def _find_known(self, node: Node) -> int | None:
         old = self._alignment.old(node)
         return self._elements.get(id(old)) if old is not None else None
 
-    def _spelled(self, node: Node) -> Spelling:
+    def _spell(self, node: Node) -> Spelling:
         return self._in_style(node, SPELL[self._dialect](node, self._kind, self._ids))
 
-    def _spelled_before(self, node: Node) -> Spelling:
+    def _spell_before(self, node: Node) -> Spelling:
         written = {name: head.written for name, head in self._heads.items() if head.written}
         return self._in_style(node, SPELL[self._dialect](node, self._kind, written))
 
@@ -162,8 +162,8 @@ class _Onto:
         return (("ID", written),) if name == written else (("ID", written), (SPOKEN_NAME, name))
 
     def _change(self, number: int, old: Node, new: Node) -> None:
-        tag, before = self._spelled_before(old)
-        other, after = self._spelled(new)
+        tag, before = self._spell_before(old)
+        other, after = self._spell(new)
         if tag != other and self._file.document.elements[number][0] == tag:
             self._text.rename(number, other)
         kept = tuple(pair for pair in before if not is_editors(pair[0]))
@@ -206,11 +206,11 @@ class _Onto:
             has = Counter(text for said in there.get(line, ()) for text in said.lines)
             come[line] = Counter(wanted.get(line, ())) - has
             left[line] = has - Counter(wanted.get(line, ()))
-        stays = self._staying(come, left, nodes)
+        stays = self._find_staying(come, left, nodes)
         raw = {said.lines: self._raw(said.note) for said in gone}
         for line in sorted({*there, *wanted}):
             kept = stays[0].get(line, Counter()), stays[1].get(line, Counter())
-            new = self._changed_line(there.get(line, []), wanted.get(line, []), kept, raw)
+            new = self._change_line(there.get(line, []), wanted.get(line, []), kept, raw)
             if line in (HEAD, FOOT):
                 self._text.add_around(new, at_end=line == FOOT)
             elif new:
@@ -223,7 +223,7 @@ class _Onto:
                 raise MissionError([_in_other_file(name, root, self._new[name])])
         self._text.add_comments(node, comments)
 
-    def _staying(self, come: Lines, left: Lines, nodes: Sequence[Node]) -> tuple[Lines, Lines]:
+    def _find_staying(self, come: Lines, left: Lines, nodes: Sequence[Node]) -> tuple[Lines, Lines]:
         """Of the comments that come and have left, by line, those that only are said in another statement: as English
         puts comments before whole ones, they stand at a node around their own one, or the other way round.
         """
@@ -247,7 +247,7 @@ class _Onto:
                         break
         return old, new
 
-    def _changed_line(
+    def _change_line(
         self, there: list[_FileComment], wanted: list[str], stays: tuple[Counter[str], Counter[str]], raw: Raw
     ) -> list[str]:
         """Change the comments of one statement to the wanted ones, but for old and new ones that stay elsewhere; return

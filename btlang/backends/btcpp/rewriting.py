@@ -108,18 +108,18 @@ class Rewriter:
                 steps[inner[len(outer) :]] += 1
         return steps.most_common(1)[0][0] if steps else _USUAL
 
-    def _opened(self, number: int) -> int:
+    def _open(self, number: int) -> int:
         """Where the start tag of an element ends, with the comments on its line."""
         return max([self._layout.places[number].head, *(self.span_of(note)[1] for note in self._notes.heading(number))])
 
-    def _ended(self, number: int) -> int:
+    def _end(self, number: int) -> int:
         """Where an element ends, with the comments on its line."""
         return max([self._layout.places[number].end, *(self.span_of(note)[1] for note in self._notes.behind(number))])
 
     def _lead(self, number: int) -> int:
         """Where the blanks and comments before an element begin."""
         before = self._before[number]
-        return self._ended(before) if before >= 0 else self._opened(self._parents[number])
+        return self._end(before) if before >= 0 else self._open(self._parents[number])
 
     def _is_in_line(self, number: int) -> bool:
         """Whether the elements inside one stand on its line."""
@@ -179,7 +179,7 @@ class Rewriter:
         for key in touched:
             spot = there[key]
             if key in new:
-                self.change(spot.value, spot.end, self._quoted(new[key], self._text[spot.value]))
+                self.change(spot.value, spot.end, self._quote(new[key], self._text[spot.value]))
             else:
                 self.change(spot.start, spot.end, "")
         added = "".join(
@@ -188,7 +188,7 @@ class Rewriter:
         if added:
             self.change(behind, behind, added)
 
-    def _quoted(self, text: str, mark: str) -> str:
+    def _quote(self, text: str, mark: str) -> str:
         written = self._markers.attributes((("v", text),)).partition("=")[2]
         return written if mark == '"' else f"'{written[1:-1].replace(chr(39), '&apos;').replace('&quot;', chr(34))}'"
 
@@ -209,18 +209,18 @@ class Rewriter:
         """
         self._changes.sort(key=lambda change: change[:2])
         parts = self._children[0]
-        work: list[Work] = [_Slice(0, self._opened(0), STAYS)]
+        work: list[Work] = [_Slice(0, self._open(0), STAYS)]
         behind = max((part for part in parts if part in trees), default=-1)
         for part in parts:
             if part not in trees:
-                work.append(_Slice(self._lead(part), self._ended(part), STAYS))
+                work.append(_Slice(self._lead(part), self._end(part), STAYS))
             elif (root := trees[part]) is not None:
                 work += self._tree(part, root)
             if part == behind:
                 for attributes, node in added:
                     work += self._new_tree(part, attributes, node)
-        work.append(_Slice(self._ended(parts[-1]), len(self._text), STAYS))
-        made = self._written(work)
+        work.append(_Slice(self._end(parts[-1]), len(self._text), STAYS))
+        made = self._write_text(work)
         self._markers.finish()
         return made
 
@@ -231,9 +231,9 @@ class Rewriter:
         if lead is not None and self._notes.before(inner):  # these go with what was there
             lead = "" if margin is None else self.line_end + margin
         return [
-            _Slice(self._lead(part), self._opened(part), STAYS),
+            _Slice(self._lead(part), self._open(part), STAYS),
             _Element(root, STAYS, self._unit * 2 if margin is None else margin, lead),
-            _Slice(self._ended(inner), place.end, STAYS),
+            _Slice(self._end(inner), place.end, STAYS),
         ]  # fmt: skip
 
     def _new_tree(self, beside: int, attributes: Pairs, root: Node) -> list[Work]:
@@ -248,7 +248,7 @@ class Rewriter:
             f"{self.line_end}{outer}</BehaviorTree>",
         ]
 
-    def _written(self, work: list[Work]) -> str:
+    def _write_text(self, work: list[Work]) -> str:
         out: list[str] = []
         work.reverse()
         while work:
@@ -256,13 +256,13 @@ class Rewriter:
             if isinstance(item, str):
                 out.append(item)
             elif isinstance(item, _Slice):
-                out.append(self._changed(item))
+                out.append(self._change_text(item))
             else:
                 number = self._known(item.node)
                 work += reversed(self._new(item) if number is None else self._again(item, number))
         return "".join(out)
 
-    def _changed(self, piece: _Slice) -> str:
+    def _change_text(self, piece: _Slice) -> str:
         """Characters of the file with their changes."""
         made: list[str] = []
         at = piece.start
@@ -288,16 +288,16 @@ class Rewriter:
         inner = self._inner_margin(number, own)
         if place.head == place.end:  # no end tag
             if not children:
-                return [*work, _Slice(place.start, self._ended(number), own, True)]
+                return [*work, _Slice(place.start, self._end(number), own, True)]
             tag = self._text[slice(*self._layout.tag(number))]
             work += (_Slice(place.start, place.head - 2, own, True), ">")
             work += self._inner(children, number, own, inner)
-            return [*work, f"{self.line_end}{item.margin}</{tag}>", _Slice(place.end, self._ended(number), own)]
-        work += (_Slice(place.start, place.head, own, True), _Slice(place.head, self._opened(number), own))
+            return [*work, f"{self.line_end}{item.margin}</{tag}>", _Slice(place.end, self._end(number), own)]
+        work += (_Slice(place.start, place.head, own, True), _Slice(place.head, self._open(number), own))
         work += self._inner(children, number, own, inner)
         last = self._children[number][-1:]
-        begin = self._ended(last[0]) if last else self._opened(number)
-        return [*work, _Slice(begin, place.end, own), _Slice(place.end, self._ended(number), own)]
+        begin = self._end(last[0]) if last else self._open(number)
+        return [*work, _Slice(begin, place.end, own), _Slice(place.end, self._end(number), own)]
 
     def _own_notes(self, number: int, item: _Element) -> list[Work]:
         """Write the comments before a node, which goes elsewhere."""
@@ -321,7 +321,7 @@ class Rewriter:
             own = self._margin(number)
             if self._before[number] != before and "\n" not in self._lead_text(number) and not in_line:
                 return _Element(child, STAYS, margin, self.line_end + margin)
-            return _Element(child, shift, margin if own is None else _moved(own, shift))
+            return _Element(child, shift, margin if own is None else _move(own, shift))
         if number is not None and not in_line and (own := self._margin(number)) is not None:
             return _Element(child, (own, margin), margin)
         return _Element(child, STAYS, margin, "" if in_line else self.line_end + margin)
@@ -332,7 +332,7 @@ class Rewriter:
         found = next((margin for margin in margins if margin is not None), None)
         if found is None:
             found = (self._margin(number) or "") + self._unit
-        return _moved(found, shift)
+        return _move(found, shift)
 
     def _new(self, item: _Element) -> list[Work]:
         """Write a node that isn't in the file yet. What stood before the first one in it stands before it now."""
@@ -365,7 +365,7 @@ class Rewriter:
         return [margin, *texts] if texts and "\n" not in lead else texts
 
 
-def _moved(margin: str, shift: Shift) -> str:
+def _move(margin: str, shift: Shift) -> str:
     before, after = shift
     return after + margin[len(before) :] if margin.startswith(before) else margin
 
@@ -375,5 +375,5 @@ def _shift(text: str, shift: Shift, in_tag: bool) -> str:
     if shift[0] == shift[1]:
         return text
     if in_tag:
-        return _IN_TAG.sub(lambda match: match[0] if match[1] else "\n" + _moved(match[2], shift), text)
-    return _MARGIN.sub(lambda match: "\n" + _moved(match[1], shift), text)
+        return _IN_TAG.sub(lambda match: match[0] if match[1] else "\n" + _move(match[2], shift), text)
+    return _MARGIN.sub(lambda match: "\n" + _move(match[1], shift), text)

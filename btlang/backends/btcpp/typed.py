@@ -101,8 +101,8 @@ class _Typing:
         self._find_decimals()
 
     def tree(self) -> Tree:
-        root = self._written(self._tree.name, self._tree.root)
-        subtrees = tuple((name, self._written(name, node)) for name, node in self._tree.subtrees)
+        root = self._write_node(self._tree.name, self._tree.root)
+        subtrees = tuple((name, self._write_node(name, node)) for name, node in self._tree.subtrees)
         return Tree(root, subtrees, self._tree.name, self._tree.models)
 
     # -- reading
@@ -181,7 +181,7 @@ class _Typing:
             return "int"
         return (integers or facts.ports or [""])[0]
 
-    def _written(self, name: str, root: Node) -> Node:
+    def _write_node(self, name: str, root: Node) -> Node:
         return fold(root, lambda node: node.children, lambda node, children: self._node(name, node, children))
 
     def _node(self, name: str, node: Node, children: list[Node]) -> Node:

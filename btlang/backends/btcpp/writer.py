@@ -138,12 +138,12 @@ class _Writer:
         if not isinstance(source, Source) or "#" not in source.text:
             return
         comments = comments_by_line(source, self._vocabulary.orthography, self._tree)
-        self._head, self._foot = _marked(comments.pop(HEAD, ())), _marked(comments.pop(FOOT, ()))
+        self._head, self._foot = _mark(comments.pop(HEAD, ())), _mark(comments.pop(FOOT, ()))
         for name, root in ((self._tree.name, self._tree.root), *self._tree.subtrees):
             before: dict[int, tuple[str, ...]] = {}
             for number, node in enumerate(Tree(root).walk()):
                 if lines := comments.pop(line_of(node), None):
-                    before[number] = _marked(lines)
+                    before[number] = _mark(lines)
             self._comments[name] = before
 
     def _tree_lines(self, name: str, root: Node, lines: list[str]) -> None:
@@ -189,7 +189,7 @@ class _Writer:
         lines.append(f"{INDENT}</BehaviorTree>")
 
 
-def _marked(lines: Iterable[str]) -> tuple[str, ...]:
+def _mark(lines: Iterable[str]) -> tuple[str, ...]:
     return tuple(f"<!-- {sound_comment(line)} -->" for line in lines)
 
 

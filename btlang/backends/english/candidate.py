@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping
 
-from btlang.backends.english.code import given_by, read_comparison
+from btlang.backends.english.code import read_comparison, read_given
 from btlang.backends.english.type_inference import KnownTypes, readable
 from btlang.passes.lower import lower_one
 from btlang.passes.scope import Lowered, LoweringScope
@@ -109,7 +109,7 @@ def _same(made: Node, wanted: Node) -> bool:
 
 def propose_assignments(node: Node, checked: Checked) -> Iterator[ast.Ast]:
     """Propose `set`, `increase` and `decrease` for a Script."""
-    given = given_by(node.port("code"), checked.texts)
+    given = read_given(node.port("code"), checked.texts)
     is_set = given is not None and given.operation == "set" and given.key not in checked.around.outside
     if given is not None and (is_set or given.operation in ("increase", "decrease")):
         kind = checked.around.kinds.get(given.key)

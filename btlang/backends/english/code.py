@@ -42,7 +42,7 @@ class Comparison(Record):
     arguments: tuple[tuple[str, str], ...]
 
 
-def given_by(code: str, texts: Mapping[str, str]) -> GivenValue | None:
+def read_given(code: str, texts: Mapping[str, str]) -> GivenValue | None:
     """`texts` are the keys that stand for a text: for quotes, which no string of a script can hold."""
     match _statements(code):
         case [[key, ":=", value]] if _NUMBER.fullmatch(value):
@@ -114,7 +114,7 @@ def read_computed(node: Node) -> Computed | None:
         if child.id == "SetBlackboard" and ports.keys() == {"value", "output_key"}:
             key, text = ports["output_key"], plain(ports["value"])
         else:
-            given = given_by(ports.get("code", ""), texts) if child.id == "Script" else None
+            given = read_given(ports.get("code", ""), texts) if child.id == "Script" else None
             if given is None or given.operation not in ("set", "time"):
                 return None
             key, text = given.key, given.text
@@ -180,11 +180,11 @@ def find_loops(tree: Tree, refused: Container[str]) -> dict[int, Loop]:
     bodies = {name: root for name, root in tree.subtrees if name.startswith(_PREFIX) and name not in refused}
     if not bodies:
         return {}
-    nodes = list(_said_once(tree))
+    nodes = list(_is_said_once(tree))
     uses = Counter(node.port("ID") for node in nodes if node.id == SUBTREE)
     loops: dict[int, Loop] = {}
     for node in nodes:
-        rounds = [_round(node)] if uses[_used(node)] == 1 else [_round(child) for child in _children(node)]
+        rounds = [_round(node)] if uses[_used_subtree(node)] == 1 else [_round(child) for child in _children(node)]
         found = [one for one in rounds if one is not None and one.node.port("ID") in bodies]
         names = {one.node.port("ID") for one in found}
         if len(names) == 1 and len(found) == len(rounds) == uses[name := names.pop()]:
@@ -194,7 +194,7 @@ def find_loops(tree: Tree, refused: Container[str]) -> dict[int, Loop]:
     return loops
 
 
-def _said_once(tree: Tree) -> Iterator[Node]:
+def _is_said_once(tree: Tree) -> Iterator[Node]:
     """All nodes but the further rounds of `A 3 times 10 s apart`, which are the first one again."""
     stack = [root for _, root in reversed(tree.subtrees)]
     stack.append(tree.root)
@@ -219,7 +219,7 @@ def _round(node: Node) -> Computed | None:
     return made if made is not None and made.node.id == SUBTREE else None
 
 
-def _used(node: Node) -> str:
+def _used_subtree(node: Node) -> str:
     """Return the subtree that a node alone uses."""
     found = _round(node)
     return found.node.port("ID") if found is not None else ""

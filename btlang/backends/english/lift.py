@@ -71,7 +71,7 @@ class Lifter:
                                 name not in known.names) for name in names]  # fmt: skip
         self.printer = Printer(PRINTERS, vocabulary, heads, "clear", known.around("").outside)
         self._node_kinds = {model.id: model.kind for model in tree.models}
-        for node_id in _asked(tree):
+        for node_id in _find_asked(tree):
             if vocabulary.entry(node_id) is None:
                 self._node_kinds.setdefault(node_id, "Condition")
         self._outputs = _outputs(tree)
@@ -83,11 +83,11 @@ class Lifter:
 
     def definition(self, name: str, root: Node) -> ast.Definition:
         """Lift a named subtree; those that it uses have been lifted before."""
-        raised = self.raised(root, name)
+        lift = self.lift(root, name)
         is_natural = name in self._known.names
-        body = raised.body
-        if is_natural and raised.is_condition and raised.condition is not None:
-            body = raised.condition
+        body = lift.body
+        if is_natural and lift.is_condition and lift.condition is not None:
+            body = lift.condition
             self._conditions.add(name)
         made = ast.Definition(name, self._known.parameters(name), body, NOWHERE, NOWHERE, not is_natural)
         self.printer.note(made, self._comments.trees.get(name, ()))
@@ -98,11 +98,11 @@ class Lifter:
 
     def main(self, root: Node) -> ast.Ast:
         """Lift the commands of the mission; the subtrees have been lifted before."""
-        body = self.raised(root).body
+        body = self.lift(root).body
         self.printer.note(_first_line(body), self._comments.trees.get("", ()))
         return body
 
-    def raised(self, root: Node, name: str = "") -> Candidate:
+    def lift(self, root: Node, name: str = "") -> Candidate:
         """Lift a tree; `name` is that of a subtree."""
         return fold(_TreePlace(root, self._known.around(name)), self._parts, self._raise)
 
@@ -153,7 +153,7 @@ class Lifter:
             made: ast.Ast = ast.Check(condition, NOWHERE)
         else:
             items = tuple(child.command for child in children)
-            made = ast.Exact(node.id, node.ports, node.name, items, False, NOWHERE, self._given(node, node.ports))
+            made = ast.Exact(node.id, node.ports, node.name, items, False, NOWHERE, self._find_given(node, node.ports))
         assert self._checked.says(made, node)
         return made
 
@@ -249,11 +249,11 @@ class Lifter:
         """None for what is no condition, or not known to be one: read again it would be one everywhere."""
         if self._kind(node.id) != "Condition" and not _asks(node):
             return None
-        made = ast.Exact(node.id, node.ports, node.name, (), True, NOWHERE, self._given(node, node.ports))
+        made = ast.Exact(node.id, node.ports, node.name, (), True, NOWHERE, self._find_given(node, node.ports))
         assert self._checked.says(made, node)
         return made
 
-    def _given(self, node: Node, ports: tuple[tuple[str, str], ...]) -> tuple[str, ...]:
+    def _find_given(self, node: Node, ports: tuple[tuple[str, str], ...]) -> tuple[str, ...]:
         """Return the ports of a leaf, of these, that its model says it gives values to."""
         outputs = self._outputs.get(node.id, ()) if not node.children else ()
         return tuple(name for name, _ in ports if name in outputs)
@@ -293,7 +293,7 @@ class Lifter:
             if len(words) - max((len(text) for _, text in said or ()), default=0) > _MOST_WORDS:
                 continue
             if words and (not (node.name or ports) or self._ends(words)):
-                yield ast.Phrase(entry, said or (), NOWHERE, node.name, ports, self._given(node, ports))
+                yield ast.Phrase(entry, said or (), NOWHERE, node.name, ports, self._find_given(node, ports))
 
     def _words(self, node_id: str, texts: tuple[tuple[str, str], ...]) -> str:
         vocabulary = self._checked.around.vocabulary
@@ -321,7 +321,7 @@ def _first_line(said: ast.Ast) -> ast.Ast:
     return ast.parts(said)[0] if is_chain else said
 
 
-def _asked(tree: Tree) -> Iterator[str]:
+def _find_asked(tree: Tree) -> Iterator[str]:
     """Yield the leaves that stand where a condition does and have the name of one: `IsDoorOpen`."""
     for node in tree.walk():
         first = node.children[0] if node.children and node.id in _ASKING else None

@@ -81,7 +81,7 @@ class SpokenNames:
         """Return what is known in the body of a loop."""
         return self._kinds.around({**around.owners, loop.key: loop.name})
 
-    def refused_by(self, mission: ast.Program, before: Refused, loops: Set[str]) -> Refused:
+    def find_refused(self, mission: ast.Program, before: Refused, loops: Set[str]) -> Refused:
         """`before` with what in this mission could not be read: `loops`, and values with which something is wrong."""
         local = {loop.key for loop in self.loops.values()} | {key for name in self.names for key in parameters(name)}
         said = _MissionKeys(mission)

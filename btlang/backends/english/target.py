@@ -53,23 +53,23 @@ def to_english(
     for level in _LEVELS:
         mission, printer = _mission(tree, words, level, refused, comments)
         said = _lines(mission.replace(facts=tuple(facts), needs=needs), printer, comments)
-        text = "".join(f"{line}\n" for line in (*said, *_kept(tree)))
+        text = "".join(f"{line}\n" for line in (*said, *_keep_rest(tree)))
         try:
             again = lower_mission(read_mission(Source(text), vocabulary).mission, vocabulary)
         except MissionError as error:
             reason = error.diagnostics[0].message.rstrip(".")
             continue
         if plain(again) == wanted:
-            both = _said_both_ways(mission, words)
+            both = _say_both_ways(mission, words)
             if both:
                 tested = tuple(NodeModel("Condition", node_id) for node_id in both)
                 return to_english(tree.replace(models=(*tree.models, *tested)), vocabulary, facts=facts, needs=needs)
             return text
-        refused = Refused(frozenset(_differing(tree, again)))
+        refused = Refused(frozenset(_find_differing(tree, again)))
     raise _unsayable(tree, reason)
 
 
-def _said_both_ways(mission: Program, vocabulary: Lexicon) -> list[str]:
+def _say_both_ways(mission: Program, vocabulary: Lexicon) -> list[str]:
     """Kinds of leaves that are conditions in one place and done in another: read again, they are conditions in all."""
     leaves = [node for node in exact_nodes(mission) if not node.items and node.id not in vocabulary.nodes]
     done = {node.id for node in leaves if not node.is_condition}
@@ -80,7 +80,7 @@ def _unsayable(tree: Tree, reason: str) -> MissionError:
     return MissionError([diagnostic("BT142", tree.root.span or NOWHERE, reason=reason)])
 
 
-def _differing(tree: Tree, again: Tree) -> Iterator[str]:
+def _find_differing(tree: Tree, again: Tree) -> Iterator[str]:
     """Yield the subtrees that were read as others, or not at all."""
     bodies = dict(again.subtrees)
     for name, root in tree.subtrees:
@@ -94,7 +94,7 @@ def _lines(mission: Program, printer: Printer, comments: Comments) -> Iterator[s
     yield from (f"# {line}" for line in comments.foot)
 
 
-def _kept(tree: Tree) -> Iterator[str]:
+def _keep_rest(tree: Tree) -> Iterator[str]:
     """Comments with what English doesn't say of an XML file."""
     if isinstance(tree.origin, XmlOrigin):
         markers = Markers()
@@ -115,7 +115,7 @@ def _mission(
         named = [(name, root) for name, root in sort_by_use(tree)[:-1] if name not in bodies]
         definitions = tuple(raiser.definition(name, root) for name, root in named)
         mission = Program(raiser.main(tree.root), definitions, NOWHERE, name=tree.name)
-        before, refused = refused, known.refused_by(mission, refused, raiser.refused)
+        before, refused = refused, known.find_refused(mission, refused, raiser.refused)
         if refused == before:
             break
     return mission.replace(given=find_given_keys(mission)), raiser.printer

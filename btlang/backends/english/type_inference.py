@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Mapping, Set
 
-from btlang.backends.english.code import Computed, Loop, given_by, read_comparison, read_computed
+from btlang.backends.english.code import Computed, Loop, read_comparison, read_computed, read_given
 from btlang.frontends.mission.symbols.given import untyped
 from btlang.frontends.mission.symbols.prefixes import find_prefixes
 from btlang.printer.phrase import value_of
@@ -119,7 +119,7 @@ class TypeInference:
             if loop is not None:
                 for one in loop.rounds:
                     self._give((loop.name, loop.key), dict(one.node.ports)[loop.key], own, one.texts)
-                self._named((loop.name, loop.key))
+                self._type_by_name((loop.name, loop.key))
                 stack.append((loop.body, {**own, loop.key: loop.name}))
                 continue
             made = read_computed(node)
@@ -130,7 +130,7 @@ class TypeInference:
                 self._leaf(Computed(node, {}), own)
                 stack += [(child, own) for child in node.children]
         for key, owner in owners.items():
-            self._named((owner, key))
+            self._type_by_name((owner, key))
 
     def _leaf(self, made: Computed, own: Mapping[str, str]) -> None:
         node, texts = made.node, made.texts
@@ -141,7 +141,7 @@ class TypeInference:
             self._chosen.update([choice.key] if choice is not None else ())
         for key in made.times:
             self._need(texts[key], "duration", own)
-        if node.id == "Script" and (given := given_by(node.port("code"), texts)) is not None:
+        if node.id == "Script" and (given := read_given(node.port("code"), texts)) is not None:
             value = self._value(given.key, own)
             self._set.add(given.key)
             self._sort(value, given.is_number)
@@ -211,7 +211,7 @@ class TypeInference:
         if key and key[0] != "_":
             self._needs.setdefault(self._value(key, own), set()).add(kind)
 
-    def _named(self, value: Value) -> None:
+    def _type_by_name(self, value: Value) -> None:
         """Give a local value that has the name of a type that type."""
         self._groups.setdefault(value, [value])
         if value[1] in self._vocabulary.types:

@@ -67,7 +67,7 @@ class _VocabularyRules:
         rules["action"] = choice(RuleName(leaf.name) for leaf in self._actions)
         rules["steady"] = choice(RuleName(leaf.name) for leaf in self._actions if leaf.is_steady)
         rules["phrase"] = choice(RuleName(leaf.name) for leaf in self._conditions)
-        rules["denied"] = choice(self._said(form, leaf) for leaf in self._conditions for form in self._denied(leaf))
+        rules["denied"] = choice(self._say(form, leaf) for leaf in self._conditions for form in self._deny(leaf))
         rules["quantity"] = self._quantities()
         for name, leaves in (("exact-action", self._actions), ("exact-condition", self._conditions)):
             ids = dict.fromkeys(leaf.entry.id for leaf in leaves if not leaf.entry.slots)
@@ -75,7 +75,7 @@ class _VocabularyRules:
         rules["further"] = choice(self._further(leaf) for leaf in self._actions)
         rules["exact-ports"] = choice(self._exact(leaf) for leaf in self._actions)
         for leaf in (*self._actions, *self._conditions):
-            rules[leaf.name] = choice(self._said(form, leaf) for form in leaf.forms)
+            rules[leaf.name] = choice(self._say(form, leaf) for form in leaf.forms)
         for kind in self._vocabulary.types.values():
             rules[_rule_of(kind.name)] = self._value(kind)
         return prune({"root": rules.pop("mission"), **rules, **self._rules})
@@ -92,7 +92,7 @@ class _VocabularyRules:
                 if said:
                     yield _Leaf(f"{_kebab(entry.id)}-{number}", entry, said, kinds)
 
-    def _said(self, form: Form, leaf: _Leaf, given: Mapping[str, Part] = {}) -> Part:
+    def _say(self, form: Form, leaf: _Leaf, given: Mapping[str, Part] = {}) -> Part:
         """Return a way to say a phrase, with the values of its slots; `given` ones replace others."""
         return self._row(form, lambda slot: given.get(slot, RuleName(_rule_of(leaf.kinds.get(slot, slot)))))
 
@@ -102,7 +102,7 @@ class _VocabularyRules:
             parts += [Text(" "), value(part.name) if isinstance(part, Slot) else Text(part)]
         return joined(parts[1:])
 
-    def _denied(self, leaf: _Leaf) -> Iterator[Form]:
+    def _deny(self, leaf: _Leaf) -> Iterator[Form]:
         """Deny a condition, in the verb or the subject."""
         tables = self._vocabulary.negations, self._vocabulary.negative_subjects
         for form in leaf.forms:
@@ -114,22 +114,22 @@ class _VocabularyRules:
         for entry in chain.from_iterable(self._vocabulary.entries.values()):
             kinds = {slot.name: slot.type for slot in entry.slots}
             said = (form for pattern in entry.quantity for form in forms(pattern, self._vocabulary.articles))
-            found += [self._said(form, _Leaf("", entry, (), kinds)) for form in said]
+            found += [self._say(form, _Leaf("", entry, (), kinds)) for form in said]
         return choice(found)
 
     def _words(self, wanted: str) -> Part:
         """Return what a name in angle brackets stands for."""
         head, _, rest = wanted.partition(" ")
         special = {
-            "together": self._together, "compare": self._compared, "say": self._saying, "each-type": self._by_type,
-            "keyed": self._keyed, "is-keyed": self._is_keyed,
+            "together": self._together, "compare": self._compare, "say": self._say_value, "each-type": self._by_type,
+            "keyed": self._add_key, "is-keyed": self._is_keyed,
         }  # fmt: skip
         if head in special:
             return special[head](rest)
         if wanted == "doing":
-            return self._shared(wanted, self._doing(self._actions))
+            return self._share(wanted, self._gerunds(self._actions))
         if wanted == "steady doing":
-            return self._shared("steady-doing", self._doing(leaf for leaf in self._actions if leaf.is_steady))
+            return self._share("steady-doing", self._gerunds(leaf for leaf in self._actions if leaf.is_steady))
         if wanted == "forever":
             return choice(Text(word) for word, rounds in self._vocabulary.counts.items() if rounds < 0)
         if head == "subtree":
@@ -137,9 +137,9 @@ class _VocabularyRules:
             return Text(f'{words} "{rest}"') if words else NOTHING
         if wanted == "at-fact w1":
             return self._with_value("place", Text("w1"))
-        return self._shared(f"word-{_kebab(wanted)}", self._role(head, rest))
+        return self._share(f"word-{_kebab(wanted)}", self._role(head, rest))
 
-    def _shared(self, name: str, part: Part) -> Part:
+    def _share(self, name: str, part: Part) -> Part:
         """Make the part a rule that others use."""
         self._rules[name] = part
         return RuleName(name)
@@ -167,11 +167,11 @@ class _VocabularyRules:
             number = list(by_parts).index(parts) + 1
             others = [leaf for leaf in self._actions if parts.isdisjoint(leaf.entry.resources)]
             name = f"needs-{'-and-'.join(sorted(map(_kebab, parts))) or 'nothing'}"
-            first = self._shared(name, choice(RuleName(leaf.name) for leaf in leaves))
+            first = self._share(name, choice(RuleName(leaf.name) for leaf in leaves))
             if joint == "while doing":
-                second = self._shared(f"beside-{number}-doing", self._doing(others))
+                second = self._share(f"beside-{number}-doing", self._gerunds(others))
             else:
-                second = self._shared(f"beside-{number}", choice(RuleName(leaf.name) for leaf in others))
+                second = self._share(f"beside-{number}", choice(RuleName(leaf.name) for leaf in others))
             found.append(joined((first, self._joint(joint), second)))
         return choice(found)
 
@@ -182,19 +182,19 @@ class _VocabularyRules:
             return parse_rule(f'". " <{joint[2:]}> ", "', self._words)
         return parse_rule(f'" " <{joint}> " "', self._words)
 
-    def _compared(self, kind: str) -> Part:
+    def _compare(self, kind: str) -> Part:
         return choice(
             self._row(form, lambda slot: RuleName(_rule_of(kind))) for form in self._vocabulary.comparing_forms(kind)
         )
 
-    def _saying(self, name: str) -> Part:
+    def _say_value(self, name: str) -> Part:
         return self._with_value("text", Text(f'"{_GIVEN % name}"'))
 
-    def _keyed(self, name: str) -> Part:
-        return self._shared(f"keyed-{name}", self._with_key(name, self._actions))
+    def _add_key(self, name: str) -> Part:
+        return self._share(f"keyed-{name}", self._with_key(name, self._actions))
 
     def _is_keyed(self, name: str) -> Part:
-        return self._shared(f"is-keyed-{name}", self._with_key(name, self._conditions))
+        return self._share(f"is-keyed-{name}", self._with_key(name, self._conditions))
 
     def _with_key(self, name: str, leaves: Sequence[_Leaf]) -> Part:
         """Return a phrase with this value in a slot of any type."""
@@ -203,7 +203,7 @@ class _VocabularyRules:
         roles = [form for pattern in patterns for form in forms(pattern, self._vocabulary.articles)]
         joining = {_head(form) for form in roles if _slots_of(form)}  # `in {n1}` may be a time
         return choice(
-            self._said(form, leaf, {slot: Text(f'"{key}"' if leaf.kinds.get(slot) == TEXT else key)})
+            self._say(form, leaf, {slot: Text(f'"{key}"' if leaf.kinds.get(slot) == TEXT else key)})
             for leaf in leaves
             for form in leaf.forms
             if _head(form) not in joining
@@ -217,7 +217,7 @@ class _VocabularyRules:
         behind = {other[len(form)] for other in known if other[: len(form)] == form != other}
         if not behind.isdisjoint(self._vocabulary.roles["with"]):  # `greet Bob with "hello"`
             return NOTHING
-        return self._with_ports(self._said(form, leaf), leaf, _slots_of(form))
+        return self._with_ports(self._say(form, leaf), leaf, _slots_of(form))
 
     def _exact(self, leaf: _Leaf) -> Part:
         """Return the id of a command with the ports of one way to say it."""
@@ -255,7 +255,7 @@ class _VocabularyRules:
     def _with_value(self, kind: str, value: Part) -> Part:
         """Return a command with this value in a slot of the type."""
         return choice(
-            self._said(form, leaf, {slot: value})
+            self._say(form, leaf, {slot: value})
             for leaf in self._actions
             for form in leaf.forms
             for slot in _slots_of(form)
@@ -285,7 +285,7 @@ class _VocabularyRules:
             head = parse_rule(f'<each> " {name} " <each_in> " " {value} (", " {value})* ": "', self._words)
         return joined((head, used))
 
-    def _doing(self, leaves: Iterable[_Leaf]) -> Part:
+    def _gerunds(self, leaves: Iterable[_Leaf]) -> Part:
         """Return the leaves with the form of their verb that the table `doing` makes and the list of correct words
         has.
         """
@@ -302,7 +302,7 @@ class _VocabularyRules:
                         for bare in endings
                         if verb.endswith(bare)
                     }
-                    found += [self._said((way, *rest), leaf) for way in sorted(ways & known)]
+                    found += [self._say((way, *rest), leaf) for way in sorted(ways & known)]
         return choice(found)
 
     def _value(self, kind: ValueType) -> Part:
@@ -324,7 +324,7 @@ class _VocabularyRules:
         """Return a number that with the unit isn't below the least of its type, or too small to matter."""
         factor = unit.numerator / unit.denominator
         is_small = factor < _SMALL or 0.1 * factor < (kind.least or 0)
-        return self._shared("whole" if is_small else "figure", parse_rule(_WHOLE if is_small else _FIGURE, self._words))
+        return self._share("whole" if is_small else "figure", parse_rule(_WHOLE if is_small else _FIGURE, self._words))
 
     def _times(self) -> Iterator[Part]:
         values = self._vocabulary.values

@@ -57,9 +57,9 @@ def read_py_trees(
         try:
             if isinstance(behaviour, EngineLeaf):
                 return _engine_leaf(behaviour, scopes)
-            found = _known(behaviour)
+            found = _find_counterpart(behaviour)
             if found is None:
-                leaf_id = _unused(behaviour.name, leaves)
+                leaf_id = _find_unused_id(behaviour.name, leaves)
                 leaves[leaf_id] = behaviour_leaf(behaviour, leaf_id)
                 return Node(leaf_id, name=behaviour.name if names else "")
             node_id, ports = found
@@ -108,7 +108,7 @@ def behaviour_leaf(behaviour: Behaviour, leaf_id: str) -> Callable[..., Any]:
     return leaf  # type: ignore[no-any-return]
 
 
-def _unused(name: str, leaves: Mapping[str, object]) -> str:
+def _find_unused_id(name: str, leaves: Mapping[str, object]) -> str:
     """Return an id for a behaviour that no word and no other leaf has."""
     words = "".join(letter if letter.isascii() and letter.isalnum() else " " for letter in name).split()
     made = "".join(["Behaviour", *(word[0].upper() + word[1:] for word in words)])
@@ -125,7 +125,7 @@ def _engine_leaf(leaf: EngineLeaf, scopes: set[int]) -> Node:
     return found
 
 
-def _known(behaviour: Behaviour) -> tuple[str, dict[str, str]] | None:
+def _find_counterpart(behaviour: Behaviour) -> tuple[str, dict[str, str]] | None:
     """Return the id and the ports of a node that has a counterpart; None for a plain behaviour."""
     kinds = type(behaviour).__mro__
     at = next((at for at, kind in enumerate(kinds) if kind in _MAKES), len(kinds))

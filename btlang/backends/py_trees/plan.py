@@ -142,7 +142,7 @@ class _Planner:
             if self._always_skipped(node):
                 self._skips[index] = True
             else:
-                part = self._expressed(instance, below, children)
+                part = self._express(instance, below, children)
         except _Inexpressible as problem:
             span = node.span or NOWHERE
             self._problems.append(diagnostic("BT134", span, id=node.id, target="py_trees", reason=str(problem)))
@@ -151,7 +151,7 @@ class _Planner:
             self._uses.add("interrupting")
         return part
 
-    def _expressed(self, instance: NodeInstance, below: list[int], children: tuple[Part, ...]) -> Part:
+    def _express(self, instance: NodeInstance, below: list[int], children: tuple[Part, ...]) -> Part:
         node, index = instance.node, instance.index
         if not children:
             return self._leaf(instance)

@@ -7,7 +7,7 @@ from functools import partial
 from weakref import WeakKeyDictionary
 
 from btlang.engine.instance import NodeInstance, blackboard_key
-from btlang.engine.leaves.callables import KEPT, GeneratorLeaf, class_leaf, function_leaf, keeping_leaf
+from btlang.engine.leaves.callables import KEPT, GeneratorLeaf, class_leaf, function_leaf, resumable_leaf
 from btlang.engine.leaves.leaf import LeafBinding, LeafSignature, describe_exception
 
 TYPE_CHECKING = False
@@ -44,7 +44,7 @@ def bind_leaf(instance: NodeInstance, signature: LeafSignature) -> Compiled:
     call, stored, given = signature.calls[key]
     if kind == "generator":
         if KEPT in given:
-            return keeping_leaf(instance, call, stored)
+            return resumable_leaf(instance, call, stored)
         generator = GeneratorLeaf(instance, call, stored)
         return generator.tick, generator.halt
     if kind == "function":

@@ -128,7 +128,7 @@ class KeptValues(dict[str, "Any"]):
         self.update(saved)
 
 
-def keeping_leaf(instance: NodeInstance, call: Callable[..., Any], stored: Stored) -> Compiled:
+def resumable_leaf(instance: NodeInstance, call: Callable[..., Any], stored: Stored) -> Compiled:
     """Compile a generator function that takes what it kept when it was suspended."""
     kept = KeptValues()
     leaf = GeneratorLeaf(instance, partial(call, **{KEPT: kept}), stored)

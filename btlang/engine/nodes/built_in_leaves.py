@@ -82,7 +82,7 @@ def script_port(instance: NodeInstance, port: str) -> Callable[[Blackboard], Any
     text = instance.node.port(port)
     key = blackboard_key(port, text)
     if key is not None:
-        return _stored_script(key, instance.state.enums)
+        return _compile_stored(key, instance.state.enums)
     if not text:
         raise instance.error(f"{instance.node.id} needs a port {port}")
     return read_script(instance, port, text)
@@ -96,7 +96,7 @@ def read_script(instance: NodeInstance, port: str, text: str) -> Callable[[Black
         raise instance.error(f"its {port} {text!r} cannot be read: {problem}") from problem
 
 
-def _stored_script(key: str, enums: Mapping[str, float]) -> Callable[[Blackboard], Any]:
+def _compile_stored(key: str, enums: Mapping[str, float]) -> Callable[[Blackboard], Any]:
     latest: object = None
     run: Callable[[Blackboard], Any] | None = None
 

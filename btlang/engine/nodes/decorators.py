@@ -190,7 +190,7 @@ def _loop(instance: NodeInstance, children: Sequence[Compiled], convert: Callabl
     def tick() -> int:
         nonlocal running
         if not running:
-            left = queue if key is None else _stored(instance, key)
+            left = queue if key is None else _find_queue(instance, key)
             if not left:
                 status = if_empty()
                 if status != SKIPPED and not stays:
@@ -198,7 +198,7 @@ def _loop(instance: NodeInstance, children: Sequence[Compiled], convert: Callabl
                 return instance.fail("its queue is empty") if status == FAILURE else status
             value = left.popleft() if isinstance(left, deque) else left.pop(0)
             if target:
-                scope.set(target, _converted(value, convert, sort))
+                scope.set(target, _convert(value, convert, sort))
         status = child()
         running = status == RUNNING
         if status == FAILURE:
@@ -226,12 +226,12 @@ def _constants(instance: NodeInstance, text: str, convert: Callable[[str], Any],
     if not any(name == "queue" for name, _ in instance.node.ports):
         raise instance.error(f"{instance.node.id} needs a port queue")
     try:
-        return [_converted(part, convert, sort) for part in _split(text)]
+        return [_convert(part, convert, sort) for part in _split(text)]
     except ActionFailed as problem:
         raise instance.error(str(problem)) from None
 
 
-def _stored(instance: NodeInstance, key: str) -> Any:
+def _find_queue(instance: NodeInstance, key: str) -> Any:
     """Return the queue under the key itself and not a copy, so that its other holders see what is taken off."""
     try:
         found = instance.scope.get(key)
@@ -252,7 +252,7 @@ def _split(text: str) -> list[str]:
     return text.removesuffix(";").split(";") if text else []
 
 
-def _converted(value: Any, convert: Callable[[str], Any], sort: str) -> Any:
+def _convert(value: Any, convert: Callable[[str], Any], sort: str) -> Any:
     if not isinstance(value, str):
         return value
     try:

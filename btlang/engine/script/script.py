@@ -187,9 +187,9 @@ class _StatementParser:
             depth = 1 + max(depth for _, depth, _ in parts)
             if depth > MOST_LEVELS:
                 raise ScriptError(f"this is nested more than {MOST_LEVELS} levels deep", operator.position)
-            self.operands[-count:] = [(self._made(operator, [run for run, _, _ in parts]), depth, "")]
+            self.operands[-count:] = [(self._make(operator, [run for run, _, _ in parts]), depth, "")]
 
-    def _made(self, operator: _PendingOperator, parts: list[Run]) -> Run:
+    def _make(self, operator: _PendingOperator, parts: list[Run]) -> Run:
         sign = operator.signs[0]
         if operator.level == _PREFIX:
             return closures.prefix(sign, *parts)

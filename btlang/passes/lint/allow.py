@@ -30,7 +30,7 @@ def apply_allow(compilation: Compilation) -> Iterator[Diagnostic]:
     if "#" not in source.text or not re.search(_ALLOW, source.text):
         return
     words = split(source, vocabulary.orthography)
-    for _, span, code in _named(words):
+    for _, span, code in _allowed_names(words):
         if not code:
             from btlang.frontends.mission.explanations.spelling_rule import (
                 is_respelling,  # most comments name what there is
@@ -39,17 +39,17 @@ def apply_allow(compilation: Compilation) -> Iterator[Diagnostic]:
             near = nearest(span.text.lower(), NAMES)
             fix = (span, near[0]) if near and is_respelling(span.text, near[0], vocabulary) else None
             yield diagnostic("BT056", span, fix=fix, name=span.text, near=", ".join(near or sorted(NAMES)))
-    compilation.warnings = _left(compilation.warnings, words, vocabulary)
+    compilation.warnings = _filter_allowed(compilation.warnings, words, vocabulary)
 
 
 def not_silenced(problems: Iterable[Diagnostic], source: Source, vocabulary: Lexicon) -> list[Diagnostic]:
     """Those that no comment of their mission silences."""
-    return _left(problems, split(source, vocabulary.orthography), vocabulary)
+    return _filter_allowed(problems, split(source, vocabulary.orthography), vocabulary)
 
 
-def _left(problems: Iterable[Diagnostic], words: Words, vocabulary: Lexicon) -> list[Diagnostic]:
+def _filter_allowed(problems: Iterable[Diagnostic], words: Words, vocabulary: Lexicon) -> list[Diagnostic]:
     silent: dict[str, list[tuple[int, int]]] = {}
-    for comment, _, code in _named(words):
+    for comment, _, code in _allowed_names(words):
         silent.setdefault(code, []).append(_scope(comment, words, vocabulary))
     return [
         problem
@@ -59,7 +59,7 @@ def _left(problems: Iterable[Diagnostic], words: Words, vocabulary: Lexicon) -> 
     ]
 
 
-def _named(words: Words) -> Iterator[tuple[Span, Span, str]]:
+def _allowed_names(words: Words) -> Iterator[tuple[Span, Span, str]]:
     """Each name in such a comment: the comment, the place of the name, and its code, "" for none."""
     for comment in words.comments:
         match = re.fullmatch(_ALLOW, comment.text.rstrip())

@@ -38,11 +38,11 @@ def find_asked_once(compilation: Compilation) -> Iterator[Diagnostic]:
             if type(node) is ast.If and not node.negated and node.otherwise is None:
                 sentence = _sentence_before(*before.get(id(node), ((), 0)))
                 if _is_statement(node, vocabulary):
-                    warnings = list(_warning(node, sentence[-1] if sentence else None, vocabulary))
+                    warnings = list(_warn(node, sentence[-1] if sentence else None, vocabulary))
                     yield from warnings or _too_late(node, sentence, vocabulary)
                 elif sentence and "\n" not in node.span.text:
                     before_it = sentence[-1] if type(node.body) is ast.Fail else None  # `A, and abort if C`
-                    yield from _warning(node, before_it, vocabulary)  # `A, and when C, B`
+                    yield from _warn(node, before_it, vocabulary)  # `A, and when C, B`
 
 
 def _sentence_before(items: Sequence[ast.Ast], at: int) -> Sequence[ast.Ast]:
@@ -83,7 +83,9 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
         each = f"{vocabulary.word('whenever')} {node.span.text[len(words.split(maxsplit=1)[0]) :].lstrip()}"
         advice = f"'{last}' is over by then. To do it {'meanwhile' if is_timed else 'on the way'}, write: {each}"
         yield diagnostic("BT068", node.span, words=words, advice=advice).replace(readings=((node.span, each),))
-    elif isinstance(node.condition, ast.Not) and any(_named(journey) & _named(asked) for journey in journeys):
+    elif isinstance(node.condition, ast.Not) and any(
+        _find_things(journey) & _find_things(asked) for journey in journeys
+    ):
         advice = f"'{last}' comes first, and fails if it can't be done. What decides about it stands before it."
         yield diagnostic("BT068", node.span, words=words, advice=advice)
 
@@ -94,10 +96,10 @@ def _too_early(node: ast.If, vocabulary: Lexicon) -> Iterator[Diagnostic]:
     if not isinstance(asked, ast.Phrase) or asked.span.start < node.body.span.start:
         return
     phrases = [each for each in ast.parents_first(node.body) if isinstance(each, ast.Phrase)]
-    chosen = {text for each in phrases for text in _named(each) if text[:1] == "{"}
+    chosen = {text for each in phrases for text in _find_things(each) if text[:1] == "{"}
     there = [word for word, types in vocabulary.values.pronouns.items() if PLACE in types]
     is_there = asked.span.text.lower().endswith(tuple(f" {word}" for word in there))
-    if (is_there and any(MOVES in each.entry.resources for each in phrases)) or chosen & _named(asked):
+    if (is_there and any(MOVES in each.entry.resources for each in phrases)) or chosen & _find_things(asked):
         body, condition = node.body.span.text, asked.span.text
         advice = (
             f"It is asked before '{body}', where the robot is then. Name what and where, as in: Alice is in the lab"
@@ -112,7 +114,7 @@ def _is_event(condition: ast.Ast, vocabulary: Lexicon) -> bool:
     return is_phrase and not set(events).isdisjoint(condition.span.text.lower().split())
 
 
-def _named(phrase: ast.Phrase) -> set[str]:
+def _find_things(phrase: ast.Phrase) -> set[str]:
     """Return the names that a phrase is about, and the values that they are chosen into."""
     types = {slot.name: slot.type for slot in phrase.entry.slots}
     found: set[str] = set()
@@ -135,7 +137,7 @@ def _is_statement(node: ast.If, vocabulary: Lexicon) -> bool:
     return starts and "\n" not in span.text and (halts or ends)
 
 
-def _warning(node: ast.If, before: ast.Ast | None, vocabulary: Lexicon) -> Iterator[Diagnostic]:
+def _warn(node: ast.If, before: ast.Ast | None, vocabulary: Lexicon) -> Iterator[Diagnostic]:
     source, condition = node.span.source, node.condition.span
     if node.body.span.start < condition.start:
         if before is not None and node.body.span.text.lower() in vocabulary.halting and "\n" not in before.span.text:

@@ -56,9 +56,9 @@ def _values(compilation: Compilation) -> Iterator[Diagnostic]:
     definitions = all_definitions(mission)
     if not given and not any(definition.parameters for definition in definitions):
         return
-    asked: set[str] = set() if mission.body is None else _asked(compilation.syntax(mission.body))
+    asked: set[str] = set() if mission.body is None else _find_asked_keys(compilation.syntax(mission.body))
     for definition in definitions:
-        own = _asked(compilation.syntax(definition.body))
+        own = _find_asked_keys(compilation.syntax(definition.body))
         asked |= own
         for key, _ in definition.parameters:
             if key not in own and definition.span.source is mission.span.source:
@@ -68,7 +68,7 @@ def _values(compilation: Compilation) -> Iterator[Diagnostic]:
             yield diagnostic("BT051", span, name=key.replace("_", " ").strip())
 
 
-def _asked(nodes: Iterable[Ast]) -> set[str]:
+def _find_asked_keys(nodes: Iterable[Ast]) -> set[str]:
     """Return the keys of values that nodes ask for, as do subtrees called by their ids: values set inside leave
     them.
     """
@@ -93,7 +93,7 @@ def find_rules_only(compilation: Compilation) -> Iterator[Diagnostic]:
                 for at, item in enumerate(items):
                     if type(item) is ast.Name and item.name in names:
                         beside = items[at + 1] if at + 1 < len(items) else items[at - 1]
-                        yield _warning(item, beside, compilation.vocabulary)
+                        yield _warn(item, beside, compilation.vocabulary)
 
 
 def _is_only_rules(body: ast.Ast) -> bool:
@@ -101,7 +101,7 @@ def _is_only_rules(body: ast.Ast) -> bool:
     return all(type(item) is ast.Whenever for item in items)
 
 
-def _warning(rules: ast.Name, beside: ast.Ast, vocabulary: Lexicon) -> Diagnostic:
+def _warn(rules: ast.Name, beside: ast.Ast, vocabulary: Lexicon) -> Diagnostic:
     words, other = rules.span.text, beside.span.text
     is_block = "\n" in other
     fixed = f"{'...' if is_block else other}, {vocabulary.word('meanwhile')} {words}"

@@ -37,7 +37,7 @@ def find_in_form(node: ast.If | ast.Try, vocabulary: Lexicon) -> Iterator[Attach
         return
     body = node.body
     if isinstance(node, ast.Try) and _is_tried(node, vocabulary) and _is_joined_by_then(body, vocabulary):
-        yield Attachment(TRIED, node.span.start, partial(_tried_first, node))
+        yield Attachment(TRIED, node.span.start, partial(_try_first, node))
     joins = isinstance(body, ast.Chain) and body.operator in ("sequence", "parallel") and not body.bracketed
     if isinstance(node, ast.If) and isinstance(body, ast.Chain) and joins and len(body.items) > 1:
         before, last = body.items[-2:]
@@ -61,7 +61,7 @@ def find_in_form(node: ast.If | ast.Try, vocabulary: Lexicon) -> Iterator[Attach
     text = part.span.source.text
     if is_in_brackets(part.span) or "\n" in text[node.span.start : part.span.start]:
         return
-    yield Attachment(OTHERWISE, node.span.start, partial(_moved, node, path, part))
+    yield Attachment(OTHERWISE, node.span.start, partial(_move, node, path, part))
 
 
 def find_in_pace(node: ast.Every, vocabulary: Lexicon) -> Iterator[Attachment]:
@@ -73,7 +73,7 @@ def find_in_pace(node: ast.Every, vocabulary: Lexicon) -> Iterator[Attachment]:
     words = {vocabulary.orthography.words(pattern)[0] for pattern in vocabulary.roles["every"]}
     at = min((match.start() for match in _WORD.finditer(behind) if match[0].lower() in words), default=0)
     if _WORD.search(behind[:at]):
-        yield Attachment(PACED, start, partial(_repeated, node, Span(body.source, body.end, node.span.end), at))
+        yield Attachment(PACED, start, partial(_repeat_inside, node, Span(body.source, body.end, node.span.end), at))
 
 
 def find_in_time(node: ast.For, vocabulary: Lexicon) -> Iterator[Attachment]:
@@ -145,7 +145,7 @@ def _has_otherwise(node: ast.Ast) -> bool:
     return getattr(node, "otherwise", None) is not None
 
 
-def _moved(node: Any, path: Sequence[ast.Ast], part: Any) -> Readings:
+def _move(node: Any, path: Sequence[ast.Ast], part: Any) -> Readings:
     """`if C, if D, A otherwise B`: if C, (if D, A) otherwise B."""
     tried = isinstance(part, ast.Try) and part.body.span.start == part.span.start
     changed: ast.Ast = part.body if tried else part.replace(otherwise=None)
@@ -168,7 +168,7 @@ def _side_by_side(node: ast.If, gap: Span, then: str) -> Readings:
     return Readings(taken, other, node.span, fix)
 
 
-def _tried_first(node: ast.Try) -> Readings:
+def _try_first(node: ast.Try) -> Readings:
     """`try to A, then B`: try to A; then B in any case."""
     body: Any = node.body
     first = node.replace(body=body.items[0])
@@ -176,7 +176,7 @@ def _tried_first(node: ast.Try) -> Readings:
     return Readings(node, other, node.span, add_brackets(body.span))
 
 
-def _repeated(node: ast.Every, behind: Span, at: int) -> Readings:
+def _repeat_inside(node: ast.Every, behind: Span, at: int) -> Readings:
     """Make the reading of `A 3 times every 10 s` as: every 10 s, A 3 times."""
     rounds, pace = behind.text[:at].strip(), behind.text[at:]
     other = node.replace(body=ast.Repeat(node.rounds, node.body, node.span), rounds="")

@@ -127,7 +127,7 @@ def find_in_chain(
     Only neighbours that could be read otherwise are looked at, so that a long chain of plain commands costs little.
     """
     if chain.operator == "any" and _negates_first(items):
-        yield Attachment(NEGATED, items[0].span.start, partial(_negated, chain))
+        yield Attachment(NEGATED, items[0].span.start, partial(_negate, chain))
     gaps: Gaps | None = None
     if items is not chain.items:
         yield from _behind_after(chain, items, is_part, vocabulary)
@@ -180,7 +180,7 @@ def _negates_first(items: Sequence[ast.Ast]) -> bool:
     return is_prefix and not is_in_brackets(first.span) and not any(isinstance(item, ast.Not) for item in items[1:])
 
 
-def _negated(chain: ast.Chain) -> Readings:
+def _negate(chain: ast.Chain) -> Readings:
     """`not C or D`: not (C or D)."""
     first: Any = chain.items[0]
     inner = ast.Chain("any", (first.condition, *chain.items[1:]), True, chain.span)
@@ -207,46 +207,46 @@ class _GapPlace:
     def mixed_right(self, right: Any) -> Readings:
         """Read `A then B and C` as (A then B) and C."""
         first = sort_by_place(right.items)[0]
-        group = self._joined(self.first, self.at + 1, {self.at + 1: first})
+        group = self._join(self.first, self.at + 1, {self.at + 1: first})
         return self._readings(self.first, self.at + 1, replace_part(right, first, group), self.at + 1)
 
     def mixed_left(self, left: Any) -> Readings:
         """Read `A and B then C` as A and (B then C)."""
         last = sort_by_place(left.items)[-1]
-        group = self._joined(self.at, self.last, {self.at: last})
+        group = self._join(self.at, self.last, {self.at: last})
         return self._readings(self.at, self.last, replace_part(left, last, group), self.at)
 
     def postfix(self, right: Any, wrapped: Sequence[Any]) -> Readings:
         """Read `A then B 3 times` as (A then B) 3 times."""
-        group: ast.Ast = self._joined(self.first, self.at + 1, {self.at + 1: wrapped[-1].body})
+        group: ast.Ast = self._join(self.first, self.at + 1, {self.at + 1: wrapped[-1].body})
         for form in reversed(wrapped):
             group = form.replace(body=group)
         return self._readings(self.first, self.at + 1, group, self.at + 1)
 
     def list_left(self, left: Any) -> Readings:
         """`go to A and B and wave`: go to A, and then go to B and wave."""
-        group = self._joined(self.at, self.last, {self.at: left.items[-1]})
+        group = self._join(self.at, self.last, {self.at: left.items[-1]})
         other = left.replace(items=(*left.items[:-1], group))
         return self._readings(self.at, self.last, other, self.at)
 
     def list_right(self, right: Any) -> Readings:
         """`wave and go to A and B`: wave and go to A, and then go to B."""
-        group = self._joined(self.first, self.at + 1, {self.at + 1: right.items[0]})
+        group = self._join(self.first, self.at + 1, {self.at + 1: right.items[0]})
         other = right.replace(items=(group, *right.items[1:]))
         return self._readings(self.first, self.at + 1, other, self.at + 1)
 
     def after(self, right: ast.Ast) -> Readings:
         """Read `A then B after C` as (A then B) after C."""
         last = self.at + 1
-        group, gone = self._joined(self.first, last, {}), {id(item) for item in self.items[self.first : last + 1]}
-        whole = self._joined(self.first, self.last, {})
+        group, gone = self._join(self.first, last, {}), {id(item) for item in self.items[self.first : last + 1]}
+        whole = self._join(self.first, self.last, {})
         behind = [[item, group] if item is right else [item] for item in ast.parts(whole) if id(item) not in gone]
         items = tuple(item for pair in behind for item in pair)
         span = Span(right.span.source, self.items[self.first].span.start, self.items[self.last].span.end)
         other = ast.Chain("sequence", items, True, span)
         return Readings(whole, other, balance_brackets(span), (self.gaps.comma(self.at), ","))
 
-    def _joined(self, first: int, last: int, changed: dict[int, ast.Ast]) -> ast.Ast:
+    def _join(self, first: int, last: int, changed: dict[int, ast.Ast]) -> ast.Ast:
         """Join these parts as a separate chain, some of them changed."""
         spoken: Sequence[int] = range(first, last + 1)
         if self.items is not self.chain.items:
@@ -258,7 +258,7 @@ class _GapPlace:
     def _readings(self, first: int, last: int, other: ast.Ast, place: int) -> Readings:
         """`other` takes the place of one part, and those from `first` to `last` are in it."""
         part = self.items[place].span
-        whole = self._joined(self.first, self.last, {})
+        whole = self._join(self.first, self.last, {})
         gone = {id(self.items[at]) for at in range(first, last + 1) if at != place}
         items = [other if item is self.items[place] else item for item in ast.parts(whole) if id(item) not in gone]
         changed = ast.Chain(self.chain.operator, tuple(items), True, self.chain.span) if len(items) > 1 else other

@@ -109,13 +109,13 @@ def make_warning(found: Readings, printer: Printer) -> Diagnostic:
     """BT050 with both readings."""
     taken, other = printer.statement(found.taken), printer.statement(found.other)
     fix = None if "\n" in found.fix[0].text else found.fix
-    fixed = taken if fix is None or "\n" in found.span.text else _changed(found.span, *found.fix)
+    fixed = taken if fix is None or "\n" in found.span.text else _change_text(found.span, *found.fix)
     readings = () if "\n" in found.span.text else ((found.span, fixed), (found.span, other))
     problem = diagnostic("BT050", found.span, (), fix, taken=taken, other=other, fixed=fixed)
     return problem.replace(readings=readings)  # type: ignore[no-any-return]
 
 
-def _changed(span: Span, part: Span, words: str) -> str:
+def _change_text(span: Span, part: Span, words: str) -> str:
     text = span.source.text
     return " ".join((text[span.start : part.start] + words + text[part.end : span.end]).split())
 
