@@ -39,7 +39,8 @@ def tree_problems(
     bind: Callable[[str], LeafBinding | None] | None = None,
     services: Mapping[str, Any] = {},
 ) -> list[Diagnostic]:
-    """Unknown leaves (BT130) and nodes (BT131), subtrees (BT126), and whatever the engine would refuse (BT132).
+    """Report unknown leaves (BT130) and nodes (BT131), subtrees (BT126), and whatever the engine would refuse
+    (BT132).
 
     `bind` and `services` are those of a run, by default what a keyword entry says, without the robot: a `call` that
     cannot be loaded here is no problem then, as it may be there on the robot.
@@ -60,7 +61,7 @@ def tree_problems(
 
 
 def find_misnamed(tree: Tree, vocabulary: Lexicon) -> Iterator[Diagnostic]:
-    """Names of places and the like that nothing has (BT132): no phrase could hold them."""
+    """Find names of places and the like that nothing has (BT132): no phrase could hold them."""
     for node in tree.walk():
         slots = {slot.name: slot.type for entry in vocabulary.entries.get(node.id, ()) for slot in entry.slots}
         for port, text in node.ports:
@@ -82,7 +83,7 @@ def _diagnose(
     entries: dict[str, Draft | None],
     fits: Callable[[Node], bool],
 ) -> Diagnostic:
-    """`fits` says whether a leaf can run."""
+    """Make a diagnostic of an error; `fits` says whether a leaf can run."""
     node = error.node
     span, names = node.span or NOWHERE, [name for name, _ in tree.subtrees]
     if isinstance(error, UnknownSubTree):
@@ -110,7 +111,7 @@ def _diagnose(
 
 
 def _add_help(problem: Diagnostic, *advice: str) -> Diagnostic:
-    """With advice of several lines."""
+    """Add advice of several lines."""
     lines = "\n".join(line for line in advice if line)
     helped: Diagnostic = problem.replace(arguments=(*problem.arguments, ("help", lines)))
     return helped
@@ -191,7 +192,7 @@ class SaidId(Record):
 
 
 def find_said_id(node: Node, node_id: str, vocabulary: Lexicon) -> SaidId | None:
-    """Where the words of a node say an id; None where they don't, as in XML."""
+    """Find where the words of a node say an id; None if they don't, as in XML."""
     if node.span is None or node.span.text[:1] == "<":
         return None
     text = split(Source(node.span.text), vocabulary.orthography)

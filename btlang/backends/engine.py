@@ -33,7 +33,7 @@ def bind_leaf(
     own: Callable[[Entry, Lexicon], LeafBinding | None] | None = None,
     find_awaited: Collection[str] = (),
 ) -> LeafBinding | None:
-    """None where no keyword entry has the id. Raises EngineError where its `call` leads nowhere or is of no use.
+    """Bind an id, None if no keyword entry has it. Raises EngineError if its `call` leads nowhere or is of no use.
 
     `own` is how the robot of the run binds an entry; what it leaves is bound by `call`. The latest entry that it binds
     counts, so that a keyword file can bind words that ship. An entry that replaces the others goes before the robot.
@@ -154,7 +154,7 @@ _AS_GOOD_AS_EQUAL = 1e-9
 
 
 def _is_equal(value: Any, wanted: Any) -> bool:
-    """Numbers up to rounding, texts in any case."""
+    """Whether two values are equal: numbers up to rounding, texts in any case."""
     if isinstance(value, str) or isinstance(wanted, str):
         return str(value).casefold() == str(wanted).casefold()
     return bool(abs(value - wanted) <= _AS_GOOD_AS_EQUAL * max(1.0, abs(wanted)))

@@ -46,7 +46,7 @@ class Understood(Record):
 
 
 def understood(mission: ast.Program, tree: Tree, vocabulary: Lexicon, sentences: Sentences) -> list[Understood]:
-    """Every statement and definition, in the order of the text; `sentences` are those of the text as it was written."""
+    """Return every statement and definition, in the order of the text; `sentences` are those of the text as written."""
     printer = printer_of(mission, vocabulary, "all")
     return [
         Understood(each.at, "\n".join(_read_sentence(each, printer, _NO_LIMIT)).removeprefix(_READ_AS))
@@ -57,7 +57,7 @@ def understood(mission: ast.Program, tree: Tree, vocabulary: Lexicon, sentences:
 def explain_mission(
     mission: ast.Program, tree: Tree, vocabulary: Lexicon, label: Callable[[Node], str], width: int = 100
 ) -> str:
-    """Every statement and definition in the order of the text, below each other and at most `width` columns wide.
+    """Explain every statement and definition in the order of the text, at most `width` columns wide.
 
     `tree` is what the mission was compiled to; a line of it that is wider is cut, and its words stand above it.
     """
@@ -110,7 +110,7 @@ def _commands(body: ast.Ast | None, root: Node, sentences: Sentences) -> Iterato
 
 
 def _read_sentence(statement: Statement, printer: Printer, width: int) -> Iterator[str]:
-    """`read as:` and the sentence behind it, or its lines below it."""
+    """Return `read as:` and the sentence behind it, or its lines below it."""
     items, joined = statement.items, statement.joined
     whole = items[0] if len(items) == 1 else ast.Chain(joined, items, False, items[0].span)
     said = printer.say(whole)

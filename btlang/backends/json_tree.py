@@ -28,7 +28,7 @@ _UNFIT_WRITTEN = re.compile(r"(?<!\\)(?:\\\\)*\\u0000|[\ud800-\udfff]")
 
 
 def to_json(tree: Tree, vocabulary: Lexicon) -> str:
-    """One document, one line a node. `read_json` gives an equal tree; spans are written, but not read back.
+    """Return one document, one line a node. `read_json` makes an equal tree; spans are written, but not read back.
 
     Raises MissionError (BT134) for a text with NUL or a lone surrogate, which `read_json` would refuse.
     """

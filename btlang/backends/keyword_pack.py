@@ -36,7 +36,8 @@ class KeywordPack(Record):
 def pack_of_files(
     sources: Sequence[Source], vocabulary: Lexicon, load: Callable[[Source], Lexicon]
 ) -> tuple[KeywordPack, KeywordFile]:
-    """Words for the unknown nodes in XML files, as `keyword_pack`; and what the pack declares, at the nodes' tags.
+    """Make a pack for the unknown nodes in XML files, as `keyword_pack` does, and what it declares, at the nodes'
+    tags.
 
     The warnings are those of the files, too. Raises MissionError (BT120 to BT129).
     """
@@ -80,7 +81,7 @@ def keyword_pack(
     load: Callable[[Source], Lexicon],
     places: Mapping[str, Span] = {},
 ) -> KeywordPack:
-    """Words for these leaves. `load` makes the vocabulary with a keyword file, as a mission with the pack has it;
+    """Make words for these leaves. `load` makes the vocabulary with a keyword file, as a mission with the pack has it;
     `places` are those of ids in the files.
 
     A phrase that either parser reads as anything else gives way to the next one. A leaf without any is left out, with

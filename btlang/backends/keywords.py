@@ -76,7 +76,7 @@ def is_unknown(node_id: str, vocabulary: Lexicon) -> bool:
 
 
 def drafts(tree: Tree, vocabulary: Lexicon) -> dict[str, Draft | None]:
-    """As `draft_entries`, for the unknown leaves of a tree."""
+    """Draft entries as `draft_entries` does, for the unknown leaves of a tree."""
     models = {model.id: model for model in tree.models}
     found = find_unknown_leaves(tree, vocabulary).items()
     return draft_entries([Leaf(models.get(id) or NodeModel("", id), tuple(nodes)) for id, nodes in found], vocabulary)
@@ -98,7 +98,7 @@ def draft_entries(
 
 
 def why_none(node_id: str) -> str:
-    """Why a leaf has no draft."""
+    """Return why a leaf has no draft."""
     return "its words mean something else already" if _is_id(node_id) else "an id is one word of letters, digits and _"
 
 

@@ -146,7 +146,7 @@ def to_python(
 
 
 def _assign(name: str, root: Node) -> list[str]:
-    """Statements that end with one that gives a tree the name."""
+    """Return statements that end with one that gives a tree the name."""
     before = Statements(f"{name}_part_")
     made = before.expression(root, _node)
     return [*before.lines, f"{name} = {made.lines[0]}", *made.lines[1:]]

@@ -37,7 +37,7 @@ class SpokenPorts(Record):
 
 
 def id_words(name: str) -> list[str]:
-    """`GoToPose2` -> go, to, pose, 2."""
+    """Split an id: `GoToPose2` becomes go, to, pose, 2."""
     return [word.lower() for word in re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[^\WA-Z\d_]+|\d+", name)]
 
 
@@ -47,7 +47,9 @@ def asks(node_id: str) -> bool:
 
 
 def phrases(node_id: str, ports: SpokenPorts, articles: Collection[str], *, is_condition: bool) -> Iterator[str]:
-    """Patterns for a leaf, the most natural first; the further ones are for words that mean something else already."""
+    """Yield patterns for a leaf, the most natural first; the further ones are for words that mean something else
+    already.
+    """
     words = id_words(node_id)
     if not is_condition:
         starts: list[list[str]] = [[], ["run"], ["run", "node"]]

@@ -88,7 +88,7 @@ _WIDEST = 120
 
 
 def render(diagnostic: Diagnostic, colour: bool = False) -> str:
-    """Several lines without a last line end; colour changes nothing but the colour.
+    """Format several lines without a last line end; colour changes nothing but the colour.
 
     mission.txt:1:7: error BT013: There's no place called 'labb'.
       go to labb then wave
@@ -157,7 +157,7 @@ def _paint(text: str, colour: str) -> str:
 
 
 def _blank(line: str) -> str:
-    """One character for each, so that what is underlined stays above its marks."""
+    """Return one character for each, so that what is underlined stays above its marks."""
     return "".join(c if c.isprintable() else " " for c in line)
 
 

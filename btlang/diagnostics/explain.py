@@ -39,7 +39,7 @@ def explain_code(code: str) -> str:
 
 
 def pointer(codes: Iterable[str]) -> str:
-    """Which command says more about messages with these codes, "" if none does."""
+    """Return which command says more about messages with these codes, "" if none does."""
     known = sorted({code for code in codes if code not in PLAIN})
     if len(known) < 2:
         return "".join(f"For more, run: btc explain {code}" for code in known)
@@ -47,7 +47,7 @@ def pointer(codes: Iterable[str]) -> str:
 
 
 def all_codes() -> TextTable:
-    """Each code with the title of its page."""
+    """List each code with the title of its page."""
     return TextTable(tuple((code, title_of(code)) for code in sorted(CODES)))
 
 

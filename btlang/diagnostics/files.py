@@ -54,13 +54,13 @@ def read_included(path: str, source: Source) -> Source:
 
 
 def included_path(path: str, source: Source) -> tuple[str, str]:
-    """Where a file that a text names is looked for, and where that really is. Reads nothing."""
+    """Return where a file that a text names is looked for, and where that really is. Reads nothing."""
     where = os.path.join(source.folder, path)
     return where, real_path(where)
 
 
 def real_path(path: str) -> str:
-    """Without links; as it is where no file can have such a name."""
+    """Return a path without links; as it is if no file can have such a name."""
     try:
         return os.path.realpath(path)
     except ValueError:
@@ -121,7 +121,7 @@ def _decode(source: Source, read: Callable[[], bytes]) -> Source:
 
 
 def unwritable(path: str, reason: str | OSError) -> Diagnostic:
-    """BT009: a file cannot be written."""
+    """Make the message that a file can't be written (BT009)."""
     text = reason if isinstance(reason, str) else os_error_reason(reason)
     return diagnostic("BT009", Span(Source("", path), 0, 0), file=path, reason=text)
 

@@ -116,7 +116,7 @@ def _smallest(program: ast.Program, source: Source, token: Token) -> ast.Ast | N
 
 
 def _join(part: ast.Ast, at: int) -> ast.Ast:
-    """Of a chain only the two that are joined at a character."""
+    """Return only the two parts of a chain that are joined at a character."""
     if not isinstance(part, ast.Chain) or len(part.items) < 3:
         return part
     right = next((number for number, item in enumerate(part.items) if item.span.start > at), len(part.items) - 1)
@@ -132,7 +132,7 @@ _MOST = 200
 
 
 def complete(source: Source, words: RobotWords, at: int | None = None) -> dict[str, Any]:
-    """`completions` at a character, by default the end; see `Completion`. None in XML and JSON.
+    """List completions at a character, by default the end; see `Completion`. None in XML and JSON.
 
     Raises MissionError for words that can't be used.
     """

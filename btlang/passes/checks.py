@@ -88,7 +88,7 @@ _NO_HOLDERS: Holders = {}  # one for all
 
 
 def check_resources(compilation: Compilation) -> list[Diagnostic]:
-    """BT041 once for each parallel and resource that two of its children need."""
+    """Report each parallel and resource that two of its children need, once (BT041)."""
     vocabulary = compilation.vocabulary
     known = {id: vocabulary.entries[id] for id in compilation.ids if id in vocabulary.entries}
     needs = {id: dict.fromkeys(each for entry in known[id] for each in entry.resources) for id in known}
@@ -120,7 +120,7 @@ def _join_holders(holders: Sequence[Holders]) -> Holders:
 
 
 def _conflicts(parts: Sequence[Holders], vocabulary: Lexicon) -> list[Diagnostic]:
-    """Each resource that two of the parts hold, once."""
+    """Yield each resource that two of the parts hold, once."""
     held: dict[str, Node] = {}
     found: list[Diagnostic] = []
     reported: set[str] = set()

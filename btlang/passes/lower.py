@@ -80,7 +80,7 @@ def lower_one(item: ast.Ast, done: list[Lowered], scope: LoweringScope) -> Lower
 
 
 def _note(item: ast.Ast, done: list[Lowered], scope: LoweringScope) -> Lowered:
-    """As `lower_one`, and notes what the node was made of."""
+    """Lower as `lower_one` does, and note what the node was made of."""
     assert scope.origins is not None
     lowered = lower_one(item, done, scope)
     node = lowered.node
@@ -138,7 +138,7 @@ def _remember(item: ast.Remember, _done: list[Lowered], scope: LoweringScope) ->
 
 
 def _for_each(item: ast.ForEach, done: list[Lowered], scope: LoweringScope) -> Lowered:
-    """One instance of the body for each value; of a set the body in a loop over the names that the robot finds."""
+    """Make one instance of the body for each value; of a set the body in a loop over the names that the robot finds."""
     choice = choice_of(item.values[0])
     if choice is not None and choice.how == ALL:
         names, key = f"{{{names_key(item.key)}}}", f"{{{item.key}}}"
@@ -169,7 +169,7 @@ def _chain(item: ast.Chain, done: list[Lowered], scope: LoweringScope) -> Lowere
 
 
 def _parallel(item: ast.Chain, done: list[Lowered]) -> Lowered:
-    """Parts that never end last as long as the others."""
+    """Make a parallel. Parts that never end last as long as the others."""
     ending = sum(not part.endless for part in done)
     ports = {"success_count": str(ending), "failure_count": "1"} if 0 < ending < len(done) else {}
     return Lowered(new_node("Parallel", [new_round(part) for part in done], item.span, **ports), False, ending == 0)
@@ -181,7 +181,7 @@ def _at_least(item: ast.AtLeast, done: list[Lowered], _scope: LoweringScope) -> 
 
 
 def _rule(item: ast.Chain, done: list[Lowered], scope: LoweringScope) -> Lowered:
-    """Standing rules round the other commands; the first one is the outermost, so that it wins."""
+    """Put standing rules round the other commands; the first one is the outermost, so that it wins."""
     rules = [part for part, own in zip(done, item.items, strict=True) if isinstance(own, ast.Whenever)]
     others = [part for part, own in zip(done, item.items, strict=True) if not isinstance(own, ast.Whenever)]
     if not others:
@@ -272,7 +272,7 @@ def _check(_item: ast.Check, done: list[Lowered], _scope: LoweringScope) -> Lowe
 
 
 def _exact(item: ast.Exact, done: list[Lowered], scope: LoweringScope) -> Lowered:
-    """Nothing is added to it, not even where it can be skipped."""
+    """Make the node as it is said. Nothing is added to it, not even if it can be skipped."""
     node = Node(item.id, tuple(part.node for part in done), item.ports, item.name, item.span)
     names_endless = node.id == SUBTREE and node.port("ID") in scope.endless
     return Lowered(node, False, names_endless or never_ends(node.id, node.ports, [part.endless for part in done]))

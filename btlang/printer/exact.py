@@ -37,7 +37,7 @@ def exact(node: ast.Exact, _parts: list[Doc], printer: Printer) -> Doc:
 
 
 def exact_block(node: ast.Exact, printer: Printer) -> Iterator[tuple[Fragments, Iterator[tuple[ast.Ast, str]]]]:
-    """Its words, and its children as the lines below it."""
+    """Yield its words, and its children as the lines below it."""
     if node.items:
         yield (mark(node_head(node, printer)),), ((item, "children") for item in node.items)
 
@@ -49,14 +49,14 @@ def node_head(node: ast.Exact, printer: Printer) -> str:
 
 
 def phrase(node: ast.Phrase, _parts: list[Doc], printer: Printer) -> Doc:
-    """Words of a keyword entry, and behind them what they don't say of the node."""
+    """Print words of a keyword entry, and behind them what they don't say of the node."""
     words = Fragment(printer.phrase(node.entry.id, node.arguments) or node.span.text, LEAF)
     details = _details(node, dict(node.ports), printer)
     return Doc((words, mark(details.lstrip())) if details else (words,), WHOLE)
 
 
 def _details(node: ast.Exact | ast.Phrase, ports: dict[str, str], printer: Printer) -> str:
-    """` called "first" with width 0.05 giving {path}`, "" where nothing of that is to be said."""
+    """Print ` called "first" with width 0.05 giving {path}`, "" if nothing of that is to be said."""
     vocabulary, head = printer.vocabulary, ""
     if node.name:
         head += f" {vocabulary.word('called')} {quote(node.name, vocabulary)}"
@@ -68,7 +68,7 @@ def _details(node: ast.Exact | ast.Phrase, ports: dict[str, str], printer: Print
 
 
 def _head(node: ast.Exact, ports: dict[str, str], printer: Printer) -> str:
-    """`do` and what names the node; the port that names a subtree is taken out of its ports."""
+    """Print `do` and what names the node; the port that names a subtree is taken out of its ports."""
     vocabulary, subtrees = printer.vocabulary, printer.subtrees
     role = "test" if node.is_condition else "do"
     word, words = vocabulary.word(role), vocabulary.nodes.get(node.id)
@@ -102,7 +102,7 @@ def _in_words(node_id: str, subtree: str, role: str, printer: Printer) -> str:
 
 
 def _ports(role: str, ports: Mapping[str, str], printer: Printer) -> str:
-    """`with width 0.05, speed 2`; the word again where a name behind a comma would be read as a command."""
+    """Print `with width 0.05, speed 2`; the word again if a name behind a comma would be read as a command."""
     vocabulary, said = printer.vocabulary, ""
     for name, text in ports.items():
         key = _key(name, vocabulary)

@@ -118,7 +118,7 @@ def _join(given: list[Fragment], alone: set[int]) -> tuple[str, dict[int, int]]:
 
 
 def _end(words: Words, at: int, vocabulary: Lexicon, names: TrieNode) -> int:
-    """Where the name or phrase that begins at a word ends."""
+    """Return where the name or phrase that begins at a word ends."""
     lasts = [match.last for match in _matches(words, at, vocabulary, names)]
     return words.ends[max(lasts) - 1] if lasts else words.ends[at]
 

@@ -56,7 +56,7 @@ def format_layout(source: Source, orthography: Orthography) -> str:
 
 
 def _rows(source: Source, words: Words) -> Iterator[_Row]:
-    """Each line with its content laid out."""
+    """Yield each line with its content in the canonical layout."""
     quotes = [
         (start, end)
         for word, start, end in zip(words.words, words.starts, words.ends, strict=True)
@@ -130,7 +130,7 @@ def _levels(rows: list[_Row]) -> list[int]:
 
 
 def _settle(waiting: list[int], rows: list[_Row], levels: list[int], columns: list[int], one: int, other: int) -> None:
-    """Lines without words between lines of two levels."""
+    """Set the levels of lines without words between lines of two levels."""
     lowest, highest = min(one, max(other, 0)), max(one, other)
     for i in waiting:
         fitting = [level for level, column in enumerate(columns) if column <= rows[i].column]

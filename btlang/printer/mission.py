@@ -96,7 +96,7 @@ def _wrap(line: str, margin: str, width: float, printer: Printer) -> Iterator[st
 
 
 def _sections(node: ast.Ast, said: Doc, among: str, unclear: bool) -> Callable[[Any, Printer], Iterator[Section]]:
-    """How a statement is a block, which is one of a chain or of `children`."""
+    """Return how a statement is a block, which is one of a chain or of `children`."""
     if isinstance(node, ast.Chain):
         if node.operator == "sequence" and (among == "children" or (unclear and not said.can_skip)):
             return _sequence_node
@@ -255,7 +255,7 @@ _SECTIONS: dict[type[ast.Ast], Callable[[Any, Printer], Iterator[Section]]] = {
 def english(
     node: ast.Ast, vocabulary: Lexicon, *, brackets: str = "needed", names: Iterable[str | ast.Definition] = ()
 ) -> str:
-    """Canonical English of any AST; a Mission is its facts, its definitions and then its commands.
+    """Write canonical English of any AST; a Mission is its facts, its definitions and then its commands.
 
     Each is on a line, or in a block where a line cannot say it.
     `brackets` is "needed", "clear" or "all" (see Printer); `names` are those that are defined where a part of a
@@ -292,7 +292,7 @@ def given_lines(keys: Iterable[str], word: str, width: float) -> Iterator[str]:
 
 
 def printer_of(mission: ast.Program, vocabulary: Lexicon, brackets: str = "needed") -> Printer:
-    """Says the parts of a mission, where its names and places are known."""
+    """Make a printer for the parts of a mission, which knows its names and places."""
     facts = ast.all_facts(mission)
     if facts:
         vocabulary = vocabulary.with_places(tuple(fact.name for fact in facts))

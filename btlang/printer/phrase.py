@@ -59,7 +59,7 @@ def _fill_name(node: Node) -> str:
 
 
 def seconds(msec: str) -> str:
-    """Milliseconds of a port as seconds."""
+    """Return milliseconds of a port as seconds."""
     return f"{int(msec) / 1000:g} s" if msec.isdigit() else msec
 
 

@@ -133,7 +133,8 @@ class Printer:
         return fold(node, ast.parts, combine)
 
     def keep(self, node: ast.Ast, said: Doc, lines: tuple[str, ...] = ()) -> None:
-        """Says a node in these words from now on, such as those of a text; as a statement in `lines`, if there are any.
+        """Say a node in these words from now on, such as those of a text; as a statement in `lines`, if there are
+        any.
 
         Nothing of what holds it may have been said before.
         """
@@ -141,7 +142,7 @@ class Printer:
         self._kept[id(node)] = node, lines
 
     def kept_lines(self, node: ast.Ast) -> tuple[str, ...]:
-        """See `keep`."""
+        """Return the lines that `keep` got."""
         return self._kept.get(id(node), (node, ()))[1]
 
     def statement(self, node: ast.Ast, joined: str = "") -> str:
@@ -149,7 +150,7 @@ class Printer:
         return self.line(node, self.say(node), joined)
 
     def line(self, node: ast.Ast, said: Doc, joined: str) -> str:
-        """As `statement`, of what is said of the node."""
+        """Print a statement as `statement` does, of what is said of the node."""
         if isinstance(node, ast.Chain) and node.operator == joined:
             said = add_brackets(said)
         text = self.text(said.pieces)
@@ -208,7 +209,7 @@ class Printer:
         return value_of(text, self.vocabulary.types[kind], self.vocabulary)
 
     def plain_value(self, text: str, kind: str) -> str:
-        """As `value` if no slot gives the type: a text is in quotes, as a bare word may be a name or a number."""
+        """Print a value if no slot gives the type: a text is in quotes, as a bare word may be a name or a number."""
         value = self.value(text, kind)
         if kind != "text" or value != text or value.startswith("{"):
             return value
@@ -232,7 +233,7 @@ class Printer:
         return self.word(role, time_of_day=self.value(time, "time_of_day"))
 
     def rounds(self, number: str) -> Fragment:
-        """`3 times`; one word for once and for a number without end."""
+        """Print `3 times`; one word for once and for a number without end."""
         single = [word for word, rounds in self.vocabulary.counts.items() if str(rounds) == number]
         if single and number in ("-1", "1"):
             return Fragment(single[0], WORD)

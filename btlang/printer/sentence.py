@@ -69,7 +69,7 @@ def _parallel(node: ast.Chain, parts: list[Doc], printer: Printer) -> Doc:
 
 
 def _at_least(node: ast.AtLeast, parts: list[Doc], printer: Printer) -> Doc:
-    """Its list reaches to the end of the condition, so inside another one it is in brackets."""
+    """Print a list that reaches to the end of the condition, so inside another one it is in brackets."""
     word = printer.word("and")
     inner = [printer.inside(p, p.level < FORM or printer.reads_on(p, word)) for p in parts]
     pieces = [piece for part in inner[:-1] for piece in (part.pieces, mark(COMMA))]
@@ -136,7 +136,7 @@ def _repeat(node: ast.Repeat, parts: list[Doc], printer: Printer) -> Doc:
 
 
 def _retry(node: ast.Retry, parts: list[Doc], printer: Printer) -> Doc:
-    """Its count closes it, so nothing else in it may count."""
+    """Print a form that its count closes, so nothing else in it may count."""
     body = printer.inside(parts[0], parts[0].reaches or parts[0].counts)
     if node.pause:
         rounds: Fragments = paced_rounds(node.attempts, node.pause, "every", printer)
@@ -146,7 +146,7 @@ def _retry(node: ast.Retry, parts: list[Doc], printer: Printer) -> Doc:
 
 
 def paced_rounds(rounds: str, seconds: str, role: str, printer: Printer) -> tuple[Fragment, Fragment]:
-    """`3 times every 5 s`; `once every 5 s` would have no number."""
+    """Print `3 times every 5 s`; `once every 5 s` would have no number."""
     count = printer.word("count", count=rounds) if rounds == "1" else printer.rounds(rounds)
     return count, printer.duration(role, seconds)
 
@@ -192,7 +192,7 @@ def _paced(role: str) -> Callable[[Any, list[Doc], Printer], Doc]:
 
 
 def _constrained(node: ast.Constrained, parts: list[Doc], printer: Printer) -> Doc:
-    """Whatever stands beside it in its statement or bracket would be constrained, too."""
+    """Print a constraint. Whatever stands beside it in its statement or bracket would be constrained, too."""
     role = "without_entering" if node.kind == "keep out" else "without_leaving"
     zones = [printer.value(zone, "zone") for zone in node.zones]
     listed = f" {printer.word('and').text} ".join(zones)
@@ -271,7 +271,7 @@ def for_each(node: ast.ForEach, parts: list[Doc], printer: Printer) -> Doc:
 
 
 def each_head(node: ast.ForEach, printer: Printer) -> Iterator[Fragment]:
-    """`for each place in lab, dock`: marks, as no phrase is looked for in it."""
+    """Print `for each place in lab, dock`: marks, as no phrase is looked for in it."""
     word = printer.vocabulary.word
     values = ", ".join(printer.plain_value(text, node.kind) for text in node.values)
     yield mark(
@@ -304,7 +304,7 @@ def spell_key(key: str, vocabulary: Lexicon) -> str:
 
 
 def definition(node: ast.Definition, parts: list[Doc], printer: Printer) -> Doc:
-    """In the strong word, which no other word of the line can overrule."""
+    """Print a definition with the strong word, which no other word of the line can overrule."""
     return Doc((*definition_head(node, printer), parts[0].pieces), THEN)
 
 

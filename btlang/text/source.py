@@ -42,14 +42,14 @@ class Source:
         self._starts: list[int] | None = None
 
     def with_text(self, text: str) -> Source:
-        """Another text in its place."""
+        """Return a source with another text in its place."""
         return Source(
             text, self.name, self.folder, self.roots,
             hidden=self.hidden, hides_includes=self.hides_includes, may_load=self.may_load,
         )  # fmt: skip
 
     def position(self, offset: int) -> tuple[int, int]:
-        """Line and column of a character offset, both from 1, as editors count them."""
+        """Return line and column of a character offset, both from 1, as editors count them."""
         starts = self._line_starts()
         line = bisect_right(starts, offset)
         return line, offset - starts[line - 1] + 1

@@ -77,7 +77,7 @@ class Table:
         return self._path
 
     def keys(self) -> list[str]:
-        """All keys, for a table whose keys are names that the file gives."""
+        """List all keys, for a table whose keys are names that the file gives."""
         return list(self._values)
 
     def is_list(self, key: str) -> bool:
@@ -110,7 +110,7 @@ class Table:
         return float(value)
 
     def text(self, key: str) -> str:
-        """Text that is not blank. Raises Problem."""
+        """Return a text that isn't blank. Raises Problem."""
         value = self._require(key, "a text")
         if not isinstance(value, str) or not value.strip():
             raise self.problem(key, f'"{key}" must be text in quotes; write {key} = "kitchen"')
@@ -124,7 +124,7 @@ class Table:
         return value
 
     def choice(self, key: str, values: tuple[str, ...], default: str | None = None) -> str:
-        """One of the values. Raises Problem."""
+        """Return one of the values. Raises Problem."""
         if not self.has(key) and default is not None:
             return default
         value = self._require(key, "a text")

@@ -94,7 +94,7 @@ class Orthography(Record):
 
 
 def without_accents(word: str) -> str:
-    """`rápido` as `rapido`."""
+    """Return `rapido` for `rápido`."""
     from unicodedata import combining, normalize
 
     return "".join(character for character in normalize("NFD", word) if not combining(character))
@@ -169,7 +169,9 @@ class Words:
         return made
 
     def earlier(self, at: int) -> tuple[Words, int, int]:
-        """Where what stands before a word in its statement is: the text, its first word, and the word behind it."""
+        """Return where what stands before a word in its statement is: the text, its first word, and the word behind
+        it.
+        """
         if self.picked is not None and at < len(self.picked[1]):
             text, places = self.picked
             return text.earlier(places[at])
@@ -307,7 +309,7 @@ def _indent_items(words: Sequence[str], lines: Iterable[Line]) -> Iterator[Line]
 
 
 def statements(text: Words, holding: Set[str]) -> Iterator[tuple[int, int, int]]:
-    """(indent, first word, last word) of what stands between line ends, `;` and full stops.
+    """Yield (indent, first word, last word) of what is between line ends, `;` and full stops.
 
     Only of the lines that hold one of some words.
     """

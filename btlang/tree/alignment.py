@@ -65,8 +65,8 @@ class Alignment:
         come: Iterable[Node],
         features: Callable[[Node], Iterable[tuple[str, str]]],
     ) -> None:
-        """`pairs` are old and new trees that belong together, `gone` and `come` other old and new ones. `features`
-        gives what counts in a node beside its id, its name and its children.
+        """Pair trees. `pairs` are old and new trees that belong together, `gone` and `come` other old and new ones.
+        `features` returns what counts in a node beside its id, its name and its children.
         """
         self._features = features
         self._numbers = SubtreeNumbers(lambda node: sorted(features(node)))
@@ -109,7 +109,7 @@ class Alignment:
         return nodes
 
     def _pair_lists(self, waiting: list[tuple[Nodes, Nodes]]) -> None:
-        """Pairs what are children of the same, and then what is below them."""
+        """Pair what are children of the same, and then what is below them."""
         while waiting:
             old, new = waiting.pop()
             old, new = self._free(old, self._new), self._free(new, self._old)  # some have gone elsewhere
@@ -136,7 +136,7 @@ class Alignment:
                 self._pair(one, other)
 
     def _alike(self, old: Nodes, new: Nodes) -> list[tuple[Node, Node]]:
-        """Of two lists the pairs, in their order, that have most in common together."""
+        """Return the pairs of two lists, in their order, that have most in common together."""
         if not old or not new or len(old) * len(new) > _MOST:
             return []
         best = [[0.0] * (len(new) + 1) for _ in range(len(old) + 1)]
@@ -158,7 +158,7 @@ class Alignment:
         return found
 
     def _likeness(self, old: Node, new: Node) -> float:
-        """How much two nodes have in common; 0 where one has not become the other."""
+        """Return how much two nodes have in common; 0 if one hasn't become the other."""
         if self._holds(new, old) or self._holds(old, new):
             return 0.0  # something has come around it, or is gone from there
         shared = self._share(old, new)
@@ -182,7 +182,7 @@ class Alignment:
         return at < len(places) and places[at] < end
 
     def _pair_equal(self, before: Nodes, after: Nodes) -> None:
-        """Of what is not paired, equal subtrees, the largest first."""
+        """Pair equal subtrees of what isn't paired, the largest first."""
         left: defaultdict[int, deque[Node]] = defaultdict(deque)
         for node in before:
             if id(node) not in self._new:
@@ -202,7 +202,7 @@ class Alignment:
         return end - first
 
     def _pair_around(self, old: Nodes, new: Nodes) -> None:
-        """Of what is not paired in a gap, the old ones with those inside the new ones, and the other way round."""
+        """Pair what is left in a gap: old nodes with those inside the new ones, and the other way round."""
         for node in new:
             one, inner = self._free(old, self._new), self._free(node.children, self._old)
             if id(node) not in self._old and one and inner:

@@ -166,7 +166,7 @@ def _with_last(form: Sequence[Any], item: ast.Ast) -> ast.Ast:
 
 
 def _problem(made: Sequence[ast.Ast], at: int, form: Sequence[Any], item: ast.Ast) -> str:
-    """Why it isn't clear whose answer is meant, "" if it is."""
+    """Return why it isn't clear whose answer is meant, "" if it is."""
     asked = _questions(made[at])
     before = _questions(made[at - 1]) if at and not form else []
     same = [each for each in (*before, *asked) if _question(each) == _question(asked[-1])]

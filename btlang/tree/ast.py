@@ -377,7 +377,7 @@ class Program(Ast):
 
 
 def all_definitions(mission: Program) -> list[Definition]:
-    """Those of the included missions, then its own; of one name the last."""
+    """List the definitions of the included missions, then its own; of one name the last."""
     found: dict[str, Definition] = {}
     for part in _with_included(mission):
         for definition in part.definitions:
@@ -387,7 +387,7 @@ def all_definitions(mission: Program) -> list[Definition]:
 
 
 def all_facts(mission: Program) -> list[Fact]:
-    """Those of the included missions, then its own; of one place the last."""
+    """List the facts of the included missions, then its own; of one place the last."""
     return list({fact.name: fact for part in _with_included(mission) for fact in part.facts}.values())
 
 
@@ -431,7 +431,7 @@ def with_bodies(mission: Program, body: Callable[[Ast], Ast], included: Callable
 
 
 def parents_first(root: Ast) -> list[Ast]:
-    """Every node, parents before their parts, in the order of the text."""
+    """List every node, parents before their parts, in the order of the text."""
     found: list[Ast] = []
     stack = [root]
     while stack:
@@ -443,7 +443,7 @@ def parents_first(root: Ast) -> list[Ast]:
 
 
 def bodies(mission: Program) -> list[Ast]:
-    """Those of all definitions, then the mission's own."""
+    """List the bodies of all definitions, then the mission's own."""
     return [each.body for each in all_definitions(mission)] + ([] if mission.body is None else [mission.body])
 
 

@@ -66,7 +66,7 @@ class Conjunctions:
         return ast.with_bodies(mission, self._body, self.program)
 
     def _body(self, body: ast.Ast) -> ast.Ast:
-        """Statements without `and` stay as they are and aren't looked into."""
+        """Resolve a body. Statements without `and` stay as they are and aren't looked into."""
         if type(body) is not ast.Chain or body.operator != "sequence":
             return self._resolve(body)[0] if any(map(_is_conjunction, ast.parents_first(body))) else body
         items = [
@@ -121,7 +121,9 @@ class Conjunctions:
         return all(each.accompanies for each in traits) and not (_find_shared(traits) or _speaks_first(traits))
 
     def _traits(self, root: ast.Ast) -> Traits:
-        """Those of a command in which each `and` has its meaning; noted, since they are asked for at every depth."""
+        """Return the traits of a command in which each `and` has its meaning. They are kept, as every depth asks for
+        them.
+        """
 
         def parts(node: ast.Ast) -> Sequence[ast.Ast]:
             return () if id(node) in self._noted else ast.parts(node)
@@ -134,7 +136,7 @@ class Conjunctions:
         return fold(root, parts, one)[1]
 
     def _report_shared(self, chain: ast.Chain, resource: str, first: ast.Ast, second: ast.Ast) -> None:
-        """BT174: commands that could go along with each other need the same part of the robot."""
+        """Report commands that could go along with each other, but need the same part of the robot (BT174)."""
         joint = self._vocabulary.word("and")
         self.problems.append(
             diagnostic(
@@ -144,7 +146,7 @@ class Conjunctions:
         )  # fmt: skip
 
     def _report_endless(self, chain: ast.Chain) -> None:
-        """BT050 for a last part that never ends: it may be meant to go along with the ones before it."""
+        """Report a last part that never ends: it may be meant to go along with the ones before it (BT050)."""
         joint = next(_connectives(chain, self._vocabulary.word("and")), None)
         if joint is None:
             return

@@ -19,7 +19,8 @@ _ESCAPES = str.maketrans({"\\": "\\\\", '"': '\\"', "\n": "\\n", "\r": "\\r", "\
 
 
 def plain(tree: Tree) -> str:
-    """One line a node, `Id port=value`, indented by two spaces a level; named subtrees follow, sorted by name.
+    """Return one line a node, `Id port=value`, indented by two spaces a level; named subtrees follow, sorted by
+    name.
 
     Nothing in it depends on how the mission was spelled or laid out.
     """
@@ -32,7 +33,7 @@ def plain(tree: Tree) -> str:
 
 
 def describe_node(node: Node) -> str:
-    """`Id port=value`, a value in double quotes where it is not one plain word; an instance name comes first."""
+    """Return `Id port=value`, a value in double quotes unless it is one plain word; an instance name comes first."""
     name = f" name={_value(node.name)}" if node.name else ""
     return node.id + name + "".join(f" {key}={_value(text)}" for key, text in sorted(node.ports))
 

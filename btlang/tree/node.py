@@ -75,7 +75,9 @@ class Tree(Record, uncompared=("models", "origin", "warnings")):
     warnings: tuple[Diagnostic, ...] = ()
 
     def walk(self) -> Iterator[Node]:
-        """Every node of the main tree, then of each subtree, parents before children; SubTree nodes are not entered."""
+        """Yield every node of the main tree, then of each subtree, parents before children; SubTree nodes aren't
+        entered.
+        """
         for root in (self.root, *(node for _, node in self.subtrees)):
             stack = [root]
             while stack:

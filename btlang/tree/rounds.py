@@ -101,7 +101,7 @@ def _with_what_says_it(node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
 
 
 def _round(nodes: Sequence[ast.Ast], at: int, choice: Choice, parents: dict[int, ast.Ast]) -> _Round:
-    """How far the round of a set reaches."""
+    """Return how far the round of a set reaches."""
     key, node = choice.key, nodes[at]
     last = at
     for later in range(at + 1, len(nodes)):
@@ -180,7 +180,7 @@ def _wrap(chain: ast.Ast, found: _Round, vocabulary: Lexicon) -> ast.Ast:
 
 
 def _loop(choice: Choice, body: ast.Ast, vocabulary: Lexicon) -> ast.Ast:
-    """One round for each name; where the names are known, of a single command the list of all."""
+    """Make one round for each name; of a single command with known names the list of all."""
     names = vocabulary.values.likenesses.members(choice)
     if names and isinstance(body, ast.Phrase | ast.Name):
         each = tuple(_replace_argument(body, f"{{{choice.key}}}", name) for name in names)

@@ -40,7 +40,7 @@ def fold(
 
 
 def children_first(root: Node) -> list[Node]:
-    """Every node, children before their parents, from left to right."""
+    """List every node, children before their parents, from left to right."""
     found: list[Node] = []
     waiting = [root]
     while waiting:
@@ -70,7 +70,7 @@ def used_subtrees(tree: Tree, names: Iterable[str] = ()) -> tuple[tuple[str, Nod
 
 
 def in_order_of_use(uses: Mapping[str, Iterable[str]]) -> tuple[list[str], list[list[str]]]:
-    """All names, each behind those that it uses, and the circles of names that use each other, each once.
+    """Return all names, each behind those that it uses, and the circles of names that use each other, each once.
 
     What is used and has no entry is left out.
     """

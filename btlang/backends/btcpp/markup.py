@@ -27,7 +27,7 @@ _NO_XML = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 
 
 def sound_comment(text: str) -> str:
-    """As a comment may hold it: XML forbids two hyphens in it."""
+    """Return a text as a comment may hold it: XML forbids two hyphens in it."""
     return text.replace("--", "- -").removesuffix("-")
 
 
@@ -45,7 +45,7 @@ class Markers:
         self._texts: dict[str, str] = {}
 
     def attributes(self, pairs: Pairs, span: Span | None = None) -> str:
-        """As they stand in a tag, each after a space; `span` is where to complain."""
+        """Return attributes as they stand in a tag, each after a space; `span` is where to report problems."""
         written = ""
         for key, text in pairs:
             if key not in self._sound:
@@ -68,7 +68,7 @@ class Markers:
             self.wrong(name, why_no_port(name), span)
 
     def wrong(self, words: str, reason: str, span: Span | None) -> None:
-        """BT129."""
+        """Report words that no XML file can hold (BT129)."""
         self.problems.append(diagnostic("BT129", span or NOWHERE, words=words, reason=reason))
 
     def finish(self) -> None:

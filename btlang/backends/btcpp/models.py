@@ -92,13 +92,15 @@ class Uses:
         return ("Action", "Decorator", "Control")[min(self._most.get(node_id, 0), 2)]
 
     def models(self) -> list[NodeModel]:
-        """One for each, in an order that does not change with the tree: by kind, then by id."""
+        """Return a model for each node, in an order that doesn't change with the tree: by kind, then by id."""
         found = [self._model(node_id) for node_id in self._ports]
         subtrees = [self._subtree(m) for m in self._known.values() if m.kind == SUBTREE and m.id in self._trees]
         return sorted(found, key=lambda m: (KINDS.index(m.kind), m.id)) + sorted(subtrees, key=lambda m: m.id)
 
     def _subtree(self, model: NodeModel) -> NodeModel:
-        """Without ports that a node leaves out: BehaviorTree.CPP would set their defaults, or refuse the node."""
+        """Return the model without ports that a node leaves out: BehaviorTree.CPP would set their defaults, or refuse
+        the node.
+        """
         given = self._given.get(model.id)
         return model if given is None else model.replace(ports=tuple(p for p in model.ports if p.name in given))
 
@@ -133,7 +135,7 @@ class Uses:
             yield PortModel(MEASURED, "output", kind)
 
     def _type(self, name: str) -> str:
-        """In C++; what isn't a number is a text."""
+        """Return the type in C++; what isn't a number is a text."""
         kind = self._vocabulary.types.get(name)
         if kind is None or kind.kind not in ("quantity", "number"):
             return "std::string"
@@ -141,7 +143,7 @@ class Uses:
 
 
 def model_part(models: list[NodeModel], ids: dict[str, str]) -> Element | None:
-    """TreeNodesModel, None if there are no models."""
+    """Return TreeNodesModel, None if there are no models."""
     if not models:
         return None
     return Element(MODEL, (), tuple(_element(model, ids) for model in models))

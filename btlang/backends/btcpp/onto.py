@@ -130,7 +130,7 @@ class _Onto:
         return self._in_style(node, SPELL[self._dialect](node, self._kind, written))
 
     def _in_style(self, node: Node, usual: Spelling) -> Spelling:
-        """With a kind tag where all leaves of the file have one, and without where none has."""
+        """Spell a node with a kind tag if all leaves of the file have one, and without if none has."""
         tag, pairs = usual
         if tag in KINDS and True not in self._kind_tags and is_xml_name(node.id) and ("ID", node.id) in pairs:
             return node.id, tuple(pair for pair in pairs if pair != ("ID", node.id))
@@ -141,7 +141,7 @@ class _Onto:
     # -- writing
 
     def written(self) -> str:
-        """See `write_onto`."""
+        """Return the text; see `write_onto`."""
         for node in self._after.walk():
             old = self._alignment.old(node)
             if old is not None and id(old) in self._elements:
@@ -217,15 +217,15 @@ class _Onto:
                 self._add_comments(first[line], new)
 
     def _add_comments(self, node: Node, comments: list[str]) -> None:
-        """Before a node; not in a file that this one includes."""
+        """Add comments before a node; not in a file that this one includes."""
         for name, root in self._elsewhere.items():
             if name in self._new and any(node is each for each in Tree(self._new[name]).walk()):
                 raise MissionError([_in_other_file(name, root, self._new[name])])
         self._text.add_comments(node, comments)
 
     def _find_staying(self, come: Lines, left: Lines, nodes: Sequence[Node]) -> tuple[Lines, Lines]:
-        """Of the comments that come and have left, by line, those that only are said in another statement: as English
-        puts comments before whole ones, they stand at a node around their own one, or the other way round.
+        """Find the new and old comments, by line, that are only said in another statement: as English puts comments
+        before whole ones, they stand at a node around their own one, or the other way round.
         """
         above: defaultdict[float, set[float]] = defaultdict(set)
         around: dict[int, Node] = {id(child): node for node in nodes for child in node.children}

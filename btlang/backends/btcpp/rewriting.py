@@ -100,7 +100,7 @@ class Rewriter:
         return self._text[line:start] if self._text[line:start].isspace() or line == start else None
 
     def _usual_unit(self) -> str:
-        """By how much the file indents."""
+        """Return the indentation of the file."""
         steps: Counter[str] = Counter()
         for number, parent in enumerate(self._parents):
             inner, outer = self._margin(number), self._margin(parent) if parent >= 0 else None
@@ -109,15 +109,15 @@ class Rewriter:
         return steps.most_common(1)[0][0] if steps else _USUAL
 
     def _open(self, number: int) -> int:
-        """Where the start tag of an element ends, with the comments on its line."""
+        """Return where the start tag of an element ends, with the comments on its line."""
         return max([self._layout.places[number].head, *(self.span_of(note)[1] for note in self._notes.heading(number))])
 
     def _end(self, number: int) -> int:
-        """Where an element ends, with the comments on its line."""
+        """Return where an element ends, with the comments on its line."""
         return max([self._layout.places[number].end, *(self.span_of(note)[1] for note in self._notes.behind(number))])
 
     def _lead(self, number: int) -> int:
-        """Where the blanks and comments before an element begin."""
+        """Return where the blanks and comments before an element begin."""
         before = self._before[number]
         return self._end(before) if before >= 0 else self._open(self._parents[number])
 
@@ -136,11 +136,11 @@ class Rewriter:
         self._changes.append((start, end, text))
 
     def add_comments(self, node: Node, comments: list[str]) -> None:
-        """Comments on lines of their own before a node."""
+        """Add comments on separate lines before a node."""
         self._leads.setdefault(id(node), []).extend(comments)
 
     def add_around(self, comments: list[str], *, at_end: bool) -> None:
-        """Comments on lines of their own before the outermost element, or at the end of what is in it."""
+        """Add comments on separate lines before the outermost element, or at the end of what is in it."""
         root = self._layout.places[0]
         if not at_end:
             self.change(root.start, root.start, "".join(f"{text}{self.line_end}" for text in comments))
@@ -150,7 +150,7 @@ class Rewriter:
         self.change(at, at, "".join(f"{self._unit}{text}{self.line_end}" for text in comments))
 
     def remove_comment(self, note: Note) -> None:
-        """With its line, where nothing else stands there."""
+        """Remove a comment, with its line if nothing else stands there."""
         self._removed.add(id(note))
         start, end = self.span_of(note)
         line = self._text.rfind("\n", 0, start) + 1
@@ -263,7 +263,7 @@ class Rewriter:
         return "".join(out)
 
     def _change_text(self, piece: _Slice) -> str:
-        """Characters of the file with their changes."""
+        """Return characters of the file with their changes."""
         made: list[str] = []
         at = piece.start
         index = bisect_left(self._changes, (piece.start, -1, ""))
@@ -314,7 +314,7 @@ class Rewriter:
         return work
 
     def _child(self, child: Node, parent: int, shift: Shift, margin: str, before: int | None) -> _Element:
-        """One of them; `before` is the one before it, -1 for none, None where that is new."""
+        """Write one of the children; `before` is the one before it, -1 for none, None if that is new."""
         number = self._known(child)
         in_line = self._is_in_line(parent)
         if number is not None and self._parents[number] == parent:
@@ -327,7 +327,7 @@ class Rewriter:
         return _Element(child, STAYS, margin, "" if in_line else self.line_end + margin)
 
     def _inner_margin(self, number: int, shift: Shift) -> str:
-        """Where what is inside an element begins."""
+        """Return where what is inside an element begins."""
         margins = (self._margin(child) for child in self._children[number])
         found = next((margin for margin in margins if margin is not None), None)
         if found is None:
@@ -359,7 +359,7 @@ class Rewriter:
         return [lead, *comments, f"{head}>", *work, f"{self.line_end}{item.margin}</{tag}>"]
 
     def _comments(self, item: _Element, lead: str, notes: Sequence[Work] = ()) -> list[Work]:
-        """Comments before a node, on their own lines: behind something else on a line they'd belong to that."""
+        """Write comments before a node on separate lines: behind something else on a line they'd belong to that."""
         margin = self.line_end + item.margin
         texts = [*notes, *(f"{text}{margin}" for text in self._leads.get(id(item.node), ()))]
         return [margin, *texts] if texts and "\n" not in lead else texts

@@ -234,7 +234,7 @@ class _Typing:
 
 
 def assignments(code: str) -> Iterator[Assignment]:
-    """Those of a script, one for each statement that is one; none of what cannot be read."""
+    """List the assignments of a script, one for each statement that is one; none of what can't be read."""
     try:
         tokens = Tokens(code)
         found: list[tuple[str, str, int]] = []

@@ -118,7 +118,7 @@ class _Writer:
         return (*found, *models, *map(Markup, self._foot))
 
     def _models(self) -> list[Element]:
-        """Those that the mission keeps as they stood in its file, and further ones of what it uses."""
+        """Return the models that the mission keeps from its file, and further ones of what it uses."""
         assert self._uses is not None
         known = {model.id for model in self._kept.models}
         found = list(self._kept.parts)

@@ -93,7 +93,7 @@ class Checked:
 
 
 def _same(made: Node, wanted: Node) -> bool:
-    """Equality up to the order of ports. Parts that are the same object are not looked into."""
+    """Whether two nodes are equal up to the order of ports. Parts that are the same object aren't looked into."""
     pairs = [(made, wanted)]
     while pairs:
         one, other = pairs.pop()
@@ -151,7 +151,7 @@ def propose_measurements(node: Node, entries: Iterable[Entry], checked: Checked)
 
 
 def texts_of(ports: Iterable[tuple[str, str]], checked: Checked) -> tuple[tuple[str, str], ...] | None:
-    """Ports as arguments of syntax, None where one cannot be said."""
+    """Return ports as arguments of syntax, None if one can't be said."""
     found = [(name, checked.text(text)) for name, text in ports]
     said = tuple((name, text) for name, text in found if text is not None)
     return said if len(said) == len(found) else None

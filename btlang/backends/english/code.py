@@ -43,7 +43,9 @@ class Comparison(Record):
 
 
 def read_given(code: str, texts: Mapping[str, str]) -> GivenValue | None:
-    """`texts` are the keys that stand for a text: for quotes, which no string of a script can hold."""
+    """Read what a Script sets. `texts` are the keys that represent a text: quotes, which no string of a script can
+    hold.
+    """
     match _statements(code):
         case [[key, ":=", value]] if _NUMBER.fullmatch(value):
             return GivenValue(key, "set", True, value)
@@ -195,7 +197,7 @@ def find_loops(tree: Tree, refused: Container[str]) -> dict[int, Loop]:
 
 
 def _is_said_once(tree: Tree) -> Iterator[Node]:
-    """All nodes but the further rounds of `A 3 times 10 s apart`, which are the first one again."""
+    """Yield all nodes but the further rounds of `A 3 times 10 s apart`, which are the first one again."""
     stack = [root for _, root in reversed(tree.subtrees)]
     stack.append(tree.root)
     while stack:

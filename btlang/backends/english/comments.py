@@ -21,7 +21,7 @@ class Comments(Record):
 
 
 def comments_of(tree: Tree) -> Comments:
-    """Those of the file that a tree was read from; none where it comes from elsewhere."""
+    """Return the comments of the file that a tree was read from; none if it comes from elsewhere."""
     origin = tree.origin
     if not isinstance(origin, XmlOrigin):
         return Comments({}, {})
@@ -41,7 +41,7 @@ def comments_of(tree: Tree) -> Comments:
 
 
 def _of_tree(root: Node, origin: TreeOrigin) -> dict[int, tuple[str, ...]]:
-    """All that belongs to a node stands before it here."""
+    """Return the comments of a tree. All that belongs to a node is before it here."""
     places = origin.before, origin.heading, origin.behind, origin.inside
     if not any(places):
         return {}

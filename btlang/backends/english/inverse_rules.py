@@ -220,7 +220,7 @@ def _next_time(children: Sequence[Candidate], checked: Checked) -> Iterator[ast.
 
 
 def _fallback(node: Node, children: tuple[Candidate, ...], checked: Checked) -> Iterator[ast.Ast]:
-    """Two children are said as blocks if one of them is a sequence that needs its own lines."""
+    """Propose a chain. Two children are said as blocks if one of them is a sequence that needs its own lines."""
     if len(children) == 2 and any(child.part is not child.command for child in children):
         yield ast.Try(children[0].part, children[1].part, NOWHERE)
     yield from _chain("fallback")(node, children, checked)
@@ -263,7 +263,7 @@ def _times(port: str, checked: Checked) -> Iterator[str]:
 
 
 def _seconds(msec: str, checked: Checked) -> Iterator[str]:
-    """Milliseconds of a port as seconds, as precise; those that a script computes as the value that they come from."""
+    """Yield milliseconds of a port as seconds, as precise; computed ones as the value that they come from."""
     if _WHOLE.fullmatch(msec):
         yield f"{(Decimal(msec) / 1000).normalize():f}"
     elif msec[:1] == "{":

@@ -184,7 +184,7 @@ class Lifter:
     def _natural_form(
         self, node: Node, ways: list[tuple[Computed, tuple[Candidate, ...]]], condition: ast.Ast | None
     ) -> tuple[ast.Ast | None, tuple[Candidate, ...]]:
-        """None where no form means just this node; and the parts that are said in it."""
+        """Return the form and the parts that are said in it; None if no form means just this node."""
         children = ways[-1][1]
         if not self._natural:
             return None, children
@@ -246,7 +246,7 @@ class Lifter:
             yield from self._phrase(node, "condition")
 
     def _exact_condition(self, node: Node) -> ast.Ast | None:
-        """None for what is no condition, or not known to be one: read again it would be one everywhere."""
+        """Return a condition, None for a node that isn't known to be one: read again it would be one everywhere."""
         if self._kind(node.id) != "Condition" and not _asks(node):
             return None
         made = ast.Exact(node.id, node.ports, node.name, (), True, NOWHERE, self._find_given(node, node.ports))

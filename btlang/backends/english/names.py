@@ -82,7 +82,7 @@ class SpokenNames:
         return self._kinds.around({**around.owners, loop.key: loop.name})
 
     def find_refused(self, mission: ast.Program, before: Refused, loops: Set[str]) -> Refused:
-        """`before` with what in this mission could not be read: `loops`, and values with which something is wrong."""
+        """Add to `before` what in this mission couldn't be read: `loops`, and values with which something is wrong."""
         local = {loop.key for loop in self.loops.values()} | {key for name in self.names for key in parameters(name)}
         said = _MissionKeys(mission)
         unset = said.used.keys() - said.set - said.chosen

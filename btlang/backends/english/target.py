@@ -70,7 +70,9 @@ def to_english(
 
 
 def _say_both_ways(mission: Program, vocabulary: Lexicon) -> list[str]:
-    """Kinds of leaves that are conditions in one place and done in another: read again, they are conditions in all."""
+    """Find kinds of leaves that are conditions in one place and done in another: read again, they are conditions in
+    all.
+    """
     leaves = [node for node in exact_nodes(mission) if not node.items and node.id not in vocabulary.nodes]
     done = {node.id for node in leaves if not node.is_condition}
     return sorted({node.id for node in leaves if node.is_condition} & done)
@@ -95,7 +97,7 @@ def _lines(mission: Program, printer: Printer, comments: Comments) -> Iterator[s
 
 
 def _keep_rest(tree: Tree) -> Iterator[str]:
-    """Comments with what English doesn't say of an XML file."""
+    """Return comments with what English doesn't say of an XML file."""
     if isinstance(tree.origin, XmlOrigin):
         markers = Markers()
         yield from marked(line for part in parts_of(tree.origin) for line in markers.part(part, 0))
@@ -104,7 +106,7 @@ def _keep_rest(tree: Tree) -> Iterator[str]:
 def _mission(
     tree: Tree, vocabulary: Lexicon, level: str, refused: Refused, comments: Comments
 ) -> tuple[Program, Printer]:
-    """With what is refused, and whatever else turns out not to be read back, said in another way."""
+    """Write the mission. What is refused, and whatever else turns out not to be read back, is said in another way."""
     values = level in ("values", "sure values")
     for _ in range(_MOST_TRIES if values else 1):
         known = SpokenNames(

@@ -48,7 +48,7 @@ class KnownTypes(Record):
 
 
 def parameters(name: str) -> tuple[str, ...]:
-    """Those of the name of a subtree."""
+    """Return the parameters of the name of a subtree."""
     return tuple(part.name for part in name_form(name) if isinstance(part, Slot))
 
 
@@ -100,7 +100,7 @@ class TypeInference:
         return self._around[place]
 
     def kind(self, value: Value) -> str | None:
-        """None where it can have none, or its name cannot be said."""
+        """Return the type of a value, None if it can have none, or its name can't be said."""
         if not self._kinds:
             for one, other in self._given:
                 self._join(self._first(one), self._first(other))
@@ -226,7 +226,7 @@ class TypeInference:
         return value
 
     def _join(self, one: Value, other: Value) -> None:
-        """Where they can be of one type, which a text that is made of a number is not."""
+        """Join two values that can be of one type, which a text that is made of a number is not."""
         both = [*self._groups[one], *self._groups[other]]
         kind = self._common(both) if one != other else None
         texts = [text for value in both for text in self._texts.get(value, ())]

@@ -57,13 +57,13 @@ NOTHING = Alternatives(())
 
 
 def choice(parts: Iterable[Part]) -> Part:
-    """One of those that can be said, each once."""
+    """Return one of the parts that can be said, each once."""
     found = tuple(dict.fromkeys(part for part in parts if part != NOTHING))
     return found[0] if len(found) == 1 else Alternatives(found)
 
 
 def joined(parts: Iterable[Part]) -> Part:
-    """All parts in a row, with neighbouring texts as one; NOTHING if one of them can't be said."""
+    """Return all parts in a row, with neighbouring texts as one; NOTHING if one of them can't be said."""
     made: list[Part] = []
     for part in parts:
         if isinstance(part, Text) and made and isinstance(made[-1], Text):
@@ -176,7 +176,7 @@ def find_rule_names(part: Part) -> Iterator[str]:
 
 
 def format_rules(rules: Rules, pieces_of: Callable[[str], list[str]]) -> str:
-    """One rule on each line; `pieces_of` gives a text as the notation quotes it, in a row."""
+    """Format one rule on each line; `pieces_of` returns a text as the notation quotes it, in a row."""
     return "".join(f"{name} ::= {_format_part(part, pieces_of)}\n" for name, part in rules.items())
 
 

@@ -145,7 +145,7 @@ class _VocabularyRules:
         return RuleName(name)
 
     def _role(self, role: str, value: str) -> Part:
-        """Every way to say a role; a `value` stands in its slot."""
+        """Return every way to say a role; a `value` is in its slot."""
         vocabulary = self._vocabulary
 
         def in_slot(slot: str) -> Part:
@@ -158,7 +158,9 @@ class _VocabularyRules:
         return choice(ways)
 
     def _together(self, joint: str) -> Part:
-        """Two commands side by side: no grammar counts the parts of a robot, so they are sorted by those they need."""
+        """Return two commands side by side. No grammar counts the parts of a robot, so they are sorted by those they
+        need.
+        """
         by_parts: dict[frozenset[str], list[_Leaf]] = {}
         for leaf in self._actions:
             by_parts.setdefault(frozenset(leaf.entry.resources), []).append(leaf)
@@ -263,7 +265,7 @@ class _VocabularyRules:
         )
 
     def _by_type(self, statement: str) -> Part:
-        """Statements with the names of each type: `set`, `for each`, `go to every place`."""
+        """Return statements with the names of each type: `set`, `for each`, `go to every place`."""
         types = [kind for kind in self._vocabulary.types.values() if kind.kind == "names"]
         return choice(self._with_name(kind.name, f"v{number}", statement) for number, kind in enumerate(types, 1))
 

@@ -79,7 +79,7 @@ class Parallel(Node, composites.Parallel):
             self.done = {}
 
     def complete(self, index: int, child: Behaviour) -> Generator[Behaviour, None, bool]:
-        """Ticks a child that has not completed; whether it was skipped."""
+        """Tick a child that hasn't completed; return whether it was skipped."""
         if index in self.done:
             return False
         status = yield from self.ask(child)

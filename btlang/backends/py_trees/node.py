@@ -46,13 +46,13 @@ class Node(composites.Composite):
             halt(child, keep)
 
     def ask(self, child: Behaviour) -> Asking:
-        """Ticks a child and returns its status."""
+        """Tick a child and return its status."""
         self.current_child = child
         yield from child.tick()
         return child.status
 
     def answer(self, child: Behaviour) -> Answering:
-        """Ticks a child and returns its status, or UNKNOWN for a FAILURE if a leaf below it could not know its answer.
+        """Tick a child and return its status, or UNKNOWN for a FAILURE if a leaf below it couldn't know its answer.
 
         Such a leaf says so by an attribute `known` that is False.
         """
@@ -74,7 +74,7 @@ class Node(composites.Composite):
         yield self
 
     def stop(self, new_status: common.Status = common.Status.INVALID) -> None:
-        """Halts where py_trees stops it from outside."""
+        """Halt if py_trees stops it from outside."""
         if new_status == common.Status.INVALID:
             self.halt(False)
         self.terminate(new_status)

@@ -238,7 +238,7 @@ Its Inverter does not: it makes a SUCCESS of a condition that could not know.
 
 
 def _ours(node: Node) -> tuple[str, tuple[tuple[str, Any], ...]]:
-    """Our class for a node, and its arguments."""
+    """Return our class for a node, and its arguments."""
     if node.id in OURS:
         return OURS[node.id], ()
     if node.id == "Whenever":

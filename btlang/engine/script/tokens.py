@@ -65,7 +65,7 @@ class Tokens:
         return ScriptError(f"{rest!r} isn't valid in a script", self.position)
 
     def described(self) -> str:
-        """Where something before the present token is."""
+        """Describe the place before the present token."""
         return f"before {self.text}" if self.text else "at the end"
 
     def number(self) -> float:

@@ -25,7 +25,7 @@ _NAME = r"[^,\s](?:[^,]*[^,\s])?"
 
 
 def apply_allow(compilation: Compilation) -> Iterator[Diagnostic]:
-    """Leaves out the warnings that a comment silences. BT056 for names in such comments that no warning has."""
+    """Leave out the warnings that a comment silences, and report names in such comments that no warning has (BT056)."""
     source, vocabulary = compilation.mission.span.source, compilation.vocabulary
     if "#" not in source.text or not re.search(_ALLOW, source.text):
         return
@@ -43,7 +43,7 @@ def apply_allow(compilation: Compilation) -> Iterator[Diagnostic]:
 
 
 def not_silenced(problems: Iterable[Diagnostic], source: Source, vocabulary: Lexicon) -> list[Diagnostic]:
-    """Those that no comment of their mission silences."""
+    """Return the problems that no comment of their mission silences."""
     return _filter_allowed(problems, split(source, vocabulary.orthography), vocabulary)
 
 
@@ -60,7 +60,7 @@ def _filter_allowed(problems: Iterable[Diagnostic], words: Words, vocabulary: Le
 
 
 def _allowed_names(words: Words) -> Iterator[tuple[Span, Span, str]]:
-    """Each name in such a comment: the comment, the place of the name, and its code, "" for none."""
+    """Yield each name in such a comment: the comment, the place of the name, and its code, "" for none."""
     for comment in words.comments:
         match = re.fullmatch(_ALLOW, comment.text.rstrip())
         for name in re.finditer(_NAME, match["names"]) if match else ():
@@ -77,7 +77,7 @@ def apply_allow_in_xml(compilation: Compilation) -> Iterable[Diagnostic]:
 
 
 def not_allowed(problems: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Those that no comment of their XML file silences; errors stay."""
+    """Return the problems that no comment of their XML file silences; errors stay."""
     silent: dict[str, set[str]] = {}
     left = []
     for problem in problems:

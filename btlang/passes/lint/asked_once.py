@@ -26,7 +26,7 @@ _ON_THE_WAY, _BUMPED = ("SomeoneInTheWay", "SomethingInTheWay"), "Bumped"
 
 
 def find_asked_once(compilation: Compilation) -> Iterator[Diagnostic]:
-    """Among the statements of the mission, of definitions and of blocks."""
+    """Search the statements of the mission, of definitions and of blocks."""
     vocabulary = compilation.vocabulary
     for body in ast.bodies(compilation.mission):
         before: dict[int, tuple[Sequence[ast.Ast], int]] = {}
@@ -91,7 +91,9 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
 
 
 def _too_early(node: ast.If, vocabulary: Lexicon) -> Iterator[Diagnostic]:
-    """`go to the lab if Alice is there`: a condition behind a journey that is about its end, or what it chooses."""
+    """Report `go to the lab if Alice is there`: a condition behind a journey that is about its end, or what it
+    chooses.
+    """
     asked = node.condition.condition if isinstance(node.condition, ast.Not) else node.condition
     if not isinstance(asked, ast.Phrase) or asked.span.start < node.body.span.start:
         return

@@ -22,7 +22,7 @@ from btlang.vocabulary.lexicon import Lexicon
 
 
 def find_unused(compilation: Compilation) -> Iterator[Diagnostic]:
-    """Not of a text that only defines names or grows, nor of the names of another file: those are for others.
+    """Report unused names, but not of a text that only defines names or grows, nor those of another file.
 
     Nor of the trees of an XML file in English, which other files may use; BT236 is about them.
     """
@@ -46,7 +46,7 @@ def find_unused(compilation: Compilation) -> Iterator[Diagnostic]:
 
 
 def _values(compilation: Compilation) -> Iterator[Diagnostic]:
-    """Values that are given and never asked for, and parameters that stand nowhere in their body."""
+    """Yield values that are given and never asked for, and parameters that their body doesn't use."""
     mission = compilation.mission
     given: dict[str, Span] = {}
     for body in bodies(mission):

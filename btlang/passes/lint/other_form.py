@@ -77,7 +77,7 @@ def find_in_pace(node: ast.Every, vocabulary: Lexicon) -> Iterator[Attachment]:
 
 
 def find_in_time(node: ast.For, vocabulary: Lexicon) -> Iterator[Attachment]:
-    """`wait for Alice for 10 min`: once, and at most so long."""
+    """Find `wait for Alice for 10 min`: once, and at most so long."""
     body = node.body
     if not isinstance(body, ast.Phrase) or body.span.start != node.span.start or is_in_brackets(body.span):
         return
@@ -87,7 +87,7 @@ def find_in_time(node: ast.For, vocabulary: Lexicon) -> Iterator[Attachment]:
 
 
 def find_in_sentences(chain: ast.Chain, vocabulary: Lexicon) -> Iterator[Attachment]:
-    """`if C, A. If D, B. Otherwise E`, and `if the lamp is on, switch it off. If it is off, switch it on`."""
+    """Find `if C, A. If D, B. Otherwise E`, and `if the lamp is on, switch it off. If it is off, switch it on`."""
     if chain.operator != "sequence":
         return
     then = vocabulary.word("then").capitalize()
@@ -146,7 +146,7 @@ def _has_otherwise(node: ast.Ast) -> bool:
 
 
 def _move(node: Any, path: Sequence[ast.Ast], part: Any) -> Readings:
-    """`if C, if D, A otherwise B`: if C, (if D, A) otherwise B."""
+    """Read `if C, if D, A otherwise B` as: if C, (if D, A) otherwise B."""
     tried = isinstance(part, ast.Try) and part.body.span.start == part.span.start
     changed: ast.Ast = part.body if tried else part.replace(otherwise=None)
     for inner, outer in zip([part, *path[:0:-1]], path[::-1], strict=True):
@@ -155,7 +155,7 @@ def _move(node: Any, path: Sequence[ast.Ast], part: Any) -> Readings:
 
 
 def _side_by_side(node: ast.If, gap: Span, then: str) -> Readings:
-    """`if C, A, if D, B`: if C, A; then, whatever came of that, if D, B."""
+    """Read `if C, A, if D, B` as: if C, A; then, whatever came of that, if D, B."""
     body: Any = node.body
     *before, last = body.items
     first = before[0] if len(before) == 1 else body.replace(items=tuple(before))
@@ -169,7 +169,7 @@ def _side_by_side(node: ast.If, gap: Span, then: str) -> Readings:
 
 
 def _try_first(node: ast.Try) -> Readings:
-    """`try to A, then B`: try to A; then B in any case."""
+    """Read `try to A, then B` as: try to A; then B in any case."""
     body: Any = node.body
     first = node.replace(body=body.items[0])
     other = ast.Chain("sequence", (first, *body.items[1:]), True, node.span)
@@ -189,7 +189,7 @@ def _once_at_most(node: ast.For, repeat: str) -> Readings:
 
 
 def _as_otherwise(first: ast.If, second: ast.If, gap: Span, words: str) -> Readings:
-    """`if C, A. If D, B`: if C, A, otherwise if D, B."""
+    """Read `if C, A. If D, B` as: if C, A, otherwise if D, B."""
     span = Span(first.span.source, first.span.start, second.span.end)
     taken = ast.Chain("sequence", (first, second), True, span)
     return Readings(taken, first.replace(otherwise=second, span=span), span, (gap, words))

@@ -120,7 +120,7 @@ class Attachment(Record):
 def find_in_chain(
     chain: ast.Chain, items: Sequence[ast.Ast], is_part: bool, vocabulary: Lexicon
 ) -> Iterator[Attachment]:
-    """Those between the parts of a chain; `is_part`: it is itself a part of another one, without brackets.
+    """Find places between the parts of a chain; `is_part`: it is itself a part of another one, without brackets.
 
     The chain is no list of values; `items` are its parts in the order of the text.
 
@@ -174,14 +174,14 @@ def _behind_after(
 
 
 def _negates_first(items: Sequence[ast.Ast]) -> bool:
-    """`not C or D`, without a second `not` that would make it clear."""
+    """Whether it is `not C or D`, without a second `not` that would make it clear."""
     first = items[0]
     is_prefix = isinstance(first, ast.Not) and first.span.start < first.condition.span.start
     return is_prefix and not is_in_brackets(first.span) and not any(isinstance(item, ast.Not) for item in items[1:])
 
 
 def _negate(chain: ast.Chain) -> Readings:
-    """`not C or D`: not (C or D)."""
+    """Read `not C or D` as: not (C or D)."""
     first: Any = chain.items[0]
     inner = ast.Chain("any", (first.condition, *chain.items[1:]), True, chain.span)
     return Readings(chain, ast.Not(inner, chain.span), chain.span, add_brackets(first.span))
@@ -224,13 +224,13 @@ class _GapPlace:
         return self._readings(self.first, self.at + 1, group, self.at + 1)
 
     def list_left(self, left: Any) -> Readings:
-        """`go to A and B and wave`: go to A, and then go to B and wave."""
+        """Read `go to A and B and wave` as: go to A, and then go to B and wave."""
         group = self._join(self.at, self.last, {self.at: left.items[-1]})
         other = left.replace(items=(*left.items[:-1], group))
         return self._readings(self.at, self.last, other, self.at)
 
     def list_right(self, right: Any) -> Readings:
-        """`wave and go to A and B`: wave and go to A, and then go to B."""
+        """Read `wave and go to A and B` as: wave and go to A, and then go to B."""
         group = self._join(self.first, self.at + 1, {self.at + 1: right.items[0]})
         other = right.replace(items=(group, *right.items[1:]))
         return self._readings(self.first, self.at + 1, other, self.at + 1)
@@ -256,7 +256,7 @@ class _GapPlace:
         return ast.Chain(self.chain.operator, items, True, self.chain.span) if len(items) > 1 else items[0]
 
     def _readings(self, first: int, last: int, other: ast.Ast, place: int) -> Readings:
-        """`other` takes the place of one part, and those from `first` to `last` are in it."""
+        """Make readings in which `other` takes the place of one part, with those from `first` to `last` in it."""
         part = self.items[place].span
         whole = self._join(self.first, self.last, {})
         gone = {id(self.items[at]) for at in range(first, last + 1) if at != place}
@@ -299,7 +299,7 @@ def _after_its_body(node: ast.Ast) -> list[Any]:
 
 
 def sort_by_place(items: Sequence[ast.Ast]) -> Sequence[ast.Ast]:
-    """In the order of the text: `A after B` holds its parts the other way round."""
+    """Sort parts by the order of the text: `A after B` holds its parts the other way round."""
     starts = [item.span.start for item in items]
     return items if starts == sorted(starts) else sorted(items, key=lambda item: item.span.start)
 

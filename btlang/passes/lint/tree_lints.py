@@ -43,7 +43,7 @@ def find_unreachable(compilation: Compilation) -> list[Diagnostic]:
 
 
 def _warnings(parent: NodeKind, before: Node, ends: Ends, behind: Node) -> list[Diagnostic]:
-    """Nothing where both stand for the same words: then a form has put one of them there."""
+    """Make a warning, none if both stand for the same words: then a form has put one of them there."""
     if before.span is None or behind.span is None or _overlap(before.span, behind.span):
         return []
     if ends & NEVER:

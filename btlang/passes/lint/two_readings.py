@@ -66,7 +66,7 @@ def find_two_readings(compilation: Compilation) -> Iterator[Diagnostic]:
 
 
 def _attachments(root: ast.Ast, compilation: Compilation) -> Iterator[Attachment]:
-    """Outer ones first, in the order of the text."""
+    """Yield places with two readings, outer ones first, in the order of the text."""
     stack = [(root, False)]
     while stack:
         node, is_part = stack.pop()
@@ -106,7 +106,7 @@ def make_printer(compilation: Compilation) -> Printer:
 
 
 def make_warning(found: Readings, printer: Printer) -> Diagnostic:
-    """BT050 with both readings."""
+    """Make BT050 with both readings."""
     taken, other = printer.statement(found.taken), printer.statement(found.other)
     fix = None if "\n" in found.fix[0].text else found.fix
     fixed = taken if fix is None or "\n" in found.span.text else _change_text(found.span, *found.fix)
