@@ -26,6 +26,17 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Generator
     from typing import Any
 
+_packages: dict[str, str] = {}  # of the modules beside keyword files, by their folders
+_MOVED = {
+    "btlang.actions.commands:do_what_somebody_says": "btlang.actions.conversation:do_what_somebody_says",
+    "btlang.actions.show:bow": "btlang.actions.gestures:bow",
+    "btlang.actions.show:dance": "btlang.actions.gestures:dance",
+    "btlang.actions.sides:go_to_side": "btlang.actions.navigation:go_to_side",
+}
+"""Where functions that keyword files of 0.1 may name in `call` are now."""
+_AS_GOOD_AS_EQUAL = 1e-9
+_MOST_DIGITS = 17  # all that a double has
+
 
 def bind_leaf(
     node_id: str,
@@ -89,9 +100,6 @@ def _converter(slot: SlotSpec, vocabulary: Lexicon) -> Callable[[str], Any]:
     return as_text
 
 
-_packages: dict[str, str] = {}  # of the modules beside keyword files, by their folders
-
-
 def _module(entry: Entry, name: str) -> ModuleType:
     """Import the module beside the keyword file, else an installed one.
 
@@ -121,15 +129,6 @@ def _module(entry: Entry, name: str) -> ModuleType:
         raise
 
 
-_MOVED = {
-    "btlang.actions.commands:do_what_somebody_says": "btlang.actions.conversation:do_what_somebody_says",
-    "btlang.actions.show:bow": "btlang.actions.gestures:bow",
-    "btlang.actions.show:dance": "btlang.actions.gestures:dance",
-    "btlang.actions.sides:go_to_side": "btlang.actions.navigation:go_to_side",
-}
-"""Where functions that keyword files of 0.1 may name in `call` are now."""
-
-
 def import_call(entry: Entry) -> Callable[..., Any]:
     if not isinstance(entry.call, str):
         return entry.call
@@ -150,9 +149,6 @@ def import_call(entry: Entry) -> Callable[..., Any]:
     return found  # type: ignore[no-any-return]
 
 
-_AS_GOOD_AS_EQUAL = 1e-9
-
-
 def _is_equal(value: Any, wanted: Any) -> bool:
     """Whether two values are equal: numbers up to rounding, texts in any case."""
     if isinstance(value, str) or isinstance(wanted, str):
@@ -167,7 +163,6 @@ _HOLDS: dict[str, Callable[[float, float], bool]] = {
     "at_most": operator.le,
     "equal": _is_equal,
 }
-_MOST_DIGITS = 17  # all that a double has
 
 
 def compare_quantity(

@@ -24,6 +24,12 @@ MODULE = "my_robot.leaves"
 _MOST_REQUIRED = 12  # of what people would say
 _MOST_OPTIONAL = 5  # each doubles the ways to say a phrase
 _WITH_DEFAULTS = ("server_name", "server_timeout", "service_name")  # in C++, though no model says so
+_WHOLE = re.compile(r"(?:std::)?(?:u?int(?:8|16|32|64)?(?:_t)?|unsigned(?: int)?|size_t|u?long)")
+_DECIMAL = re.compile(r"float|double|(?:std::)?float(?:32|64)_t")
+_CHOICE = re.compile(r"\w+(?:\|\w+)+")
+NUMBER = "number"
+_BOOLEANS = ValueType("boolean", "names", names=("true", "false"))
+_WHOLE_NUMBERS = ValueType("whole_number", NUMBER, whole=True)
 
 
 class Leaf(Record):
@@ -212,14 +218,6 @@ def _like(type: ValueType, vocabulary: Lexicon) -> str:
     if type.name in vocabulary.types:
         return type.name
     return TEXT if type.kind == "names" else NUMBER
-
-
-_WHOLE = re.compile(r"(?:std::)?(?:u?int(?:8|16|32|64)?(?:_t)?|unsigned(?: int)?|size_t|u?long)")
-_DECIMAL = re.compile(r"float|double|(?:std::)?float(?:32|64)_t")
-_CHOICE = re.compile(r"\w+(?:\|\w+)+")
-NUMBER = "number"
-_BOOLEANS = ValueType("boolean", "names", names=("true", "false"))
-_WHOLE_NUMBERS = ValueType("whole_number", NUMBER, whole=True)
 
 
 class SlotTypes:

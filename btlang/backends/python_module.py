@@ -19,6 +19,25 @@ from btlang.vocabulary.shipped import keyword_files, languages, shipped, shown_n
 _WIDEST = 110  # columns
 _DEEPEST = 20  # calls in each other; what is deeper becomes statements of its own
 _INDENT = "    "
+_HEAD = '''"""A behavior tree that runs on the simulated robot: python FILE [--speed max]. Needs btlang.
+
+The leaves do what the `call` of their keyword entry names. `mission` can be run and watched from other programs; see
+btlang.Mission and btlang.Session.
+"""
+
+from btlang import Mission, Session
+from btlang.api import world_vocabulary
+from btlang.tree.node import Node, Tree
+'''
+_TREE = "\nfrom btlang.tree"
+_FOOT = """
+if __name__ == "__main__":
+    import sys
+
+    from btlang.run.module import run_module
+
+    sys.exit(run_module(mission, lambda: Session(world=WORLD)))
+"""
 
 
 class SourceLines(Record):
@@ -78,27 +97,6 @@ def format_literal(value: object) -> str:
     if isinstance(value, tuple):
         return f"({', '.join(map(format_literal, value))}{',' if len(value) == 1 else ''})"
     return repr(value)
-
-
-_HEAD = '''"""A behavior tree that runs on the simulated robot: python FILE [--speed max]. Needs btlang.
-
-The leaves do what the `call` of their keyword entry names. `mission` can be run and watched from other programs; see
-btlang.Mission and btlang.Session.
-"""
-
-from btlang import Mission, Session
-from btlang.api import world_vocabulary
-from btlang.tree.node import Node, Tree
-'''
-_TREE = "\nfrom btlang.tree"
-_FOOT = """
-if __name__ == "__main__":
-    import sys
-
-    from btlang.run.module import run_module
-
-    sys.exit(run_module(mission, lambda: Session(world=WORLD)))
-"""
 
 
 def to_python(

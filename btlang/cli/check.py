@@ -59,7 +59,7 @@ class _FileCheck:
 
     def mend(self) -> None:
         """Write corrections into the files; show what a text, or standard input, becomes."""
-        from btlang.diagnostics.fixes import apply_fixes, apply_fixes_together
+        from btlang.diagnostics.diagnostic import apply_fixes, apply_fixes_together
 
         done = [apply_fixes(source, self._problems_alone) for source in self._alone]
         self._alone = [source for source, _ in done]

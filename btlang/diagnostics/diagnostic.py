@@ -1,15 +1,26 @@
-"""Diagnostics: messages about an input as data, their text for people, and the exception that holds them."""
+"""Diagnostics: messages about an input as data, their text for people, their fixes, and the exception of them all."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Iterable, Sequence
 
 from btlang.diagnostics.codes import CODES, Code
 from btlang.support.record import Record
 from btlang.text.formatting import CYAN, PLAIN, RED, YELLOW, one_line
-from btlang.text.source import NOWHERE, Span
+from btlang.text.source import NOWHERE, Source, Span
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+    Change: TypeAlias = tuple[Span, str]
 
 _LONGEST = 160  # characters of an argument in a message
+# Not by rich: `btc check` would start later by its import, more than all that it does takes.
+_COLOURS = {"error": RED, "warning": YELLOW, "note": CYAN}
+_WIDEST = 120
+_ROUNDS = 20  # a correction may show the next mistake, but no text has that many behind each other
 
 
 class Diagnostic(Record):
@@ -80,11 +91,6 @@ def _grows_together(span: Span, words: str) -> bool:
 def _shorten(text: str) -> str:
     short = text if len(text) <= _LONGEST else text[: _LONGEST // 2] + " ... " + text[-_LONGEST // 2 :]
     return one_line(short)
-
-
-# Not by rich: `btc check` would start later by its import, more than all that it does takes.
-_COLOURS = {"error": RED, "warning": YELLOW, "note": CYAN}
-_WIDEST = 120
 
 
 def render(diagnostic: Diagnostic, colour: bool = False) -> str:
@@ -182,3 +188,44 @@ def sort_diagnostics(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
     """Sort diagnostics by file, place, code and text, each once."""
     unique = {(d.span.source.name, d): d for d in diagnostics}  # spans of two files may be equal
     return sorted(unique.values(), key=lambda d: (d.span.source.name, d.span.start, d.code, d.span.end, d.arguments))
+
+
+def _find_certain(problems: Iterable[Diagnostic]) -> list[Change]:
+    """Return the corrections that leave no choice."""
+    return [problem.fix for problem in problems if problem.fix is not None and not problem.readings]
+
+
+def apply_fixes(source: Source, problems_of: Callable[[Source], Iterable[Diagnostic]]) -> tuple[Source, int]:
+    """Return the source with all such changes, and their number. Included texts stay as they are."""
+    count = 0
+    for _ in range(_ROUNDS):
+        source, made = _apply(source, _find_certain(problems_of(source)))
+        if not made:
+            break
+        count += made
+    return source, count
+
+
+def apply_fixes_together(
+    sources: Sequence[Source], problems_of: Callable[[Sequence[Source]], Iterable[Diagnostic]]
+) -> list[tuple[Source, int]]:
+    """Return sources that are read together, with all corrections that leave no choice, and the number of each."""
+    counts = [0] * len(sources)
+    for _ in range(_ROUNDS):
+        changes = _find_certain(problems_of(sources))
+        done = [_apply(source, changes) for source in sources]
+        if not any(made for _, made in done):
+            break
+        sources = [source for source, _ in done]
+        counts = [count + made for count, (_, made) in zip(counts, done, strict=True)]
+    return list(zip(sources, counts, strict=True))
+
+
+def _apply(source: Source, changes: Iterable[Change]) -> tuple[Source, int]:
+    """Return the source with the changes that are its own, and their number."""
+    made, text, before = 0, source.text, len(source.text) + 1
+    own = [change for change in changes if change[0].source.name == source.name]
+    for span, words in sorted(own, key=lambda change: (change[0].start, change[0].end), reverse=True):
+        if span.end <= before and text[span.start : span.end] != words:
+            text, before, made = text[: span.start] + words + text[span.end :], span.start, made + 1
+    return (source.with_text(text), made) if made else (source, 0)

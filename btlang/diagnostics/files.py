@@ -21,6 +21,8 @@ MOST_BYTES = 10_000_000
 MOST_DEEP = 50
 """Files that include each other in a row."""
 TOO_DEEP = f"more than {MOST_DEEP} files include each other in a row"
+OUTSIDE = "it is outside the folder of the mission; to allow another folder, use --include-root"
+_pipes: dict[str, bytes] = {}  # what came out of them: a world is read for its names, and again for the run
 
 
 def read_source(path: str, include_root: str | None = None) -> Source:
@@ -67,9 +69,6 @@ def real_path(path: str) -> str:
         return path
 
 
-OUTSIDE = "it is outside the folder of the mission; to allow another folder, use --include-root"
-
-
 def read_bytes(path: str) -> bytes:
     """Read the content of a file that the user names, or of standard input for `-`. Raises OSError."""
     if path in _pipes:
@@ -82,9 +81,6 @@ def read_bytes(path: str) -> bytes:
         if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
             _pipes[path] = data
     return data
-
-
-_pipes: dict[str, bytes] = {}  # what came out of them: a world is read for its names, and again for the run
 
 
 def has_mark(path: str) -> bool:

@@ -22,6 +22,9 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+_IN_DATA = str.maketrans({"%": "%25", "\r": "%0D", "\n": "%0A"})
+_IN_PROPERTIES = str.maketrans({"%": "%25", "\r": "%0D", "\n": "%0A", ":": "%3A", ",": "%2C"})
+
 
 def format_json(problems: Iterable[Diagnostic]) -> str:
     """Format the document, in ASCII without a line end."""
@@ -120,10 +123,6 @@ def _region(span: Span) -> dict[str, int]:
 def _uri(name: str) -> str:
     # bytes that aren't UTF-8 are in a name as halves of characters, which as_uri writes as bytes again, too
     return Path(name).as_uri() if os.path.isabs(name) else quote(os.fsencode(name.replace(os.sep, "/")))
-
-
-_IN_DATA = str.maketrans({"%": "%25", "\r": "%0D", "\n": "%0A"})
-_IN_PROPERTIES = str.maketrans({"%": "%25", "\r": "%0D", "\n": "%0A", ":": "%3A", ",": "%2C"})
 
 
 def format_github(problems: Iterable[Diagnostic]) -> str:

@@ -15,6 +15,7 @@ from btlang.text.source import Source, Span
 _MOST_LINES = 8  # that are named for equal warnings
 FORMATS = ("text", "json")
 CHECK_FORMATS = (*FORMATS, "sarif", "github")
+_KNOWN = {MemoryError: "there is not enough memory for this", RecursionError: "this is nested too deep"}
 
 
 class DiagnosticReport:
@@ -91,9 +92,6 @@ def _and_more(first: Diagnostic, others: list[Diagnostic]) -> str:
         lines = [f"{other.span.source.name}:{line}" for other, line in zip(others, lines, strict=True)]
     some = ", ".join(lines[:_MOST_LINES]) + (", ..." if len(lines) > _MOST_LINES else "")
     return f"\n  And {len(others)} more: {what}{some}"
-
-
-_KNOWN = {MemoryError: "there is not enough memory for this", RecursionError: "this is nested too deep"}
 
 
 def report_crash(error: Exception) -> str:

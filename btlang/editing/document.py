@@ -25,6 +25,10 @@ if TYPE_CHECKING:
 
     from btlang.passes.compilation import Origins
 
+_kept: list[_Read] = []
+"""What was read for its messages last: only the next document may use it, as files that it names may change later."""
+_LONGEST = 80  # characters of what has no name
+
 
 class _Read:
     """A text that was read: its mission, None for one that doesn't compile, and what is wrong with it."""
@@ -44,10 +48,6 @@ class _Read:
     def summary(self) -> dict[str, Any]:
         ok = self.mission is not None
         return {"ok": ok, "sort": self.sort, "messages": messages(self.problems, self.source)}
-
-
-_kept: list[_Read] = []
-"""What was read for its messages last: only the next document may use it, as files that it names may change later."""
 
 
 def text_messages(source: Source, words: RobotWords) -> dict[str, Any]:
@@ -144,9 +144,6 @@ def _kinds(nodes: list[dict[str, Any]], mission: Mission, program: Program, orig
                 numbers[phrase] = number
         node["kind"] = number
     return kinds
-
-
-_LONGEST = 80  # characters of what has no name
 
 
 def outline(mission: Mission, source: Source) -> list[dict[str, Any]]:

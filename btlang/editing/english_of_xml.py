@@ -21,6 +21,9 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     import argparse
 
+_FAILED = 1
+_USUAL = "vi"  # as POSIX has it where neither VISUAL nor EDITOR is set
+
 
 def write_onto(mission: Mission, path: str, out: str | None = None, *, force: bool = False) -> None:
     """Write a mission onto an XML file at once, or what that gives into the file `out`.
@@ -58,10 +61,6 @@ def _why_not(kept: Kept, original: Source, *, is_replaced: bool) -> str:
     if kept.file != os.path.basename(original.name):
         return f"it was made from {kept.file}"
     return "the file has changed since the mission was made from it"
-
-
-_FAILED = 1
-_USUAL = "vi"  # as POSIX has it where neither VISUAL nor EDITOR is set
 
 
 def edit_xml(options: argparse.Namespace) -> int:

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 _LONGEST = 500  # characters of canonical English
 _NAMED = "A name of this mission"
 _ROLES: dict[type, str] = {Remembered: "remember", NodeCall: "do", Each: "each"}
+_MOST = 200
 
 
 def hover(source: Source, at: int, words: RobotWords) -> dict[str, Any]:
@@ -126,9 +127,6 @@ def _join(part: ast.Ast, at: int) -> ast.Ast:
 def _english(part: ast.Ast, program: ast.Program | None, lexer: Lexer) -> str:
     names = ast.all_definitions(program) if program is not None else ()
     return english(part, lexer.vocabulary, names=names)
-
-
-_MOST = 200
 
 
 def complete(source: Source, words: RobotWords, at: int | None = None) -> dict[str, Any]:

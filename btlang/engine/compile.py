@@ -1,7 +1,9 @@
-"""Compiles trees: expands the subtrees, then compiles each node with the function that belongs to its id."""
+"""Compiles trees: expands the subtrees, compiles each node with the function of its id, and allows deep recursion."""
 
 from __future__ import annotations
 
+import sys
+from _thread import allocate_lock
 from collections.abc import Callable, Sequence
 
 from btlang.engine.blackboard import Blackboard
@@ -21,6 +23,8 @@ from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from typing import Any
+
     from btlang.engine.instance import Compiled, Hooks
 
 
@@ -73,6 +77,9 @@ SEMANTICS: dict[str, Callable[[NodeInstance, Sequence[Compiled]], Compiled]] = {
     SUBTREE: lambda instance, children: children[0],  # subtree_node.cpp
 }
 """What compiles each node of the catalogue."""
+_lock = allocate_lock()
+_asked: list[int] = []  # the frames that those ask for who run now
+_usual = 0  # the limit while nobody does
 
 
 def expand(tree: Tree, blackboard: Blackboard, state: EngineState) -> list[NodeInstance]:
@@ -256,3 +263,35 @@ def child_scope(node: Node, scope: Blackboard) -> Blackboard:
         else:
             remapped[port] = (scope, key)
     return Blackboard(remapped, scope, shares=shares, values=values)
+
+
+def allow_depth(frames: int, do: Callable[..., Any]) -> Callable[..., Any]:
+    """Wrap a function so that so many frames are allowed while it runs, in whatever thread.
+
+    The limit doesn't stay raised: what recurses in C, as Python's JSON does, would crash where it says now that
+    something is nested too deep.
+    """
+
+    def done(*args: Any) -> Any:
+        _raise(frames)
+        try:
+            return do(*args)
+        finally:
+            _lower(frames)
+
+    return done
+
+
+def _raise(frames: int) -> None:
+    global _usual
+    with _lock:
+        if not _asked:
+            _usual = sys.getrecursionlimit()
+        _asked.append(frames)
+        sys.setrecursionlimit(max([_usual, *_asked]))
+
+
+def _lower(frames: int) -> None:
+    with _lock:
+        _asked.remove(frames)
+        sys.setrecursionlimit(max([_usual, *_asked]))

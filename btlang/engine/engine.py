@@ -7,10 +7,9 @@ from collections.abc import Callable, Mapping, Sequence
 
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.clock import Clock
-from btlang.engine.compile import compile_instances, expand
+from btlang.engine.compile import allow_depth, compile_instances, expand
 from btlang.engine.instance import EngineError, EngineState, Fault, NodeInstance, blackboard_key
 from btlang.engine.leaves.leaf import REFUSED, ActionFailed, LeafBinding, ignore_progress, reason_text
-from btlang.engine.recursion import allow_depth
 from btlang.engine.saving import restore_nodes, save_nodes
 from btlang.engine.script.values import as_text
 from btlang.engine.status import FAILURE, IDLE

@@ -21,6 +21,15 @@ from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.value_type import PLACE
 
+Holders = Mapping[str, Node]
+"""Resource -> a leaf (or name) that holds it."""
+_JOINS = re.compile(r'[^\n;."()]*')
+_NO_HOLDERS: Holders = {}  # one for all
+_KEEP_OUT, _ENTER, _OPEN = CONSTRAINTS["keep out"], "EnterZone", "OpenZone"
+Goals = Mapping[str, Node]
+"""The names of places and zones to which a part of the tree drives, or through which; each with a leaf that does."""
+_NO_GOALS: Goals = {}  # one for all
+
 
 def check_types(compilation: Compilation) -> Iterator[Diagnostic]:
     """Report whole numbers, such as times and numbers of rounds, that a tree can't hold (BT014)."""
@@ -78,13 +87,6 @@ def check_size(compilation: Compilation) -> list[Diagnostic]:
     if sizes[""] <= MOST_NODES:
         return []
     return [diagnostic("BT042", compilation.tree.root.span or NOWHERE, limit=f"{MOST_NODES:,}")]
-
-
-Holders = Mapping[str, Node]
-"""Resource -> a leaf (or name) that holds it."""
-
-_JOINS = re.compile(r'[^\n;."()]*')
-_NO_HOLDERS: Holders = {}  # one for all
 
 
 def check_resources(compilation: Compilation) -> list[Diagnostic]:
@@ -171,13 +173,6 @@ def _sentence_with(span: Span, words: str) -> str:
     start = max(text.rfind("\n", 0, span.start), text.rfind(". ", 0, span.start), text.rfind(";", 0, span.start)) + 1
     end = min((at for at in (text.find(mark, span.end) for mark in "\n.;") if at >= 0), default=len(text))
     return f"{text[start : span.start]}{words}{text[span.end : end]}".strip()
-
-
-_KEEP_OUT, _ENTER, _OPEN = CONSTRAINTS["keep out"], "EnterZone", "OpenZone"
-
-Goals = Mapping[str, Node]
-"""The names of places and zones to which a part of the tree drives, or through which; each with a leaf that does."""
-_NO_GOALS: Goals = {}  # one for all
 
 
 def check_goals(compilation: Compilation) -> list[Diagnostic]:

@@ -15,6 +15,8 @@ RED, YELLOW, CYAN, PLAIN = "\x1b[1;31m", "\x1b[1;33m", "\x1b[36m", "\x1b[0m"
 """The only escape sequences that `printable` lets through."""
 _COLOURS = (RED, YELLOW, CYAN, PLAIN)
 _JOINERS = "\u200c\u200d"  # without which some scripts and emoji fall apart
+NTH = {1: "st", 2: "nd", 3: "rd"}
+"""What stands behind the figures of an ordinal number; behind all others it is `th`."""
 
 
 def printable(text: str) -> str:
@@ -45,10 +47,6 @@ def _escape(character: str, kept: str) -> str:
     if character.isprintable() or blank or character in kept or character in _JOINERS:
         return character
     return character.encode("unicode_escape").decode("ascii")
-
-
-NTH = {1: "st", 2: "nd", 3: "rd"}
-"""What stands behind the figures of an ordinal number; behind all others it is `th`."""
 
 
 def joined(words: Sequence[str], last: str = "and") -> str:

@@ -9,6 +9,9 @@ from itertools import accumulate
 
 from btlang.support.record import Record
 
+_sources: dict[str, tuple[list[str], PythonSource]] = {}  # by file names, with the lines that linecache gave
+_LAST = "\uffff"  # of the characters that have one unit
+
 
 class Source:
     """A text to compile. `name` is what messages show: a path, `-` or `<text>`.
@@ -101,9 +104,6 @@ NOWHERE = Span(Source(""), 0, 0)
 """Where a message points that is about no text."""
 
 
-_sources: dict[str, tuple[list[str], PythonSource]] = {}  # by file names, with the lines that linecache gave
-
-
 def find_calling_line() -> Span | None:
     """Return the line, outside this package, of the innermost call into it. None if the text of its file isn't
     known.
@@ -128,9 +128,6 @@ def find_calling_line() -> Span | None:
     words = lines[number - 1].strip()
     start = source.offset(number, 1 + lines[number - 1].find(words))
     return Span(source, start, start + len(words))
-
-
-_LAST = "\uffff"  # of the characters that have one unit
 
 
 class Utf16Units:

@@ -20,6 +20,14 @@ _QUOTED = re.compile(
     r'"""(?:\\.|[^\\])*?(?:"{3,5}|\Z)|"(?:\\.|[^"\\\n])*"?' r"|'''.*?(?:'{3,5}|\Z)|'[^'\n]*'?|#[^\n]*", re.DOTALL
 )  # fmt: skip
 _LONG_KEY = re.compile(rf"(?<![\w-])[\w-]+(?:[ \t]*\.[ \t]*[\w-]+){{{_MOST_PARTS}}}")
+Path = tuple[str | int, ...]
+"""Keys and indexes from the top: ("places", 2, "name")."""
+_BLANK = re.compile(r"(?:\s|#[^\n]*)*")
+_STRING = re.compile(
+    r'"""(?:\\.|[^\\])*?"{3,5}' r"|'''.*?'{3,5}" r'|"(?:\\.|[^"\\\n])*"' r"|'[^'\n]*'", re.DOTALL
+)  # fmt: skip
+_KEY = re.compile(r"[A-Za-z0-9_-]+")
+_OTHER = re.compile(r"[^,\]}#\n]+")  # numbers, dates, true and false
 
 
 def parse_toml(text: str) -> dict[str, Any]:
@@ -40,17 +48,6 @@ def line_of(error: tomllib.TOMLDecodeError) -> int | None:
     """Return the line that the error names: "... (at line 3, column 5)"."""
     place = re.search(r"\(at line (\d+), column \d+\)$", str(error))
     return int(place[1]) if place else None
-
-
-Path = tuple[str | int, ...]
-"""Keys and indexes from the top: ("places", 2, "name")."""
-
-_BLANK = re.compile(r"(?:\s|#[^\n]*)*")
-_STRING = re.compile(
-    r'"""(?:\\.|[^\\])*?"{3,5}' r"|'''.*?'{3,5}" r'|"(?:\\.|[^"\\\n])*"' r"|'[^'\n]*'", re.DOTALL
-)  # fmt: skip
-_KEY = re.compile(r"[A-Za-z0-9_-]+")
-_OTHER = re.compile(r"[^,\]}#\n]+")  # numbers, dates, true and false
 
 
 def find_positions(text: str) -> dict[Path, int]:

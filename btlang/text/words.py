@@ -113,9 +113,7 @@ class Line(Record):
 
 
 class Words:
-    """The words of a source as parallel lists, with a `\
-    ` word at the end of each line that isn't blank.
-    """
+    """The words of a source as parallel lists, with a `\\n` word at the end of each line that isn't blank."""
 
     __slots__ = (
         "_distinct",

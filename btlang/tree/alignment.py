@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
     Nodes: TypeAlias = Sequence[Node]
 
+_MOST = 40_000  # comparisons of two lists of nodes; of longer ones only equal nodes are paired
+
 
 class SubtreeNumbers:
     """The numbers of nodes; those of equal subtrees are the same. Nodes are keyed by identity.
@@ -46,9 +48,6 @@ class SubtreeNumbers:
     def are_equal(self, one: Node, other: Node) -> bool:
         """Whether two nodes and all that is below them are equal."""
         return self[one] == self[other]
-
-
-_MOST = 40_000  # comparisons of two lists of nodes; of longer ones only equal nodes are paired
 
 
 class Alignment:

@@ -18,6 +18,9 @@ from btlang.vocabulary.entry import COMPARISONS, MEASURED, Entry
 from btlang.vocabulary.lexicon import Lexicon
 
 _BUILT_IN = frozenset(kind.id for kind in CATALOGUE.values() if kind.origin == BEHAVIOR_TREE_CPP)
+_REFUSED = re.compile(f"[{IN_NO_ID}{{}}]+")
+"""Also braces, which they take; but a name in braces looks like a reference."""
+_RESERVED = frozenset(("", "Root", "root", *KINDS, *CATALOGUE))
 
 
 class Uses:
@@ -161,11 +164,6 @@ def _port(port: PortModel) -> Element:
     pairs = (("name", port.name), ("type", port.type or None), ("default", port.default))
     attributes = tuple((key, text) for key, text in pairs if text is not None)
     return Element(f"{port.direction}_port", attributes, (port.text,) if port.text else ())
-
-
-_REFUSED = re.compile(f"[{IN_NO_ID}{{}}]+")
-"""Also braces, which they take; but a name in braces looks like a reference."""
-_RESERVED = frozenset(("", "Root", "root", *KINDS, *CATALOGUE))
 
 
 def tree_ids(tree: Tree, leaves: Iterable[str], dialect: int) -> dict[str, str]:

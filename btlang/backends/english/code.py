@@ -19,6 +19,7 @@ _NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
 _KEY = re.compile(r"[^\W\d]\w*|_\w+")
 _WAYS = {sign: way for way, sign in OPERATORS.items()}
 _SIGNS = {"+=": "increase", "-=": "decrease"}
+_PREFIX = "each_"
 
 
 class GivenValue(Record):
@@ -163,9 +164,6 @@ def _join(terms: Sequence[str], texts: Mapping[str, str]) -> str | None:
         else:
             return None
     return "".join(found)
-
-
-_PREFIX = "each_"
 
 
 class Loop(Record):

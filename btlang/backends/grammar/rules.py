@@ -10,6 +10,11 @@ from collections.abc import Callable, Iterable, Iterator
 
 from btlang.support.record import Record
 
+_PIECE = re.compile(
+    r"""\s*(?:"(?P<text>[^"]*)"|(?P<chars>\[[^\]]+\])|<(?P<words>[^>]+)>|(?P<name>[a-z][a-z0-9-]*)|(?P<mark>[|()?*+]))"""
+)
+_ESCAPES = str.maketrans({"\\": r"\\", '"': r"\"", "\n": r"\n"})
+
 
 class Text(Record):
     """These characters."""
@@ -80,11 +85,6 @@ def repeat(part: Part, mark: str) -> Part:
     if part == NOTHING:
         return NOTHING if mark == "+" else Joined(())
     return Repeated(part, mark)
-
-
-_PIECE = re.compile(
-    r"""\s*(?:"(?P<text>[^"]*)"|(?P<chars>\[[^\]]+\])|<(?P<words>[^>]+)>|(?P<name>[a-z][a-z0-9-]*)|(?P<mark>[|()?*+]))"""
-)
 
 
 def parse_rule(format_rules: str, words: Callable[[str], Part]) -> Part:
@@ -208,9 +208,6 @@ def _quote_ebnf(piece: str) -> str:
     if piece == "\n":
         return "#xA"
     return f"'{piece}'" if '"' in piece else f'"{piece}"'
-
-
-_ESCAPES = str.maketrans({"\\": r"\\", '"': r"\"", "\n": r"\n"})
 
 
 def to_gbnf(rules: Rules) -> str:

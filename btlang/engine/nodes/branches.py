@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 _NO_ANSWER = "its condition was skipped"
 _NO_BRANCH = "its condition was false, and it has no other branch"
+_SAME = 2.0**-23  # as in scripts
 
 
 def if_then_else(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
@@ -124,9 +125,6 @@ def while_do_else(instance: NodeInstance, children: Sequence[Compiled]) -> Compi
             branch = 0
 
     return tick, halt
-
-
-_SAME = 2.0**-23  # as in scripts
 
 
 def switch(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 _FIRST_PAUSE, _LONGEST_PAUSE = 500.0, 8000.0  # milliseconds
 WAS_TRUE = "it is true"
 """The reason of an Inverter: what it denies succeeded."""
+_IF_EMPTY = {name: status for name, status in STATUSES.items() if status != RUNNING}
 
 
 def inverter(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
@@ -139,9 +140,6 @@ def _rounds(instance: NodeInstance, children: Sequence[Compiled], limit: Callabl
             msec = 0.0
 
     return tick, halt
-
-
-_IF_EMPTY = {name: status for name, status in STATUSES.items() if status != RUNNING}
 
 
 def loop_int(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:

@@ -15,6 +15,8 @@ BOOLEANS = {"true": 1.0, "false": 0.0}
 ASSIGNMENTS = (":=", "=", "+=", "-=", "*=", "/=")
 _SPACE = re.compile(r"(?:[ \t\r\n]|\\\r?\n)*")  # versions before 4.9 took a backslash at the end of a line
 _LIKE_A_NUMBER = re.compile(r"[0-9][A-Za-z0-9_.]*")
+READS, SETS = "reads", "sets"
+_WORD = re.compile(r"[^\W\d]\w*")
 
 
 class ScriptError(ValueError):
@@ -80,10 +82,6 @@ class Tokens:
         if whole >= 2**63:
             raise ScriptError("this number is too large", self.position)
         return float(whole)
-
-
-READS, SETS = "reads", "sets"
-_WORD = re.compile(r"[^\W\d]\w*")
 
 
 def find_name_uses(code: str) -> dict[str, set[str]]:

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 _LINE_END = re.compile(r"[\n;]|[.!?](?!\w)")
 _WORD = re.compile(r"\w")
 _QUOTED = re.compile(r'"[^"\n]*"')
+MIXED, POSTFIX, LIST, NEGATED, AFTER = "mixed", "postfix", "list", "negated", "after"
 
 
 class Gaps:
@@ -93,9 +94,6 @@ def balance_brackets(span: Span) -> Span:
     for _ in range(depth - lowest):
         end = text.index(")", end) + 1
     return Span(span.source, start, end)
-
-
-MIXED, POSTFIX, LIST, NEGATED, AFTER = "mixed", "postfix", "list", "negated", "after"
 
 
 class Readings(Record):

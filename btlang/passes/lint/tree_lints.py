@@ -23,6 +23,12 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import TypeAlias
 
+ASKS, INSTANT, TAKES_TIME = range(3)
+"""What the leaves below a node are at most: conditions, things that end in the tick they start, others."""
+Found: TypeAlias = "Exposed | None"
+_TIME = "when the time is over"
+_WHEN = {ON_SUCCESS: "as soon as the condition is false", ON_FAILURE: "as soon as the condition is true"}
+
 
 def find_unreachable(compilation: Compilation) -> list[Diagnostic]:
     """Report the first unreachable command of each node whose children follow in order."""
@@ -67,10 +73,6 @@ def find_empty_loops(compilation: Compilation) -> Iterator[Diagnostic]:
             port = ports.get(node.id)
             if port is not None and node.port(port) == "0" and node.span is not None:
                 yield diagnostic("BT237", node.span, id=node.id, port=port)
-
-
-ASKS, INSTANT, TAKES_TIME = range(3)
-"""What the leaves below a node are at most: conditions, things that end in the tick they start, others."""
 
 
 def find_busy_loops(compilation: Compilation) -> list[Diagnostic]:
@@ -126,9 +128,6 @@ class Exposed(Record):
     place: Node
 
 
-Found: TypeAlias = "Exposed | None"
-
-
 def find_cut_off(compilation: Compilation) -> list[Diagnostic]:
     """Report the first such action of each form; each action for its innermost form only."""
     entries = compilation.vocabulary.entries
@@ -177,10 +176,6 @@ def _when(node: Node) -> str:
     if kind.asks_first:
         return "as soon as the condition changes"
     return _WHEN.get(kind.goes_on, _TIME)
-
-
-_TIME = "when the time is over"
-_WHEN = {ON_SUCCESS: "as soon as the condition is false", ON_FAILURE: "as soon as the condition is true"}
 
 
 def _cut_off_warnings(exposed: Exposed, when: str, compilation: Compilation) -> list[Diagnostic]:

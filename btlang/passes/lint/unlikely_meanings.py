@@ -21,6 +21,8 @@ from btlang.vocabulary.lexicon import Lexicon
 _ENDLESS = "-1"
 _HALF, _WHOLE = "TurnAround", "TurnOnceAround"
 _BACKWARD, _FORWARD = "MoveBackward", "MoveForward"
+_ENDS = frozenset(("place", "object", "person", "door", "length", "angle", "text"))
+"""The types of the values with which people say when a command has ended."""
 
 
 def find_half_turns(compilation: Compilation) -> Iterator[Diagnostic]:
@@ -72,10 +74,6 @@ def find_next_day(compilation: Compilation) -> Iterator[Diagnostic]:
                     continue
                 ends = (each.time for each in ast.parents_first(item) if isinstance(each, ast.UntilTime | ast.WaitTime))
                 ended = next(ends, "")
-
-
-_ENDS = frozenset(("place", "object", "person", "door", "length", "angle", "text"))
-"""The types of the values with which people say when a command has ended."""
 
 
 def find_restarts(compilation: Compilation) -> Iterator[Diagnostic]:
