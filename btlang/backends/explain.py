@@ -115,7 +115,7 @@ def _read_sentence(statement: Statement, printer: Printer, width: int) -> Iterat
     whole = items[0] if len(items) == 1 else ast.Chain(joined, items, False, items[0].span)
     said = printer.say(whole)
     room = width - len(_READ_AS)
-    if not said.in_lines and not is_longer(said.pieces, room):
+    if not said.in_lines and not is_longer(said.fragments, room):
         line = printer.line(whole, said, joined if len(items) == 1 else "")
         if len(line) <= room:
             yield _READ_AS + line

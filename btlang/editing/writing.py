@@ -184,9 +184,9 @@ class Writer:
         said = printer.say(node)
         is_block = len(lines) > 1 and not text
         if text:
-            said = said.replace(pieces=(Fragment(text, MARK),), in_lines=False)
+            said = said.replace(fragments=(Fragment(text, MARK),), in_lines=False)
             if text.startswith("(") and text.endswith(")"):
-                said = Doc(said.pieces, WHOLE)
+                said = Doc(said.fragments, WHOLE)
             elif way == "in brackets" and ast.parts(node):
                 said = said.replace(level=LOOSE, reaches=True)
         elif not is_block:
@@ -330,9 +330,9 @@ class Writer:
         said = printer.say(joined(nodes, operator))
         if said.in_lines:
             return
-        yield printer.text(said.pieces)
+        yield printer.text(said.fragments)
         if said.level < WHOLE:
-            yield printer.text(add_brackets(said).pieces)
+            yield printer.text(add_brackets(said).fragments)
 
     def _joints(self, places: Sequence[tuple[int, int]], operator: str, printer: Printer) -> Iterator[str]:
         """Return what stands between the items of a chain, the usual word last."""

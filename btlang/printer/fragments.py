@@ -36,9 +36,9 @@ def mark(text: str) -> Fragment:
     return Fragment(text, MARK)
 
 
-def flatten(pieces: Fragments) -> Iterator[Fragment]:
+def flatten(fragments: Fragments) -> Iterator[Fragment]:
     """Return the fragments in order."""
-    stack: list[Any] = [pieces]
+    stack: list[Any] = [fragments]
     while stack:
         item = stack.pop()
         if isinstance(item, Fragment):
@@ -47,14 +47,14 @@ def flatten(pieces: Fragments) -> Iterator[Fragment]:
             stack.extend(reversed(item))
 
 
-def is_longer(pieces: Fragments, length: float) -> bool:
+def is_longer(fragments: Fragments, length: float) -> bool:
     """Whether their text has surely more characters than that; much cheaper than the text."""
-    return any(total > length for total in accumulate(len(piece.text) for piece in flatten(pieces)))
+    return any(total > length for total in accumulate(len(fragment.text) for fragment in flatten(fragments)))
 
 
-def last_fragment(pieces: Fragments) -> Fragment:
+def last_fragment(fragments: Fragments) -> Fragment:
     """Return the last fragment."""
-    item: Any = pieces
+    item: Any = fragments
     while not isinstance(item, Fragment):
         item = item[-1]
     return item
@@ -68,12 +68,12 @@ def reads_on(first: Fragment, second: Fragment, vocabulary: Lexicon, names: Trie
     return _end(words, 0, vocabulary, names) > len(first.text)
 
 
-def join_fragments(pieces: Fragments, vocabulary: Lexicon, names: TrieNode) -> str:
+def join_fragments(fragments: Fragments, vocabulary: Lexicon, names: TrieNode) -> str:
     """Join fragments to a text in which each is read as it is meant.
 
     Where a phrase would reach into what follows it (or a connective into it), it gets brackets, which change nothing.
     """
-    given = list(flatten(pieces))
+    given = list(flatten(fragments))
     alone: set[int] = set()
     while True:
         text, starts = _join(given, alone)
@@ -81,13 +81,13 @@ def join_fragments(pieces: Fragments, vocabulary: Lexicon, names: TrieNode) -> s
         at = {start: i for i, start in enumerate(words.starts)}
         wrong = set()
         for i, start in starts.items():
-            piece = given[i]
+            fragment = given[i]
             if (
-                piece.kind != MARK
+                fragment.kind != MARK
                 and start in at
-                and _end(words, at[start], vocabulary, names) != start + len(piece.text)
+                and _end(words, at[start], vocabulary, names) != start + len(fragment.text)
             ):
-                wrong |= {i} if piece.kind == LEAF and i not in alone else _next_leaf(given, i)
+                wrong |= {i} if fragment.kind == LEAF and i not in alone else _next_leaf(given, i)
         if wrong <= alone:
             return text
         alone |= wrong
@@ -102,18 +102,18 @@ def _join(given: list[Fragment], alone: set[int]) -> tuple[str, dict[int, int]]:
     parts: list[str] = []
     starts: dict[int, int] = {}
     length, spaced = 0, False
-    for i, piece in enumerate(given):
-        if spaced and piece.text not in _NO_SPACE_BEFORE:
+    for i, fragment in enumerate(given):
+        if spaced and fragment.text not in _NO_SPACE_BEFORE:
             parts.append(" ")
             length += 1
         if i in alone:
             parts.append(OPEN)
             length += 1
         starts[i] = length
-        written = piece.text + CLOSE if i in alone else piece.text
+        written = fragment.text + CLOSE if i in alone else fragment.text
         parts.append(written)
         length += len(written)
-        spaced = piece.text != OPEN
+        spaced = fragment.text != OPEN
     return "".join(parts), starts
 
 

@@ -62,7 +62,7 @@ def lines_of(
             found += (f"{INDENT * depth}{line}" if line else "" for line in kept)
             continue
         said, room = printer.say(item), width - len(INDENT) * depth
-        line = "" if is_longer(said.pieces, room) else printer.line(item, said, among)
+        line = "" if is_longer(said.fragments, room) else printer.line(item, said, among)
         too_long = not line or len(line) > room
         unclear = printer.is_clear and said.is_mixed
         needs_block = said.in_lines or ((too_long or unclear) and room >= least)
@@ -70,7 +70,7 @@ def lines_of(
         below: list[tuple[int, ast.Ast | str, str]] = []
         for head, body in sections(item, printer):
             if isinstance(body, ast.Ast):
-                below.append((depth, printer.text((head, printer.say(body).pieces)), ""))
+                below.append((depth, printer.text((head, printer.say(body).fragments)), ""))
                 continue
             below.append((depth, printer.text((head, mark(COLON))), ""))
             below += [(depth + 1, part, joint) for part, joint in body]
@@ -128,7 +128,7 @@ def _sequence_node(node: ast.Chain, printer: Printer) -> Iterator[Section]:
 def _branching(positive: str, negative: str) -> Callable[[Any, Printer], Iterator[Section]]:
     def sections(node: Any, printer: Printer) -> Iterator[Section]:
         condition = printer.condition(printer.say(node.condition))
-        yield (printer.word(negative if node.negated else positive), condition.pieces), statements(node.body)
+        yield (printer.word(negative if node.negated else positive), condition.fragments), statements(node.body)
         if node.otherwise is not None:
             yield (printer.word("otherwise"),), statements(node.otherwise)
 
@@ -137,7 +137,7 @@ def _branching(positive: str, negative: str) -> Callable[[Any, Printer], Iterato
 
 def _whenever(node: ast.Whenever, printer: Printer) -> Iterator[Section]:
     condition = printer.condition(printer.say(node.condition))
-    yield (printer.word(rule_word(node)), condition.pieces), statements(node.body)
+    yield (printer.word(rule_word(node)), condition.fragments), statements(node.body)
 
 
 def _try(node: ast.Try, printer: Printer) -> Iterator[Section]:
@@ -168,7 +168,7 @@ def _sequence(node: ast.Chain, printer: Printer) -> Iterator[Section]:
     before, after = said[: needing[0]], reversed(said[needing[0] + 1 :])
     words = [(part, "then") for part in before] + [(part, "after") for part in after]
     inner = [
-        (printer.inside(part, part.level <= THEN or part.reaches).pieces, printer.word(role)) for part, role in words
+        (printer.inside(part, part.level <= THEN or part.reaches).fragments, printer.word(role)) for part, role in words
     ]
     block = node.items[needing[0]]
     for i, (head, body) in enumerate(_SECTIONS.get(type(block), _none)(block, printer)):

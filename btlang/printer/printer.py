@@ -47,7 +47,7 @@ class Doc(Record):
     `can_skip`: it may end SKIPPED.
     """
 
-    pieces: Fragments
+    fragments: Fragments
     level: int
     reaches: bool = False
     takes_otherwise: bool = False
@@ -153,18 +153,18 @@ class Printer:
         """Print a statement as `statement` does, of what is said of the node."""
         if isinstance(node, ast.Chain) and node.operator == joined:
             said = add_brackets(said)
-        text = self.text(said.pieces)
-        if not isinstance(node, ast.Definition) and self._would_define(flatten(said.pieces)):
+        text = self.text(said.fragments)
+        if not isinstance(node, ast.Definition) and self._would_define(flatten(said.fragments)):
             return f"{self.vocabulary.word('then')} {text}"  # a line that begins so defines nothing
         return text
 
-    def _would_define(self, pieces: Iterable[Fragment]) -> bool:
+    def _would_define(self, fragments: Iterable[Fragment]) -> bool:
         """Whether a word that defines stands in a command or name; in a condition it compares."""
-        return any(piece.kind == LEAF and holds_definer(piece.text, self.vocabulary) for piece in pieces)
+        return any(fragment.kind == LEAF and holds_definer(fragment.text, self.vocabulary) for fragment in fragments)
 
-    def text(self, pieces: Fragments) -> str:
+    def text(self, fragments: Fragments) -> str:
         """Join fragments to a text."""
-        return join_fragments(pieces, self.vocabulary, self.names)
+        return join_fragments(fragments, self.vocabulary, self.names)
 
     # -- comments
 
@@ -256,9 +256,9 @@ class Printer:
         """Print the condition of a form: no reading needs brackets round it."""
         return add_brackets(said) if self.all_brackets and said.level < FORM else said
 
-    def reads_on(self, said: Doc, piece: Fragment) -> bool:
+    def reads_on(self, said: Doc, fragment: Fragment) -> bool:
         """Whether the end of what is said and a connective behind it would be read as one."""
-        key = last_fragment(said.pieces), piece
+        key = last_fragment(said.fragments), fragment
         if key not in self._reads_on:
             self._reads_on[key] = reads_on(*key, self.vocabulary, self.names)
         return self._reads_on[key]
@@ -266,17 +266,17 @@ class Printer:
     def behind(self, body: Doc, word: Fragment, *rest: Fragments, counts: bool = False) -> Doc:
         """Print a form that stands behind its body."""
         body = self.inside(body, body.level < FORM or body.reaches or self.reads_on(body, word))
-        return Doc((body.pieces, word, *rest), FORM, counts=counts or body.counts, behind=True)
+        return Doc((body.fragments, word, *rest), FORM, counts=counts or body.counts, behind=True)
 
     def before(self, head: Fragments, body: Doc, otherwise: Doc | None = None) -> Doc:
         """Print a form that stands before its body, and reaches to the right; its `otherwise` is said as it is."""
         if otherwise is None:
             body = self.inside(body, False)
-            return Doc((*head, body.pieces), FORM, True, body.takes_otherwise, body.counts)
+            return Doc((*head, body.fragments), FORM, True, body.takes_otherwise, body.counts)
         word = self.word("otherwise")
         body = self.inside(body, body.reaches or body.takes_otherwise or self.reads_on(body, word))
-        pieces = (*head, body.pieces, word, otherwise.pieces)
-        return Doc(pieces, FORM, True, otherwise.takes_otherwise, body.counts or otherwise.counts)
+        fragments = (*head, body.fragments, word, otherwise.fragments)
+        return Doc(fragments, FORM, True, otherwise.takes_otherwise, body.counts or otherwise.counts)
 
 
 def _with_flags(node: ast.Ast, said: Doc, parts: list[Doc]) -> Doc:
@@ -292,4 +292,4 @@ def _with_flags(node: ast.Ast, said: Doc, parts: list[Doc]) -> Doc:
 
 def add_brackets(said: Doc) -> Doc:
     """Return the same in brackets."""
-    return Doc((mark(OPEN), said.pieces, mark(CLOSE)), WHOLE)
+    return Doc((mark(OPEN), said.fragments, mark(CLOSE)), WHOLE)

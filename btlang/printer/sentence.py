@@ -72,15 +72,15 @@ def _at_least(node: ast.AtLeast, parts: list[Doc], printer: Printer) -> Doc:
     """Print a list that reaches to the end of the condition, so inside another one it is in brackets."""
     word = printer.word("and")
     inner = [printer.inside(p, p.level < FORM or printer.reads_on(p, word)) for p in parts]
-    pieces = [piece for part in inner[:-1] for piece in (part.pieces, mark(COMMA))]
-    return Doc((printer.word("at_least_of", count=str(node.number)), *pieces[:-1], word, inner[-1].pieces), LOOSE)
+    fragments = [fragment for part in inner[:-1] for fragment in (part.fragments, mark(COMMA))]
+    return Doc((printer.word("at_least_of", count=str(node.number)), *fragments[:-1], word, inner[-1].fragments), LOOSE)
 
 
 def _join(parts: Sequence[Doc], words: Sequence[Fragment]) -> Iterator[Fragments | Fragment]:
     for i, part in enumerate(parts):
         if i:
             yield words[i - 1]
-        yield part.pieces
+        yield part.fragments
 
 
 def _flags(parts: Sequence[Doc]) -> tuple[bool, bool, bool]:
@@ -89,13 +89,13 @@ def _flags(parts: Sequence[Doc]) -> tuple[bool, bool, bool]:
 
 def _not(_node: ast.Not, parts: list[Doc], printer: Printer) -> Doc:
     inner = printer.inside(parts[0], parts[0].level < FORM)
-    return Doc((printer.word("not"), inner.pieces), FORM)
+    return Doc((printer.word("not"), inner.fragments), FORM)
 
 
 def _branching(positive: str, negative: str) -> Callable[[Any, list[Doc], Printer], Doc]:
     def said(node: Any, parts: list[Doc], printer: Printer) -> Doc:
         condition = printer.condition(parts[0])
-        head = (printer.word(negative if node.negated else positive), condition.pieces, mark(COMMA))
+        head = (printer.word(negative if node.negated else positive), condition.fragments, mark(COMMA))
         if node.otherwise is not None:
             return printer.before(head, parts[1], printer.inside(parts[2], False))
         whose = printer.is_clear and parts[1].reaches and parts[1].chooses  # an `otherwise` could be of both
@@ -106,15 +106,15 @@ def _branching(positive: str, negative: str) -> Callable[[Any, list[Doc], Printe
 
 def _if_works(node: ast.IfWorks, parts: list[Doc], printer: Printer) -> Doc:
     tried = printer.inside(parts[0], parts[0].level == LOOSE or parts[0].reaches)
-    head = (tried.pieces, mark(COMMA), printer.word("if_works"), mark(COMMA))
+    head = (tried.fragments, mark(COMMA), printer.word("if_works"), mark(COMMA))
     otherwise = printer.inside(parts[2], parts[2].level == LOOSE) if node.otherwise is not None else None
     said = printer.before(head, printer.inside(parts[1], parts[1].level == LOOSE), otherwise)
-    return Doc(said.pieces, LOOSE, True, said.takes_otherwise, said.counts)
+    return Doc(said.fragments, LOOSE, True, said.takes_otherwise, said.counts)
 
 
 def _whenever(node: ast.Whenever, parts: list[Doc], printer: Printer) -> Doc:
     word = printer.word(rule_word(node))
-    return printer.before((word, printer.condition(parts[0]).pieces, mark(COMMA)), parts[1])
+    return printer.before((word, printer.condition(parts[0]).fragments, mark(COMMA)), parts[1])
 
 
 def rule_word(node: ast.Whenever) -> str:
@@ -123,11 +123,11 @@ def rule_word(node: ast.Whenever) -> str:
 
 
 def _provided(_node: ast.Provided, parts: list[Doc], printer: Printer) -> Doc:
-    return printer.behind(parts[1], printer.word("provided"), printer.condition(parts[0]).pieces)
+    return printer.behind(parts[1], printer.word("provided"), printer.condition(parts[0]).fragments)
 
 
 def _stop_when(_node: ast.StopWhen, parts: list[Doc], printer: Printer) -> Doc:
-    return printer.behind(parts[1], printer.word("stop_when"), printer.condition(parts[0]).pieces)
+    return printer.behind(parts[1], printer.word("stop_when"), printer.condition(parts[0]).fragments)
 
 
 def _repeat(node: ast.Repeat, parts: list[Doc], printer: Printer) -> Doc:
@@ -142,7 +142,7 @@ def _retry(node: ast.Retry, parts: list[Doc], printer: Printer) -> Doc:
         rounds: Fragments = paced_rounds(node.attempts, node.pause, "every", printer)
     else:
         rounds = (printer.rounds(node.attempts),)
-    return Doc((printer.word("retry"), body.pieces, *rounds), FORM, takes_otherwise=True)
+    return Doc((printer.word("retry"), body.fragments, *rounds), FORM, takes_otherwise=True)
 
 
 def paced_rounds(rounds: str, seconds: str, role: str, printer: Printer) -> tuple[Fragment, Fragment]:
@@ -155,13 +155,13 @@ def _try(node: ast.Try, parts: list[Doc], printer: Printer) -> Doc:
     body = parts[0]
     if node.otherwise is None:
         said = printer.behind(body, printer.word("if_possible"))
-        return Doc(said.pieces, FORM, takes_otherwise=True, counts=said.counts, behind=True)
+        return Doc(said.fragments, FORM, takes_otherwise=True, counts=said.counts, behind=True)
     otherwise = parts[1]
     if not is_flat_fallback(node.otherwise):
         otherwise = printer.inside(otherwise, otherwise.level == OR)
     if isinstance(node.body, ast.Retry) and not printer.all_brackets:
-        pieces = (body.pieces, printer.word("otherwise"), otherwise.pieces)
-        return Doc(pieces, FORM, True, otherwise.takes_otherwise, otherwise.counts)
+        fragments = (body.fragments, printer.word("otherwise"), otherwise.fragments)
+        return Doc(fragments, FORM, True, otherwise.takes_otherwise, otherwise.counts)
     return printer.before((printer.word("try"),), add_brackets(body) if body.counts else body, otherwise)
 
 
@@ -197,7 +197,7 @@ def _constrained(node: ast.Constrained, parts: list[Doc], printer: Printer) -> D
     zones = [printer.value(zone, "zone") for zone in node.zones]
     listed = f" {printer.word('and').text} ".join(zones)
     body = printer.inside(parts[0], parts[0].level < WHOLE)
-    return Doc((body.pieces, Fragment(printer.word(role, zone=listed).text, LEAF)), LOOSE)
+    return Doc((body.fragments, Fragment(printer.word(role, zone=listed).text, LEAF)), LOOSE)
 
 
 def _wait(node: ast.Wait, _parts: list[Doc], printer: Printer) -> Doc:
@@ -206,7 +206,7 @@ def _wait(node: ast.Wait, _parts: list[Doc], printer: Printer) -> Doc:
 
 def _wait_until(node: ast.WaitUntil, parts: list[Doc], printer: Printer) -> Doc:
     held = (printer.duration("for", node.held),) if node.held else ()
-    return Doc((printer.word("wait_until"), printer.condition(parts[0]).pieces, *held), FORM)
+    return Doc((printer.word("wait_until"), printer.condition(parts[0]).fragments, *held), FORM)
 
 
 def _wait_time(node: ast.WaitTime, _parts: list[Doc], printer: Printer) -> Doc:
@@ -222,7 +222,7 @@ def _until_time(node: ast.UntilTime, parts: list[Doc], printer: Printer) -> Doc:
 
 def _test(role: str) -> Callable[[Any, list[Doc], Printer], Doc]:
     def said(_node: Any, parts: list[Doc], printer: Printer) -> Doc:
-        return Doc((printer.word(role), printer.condition(parts[0]).pieces), FORM)
+        return Doc((printer.word(role), printer.condition(parts[0]).fragments), FORM)
 
     return said
 
@@ -305,7 +305,7 @@ def spell_key(key: str, vocabulary: Lexicon) -> str:
 
 def definition(node: ast.Definition, parts: list[Doc], printer: Printer) -> Doc:
     """Print a definition with the strong word, which no other word of the line can overrule."""
-    return Doc((*definition_head(node, printer), parts[0].pieces), THEN)
+    return Doc((*definition_head(node, printer), parts[0].fragments), THEN)
 
 
 def definition_head(node: ast.Definition, printer: Printer) -> tuple[Fragment, Fragment]:
