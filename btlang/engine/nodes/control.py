@@ -95,12 +95,12 @@ def _in_steps(instance: NodeInstance, children: Sequence[Compiled], passes: int,
     index = skipped = 0
     waiting = -1  # the child that was RUNNING at the last tick
     began: float | None = None  # when the first child was last started
-    wakes = True
+    hurries = True  # the names of these variables are in saved runs
 
     def tick() -> int:
-        nonlocal index, skipped, waiting, began, wakes
+        nonlocal index, skipped, waiting, began, hurries
         if index == 0 and waiting != 0:
-            began, wakes = clock.now, began != clock.now
+            began, hurries = clock.now, began != clock.now
         while index < count:
             status = ticks[index]()
             if status == RUNNING:
@@ -117,7 +117,7 @@ def _in_steps(instance: NodeInstance, children: Sequence[Compiled], passes: int,
                 return status
             index += 1
             if status is passes and index != waiting + 1 and index < count:
-                if wakes:
+                if hurries:
                     clock.wake_at(clock.now)
                 return RUNNING
         result = SKIPPED if skipped == count else passes
