@@ -25,7 +25,8 @@ ASK, ANSWERED, UNANSWERED = "Ask", "AnswerIs", "NobodyAnswered"
 ABOUT_ANSWERS = frozenset((ANSWERED, UNANSWERED))
 _ONCE = (ast.Retry, ast.Try, ast.Within, ast.UpTo, ast.StopWhen, ast.Constrained, ast.Delay, ast.Provided, ast.Chain)
 """Forms whose commands are done before what comes behind the form."""
-_EXAMPLE = 'ask Alice "Tea?". If so, wave'
+EXAMPLE = 'ask Alice "Tea?". If so, wave'
+OF_WHICH = "could be about the first question or about the second"
 
 
 def asking_verbs(vocabulary: Lexicon) -> frozenset[str]:
@@ -74,7 +75,7 @@ def _gather(node: ast.Ast, problems: list[Diagnostic]) -> ast.Ast:
             problem = _problem(made, asking, form, item)
             if problem:
                 words = item.span.text.split(",")[0]
-                problems.append(diagnostic("BT144", item.span, words=words, problem=problem, example=_EXAMPLE))
+                problems.append(diagnostic("BT144", item.span, words=words, problem=problem, example=EXAMPLE))
             elif form:
                 made[asking] = _with_last(form, item)
                 continue
@@ -112,7 +113,7 @@ def _with_silence(items: Sequence[ast.Ast], item: ast.If) -> list[ast.Ast]:
     `If so, A. If not, B. If she says nothing, C`: silence is no `not`.
     """
     asked, *others = items
-    question = asked if isinstance(asked, ast.Try) else ast.Try(asked, None, asked.span)
+    question = _without_failure(asked)
     excludes = any(isinstance(each, ast.If) and _holds_in_silence(each) for each in others)
     is_plain = isinstance(item.condition, ast.Phrase) and not item.negated and item.otherwise is None
     if not (excludes and is_plain and all(map(_depends, others))):
@@ -120,6 +121,18 @@ def _with_silence(items: Sequence[ast.Ast], item: ast.If) -> list[ast.Ast]:
     span = Span(item.span.source, others[0].span.start, others[-1].span.end)
     otherwise = others[0] if len(others) == 1 else ast.Chain("sequence", tuple(others), True, span)
     return [question, item.replace(otherwise=otherwise)]
+
+
+def _without_failure(asked: ast.Ast) -> ast.Ast:
+    """Return a command whose question may stay without an answer; what is done before it may still fail."""
+    if isinstance(asked, ast.Try):
+        return asked
+    if not isinstance(asked, ast.Chain) or asked.operator == "fallback":
+        return ast.Try(asked, None, asked.span)
+    last = max(at for at, each in enumerate(asked.items) if _questions(each))
+    items = [*asked.items[:last], _without_failure(asked.items[last]), *asked.items[last + 1 :]]
+    made: ast.Chain = asked.replace(items=tuple(items))
+    return made
 
 
 def _holds_in_silence(node: ast.If) -> bool:
@@ -179,7 +192,7 @@ def _problem(made: Sequence[ast.Ast], at: int, form: Sequence[Any], item: ast.As
     if getattr(inner, "otherwise", None) is not None or len(form) > 1:
         return "could be about several questions"
     if _depends(inner):
-        return "" if _same(inner, item) else "could be about the first question or about the second"
+        return "" if _same(inner, item) else OF_WHICH
     return "stands on another line than what asks only sometimes" if "\n" in text else ""
 
 

@@ -20,9 +20,15 @@ from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import choice_of
 from btlang.vocabulary.value_type import OBJECT, PERSON, PLACE
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import TypeGuard
+
 _SENTENCE_END = re.compile(r"[.;!?\n]")
 _QUOTED_ENDS = ('."', '!"', '?"')
-_ON_THE_WAY, _BUMPED = ("SomeoneInTheWay", "SomethingInTheWay"), "Bumped"
+_ON_THE_WAY = ("SomeoneInTheWay", "SomethingInTheWay")
+_WHILE_DRIVING = ("Bumped", "WallInFront", "ObstacleWithin")
+_FREE, _BATTERY, _LOW = "PathClear", "Battery", "BatteryLow"
 
 
 def find_asked_once(compilation: Compilation) -> Iterator[Diagnostic]:
@@ -46,7 +52,9 @@ def find_asked_once(compilation: Compilation) -> Iterator[Diagnostic]:
 
 
 def _sentence_before(items: Sequence[ast.Ast], at: int) -> Sequence[ast.Ast]:
-    """Return the items before one, as far back as no sentence ends between them."""
+    """Return the items before one, as far back as no sentence ends between them; standing rules are no such items."""
+    while at > 0 and isinstance(items[at - 1], ast.Whenever):
+        at -= 1
     first = max(at - 1, 0)
     while first > 0:
         before = items[first - 1].span
@@ -73,13 +81,15 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
         yield diagnostic("BT068", node.span, words=words, advice=advice).replace(readings=((whole, each),))
         return
     is_timed = isinstance(timed, ast.UntilTime | ast.For | ast.WaitTime)
-    phrases = (each for item in before for each in ast.parents_first(item) if isinstance(each, ast.Phrase))
-    journeys = [] if is_timed else [each for each in phrases if MOVES in each.entry.resources]
+    phrases = (each for item in before for each in ast.parents_first(item))
+    journeys = [] if is_timed else [each for each in phrases if _drives(each)]
     if not (is_timed or journeys):
         return
     last = before[-1].span.text
-    bumps = asked.entry.id == _BUMPED and any("navigation" in each.entry.needs for each in journeys)
-    if is_timed or bumps or asked.entry.id in _ON_THE_WAY:
+    is_watched = asked.entry.id in _WHILE_DRIVING or (asked is not node.condition and asked.entry.id == _FREE)
+    is_watched = is_watched or (_is_low(asked) and any(map(_drives, ast.parents_first(node.body))))
+    is_driving = is_watched and any("navigation" in each.entry.needs for each in journeys)
+    if is_timed or is_driving or asked.entry.id in _ON_THE_WAY:
         each = f"{vocabulary.word('whenever')} {node.span.text[len(words.split(maxsplit=1)[0]) :].lstrip()}"
         advice = f"'{last}' is over by then. To do it {'meanwhile' if is_timed else 'on the way'}, write: {each}"
         yield diagnostic("BT068", node.span, words=words, advice=advice).replace(readings=((node.span, each),))
@@ -88,6 +98,16 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
     ):
         advice = f"'{last}' comes first, and fails if it can't be done. What decides about it stands before it."
         yield diagnostic("BT068", node.span, words=words, advice=advice)
+
+
+def _drives(node: ast.Ast) -> TypeGuard[ast.Phrase]:
+    """Whether a node is a command that moves the robot about."""
+    return isinstance(node, ast.Phrase) and MOVES in node.entry.resources
+
+
+def _is_low(condition: ast.Phrase) -> bool:
+    """Whether a condition says that the battery is low."""
+    return condition.entry.id == _LOW or (condition.entry.id == _BATTERY and "below" in dict(condition.arguments))
 
 
 def _too_early(node: ast.If, vocabulary: Lexicon) -> Iterator[Diagnostic]:

@@ -21,6 +21,7 @@ from btlang.frontends.mission.grouping.stack import StackEntry
 from btlang.frontends.mission.token import Token, constraint_of
 from btlang.vocabulary.language_tables import CONNECTIVES
 
+_FAILS = "if_fails"
 _JOINTS = {"in_parallel": "MEANWHILE", "while_doing": "MEANWHILE", "before": "THEN"}
 
 
@@ -44,7 +45,7 @@ def connective(scan: Scan, token: Token) -> None:
 def _answers_try(scan: Scan, token: Token) -> bool:
     """`try to A; if that fails, B`: makes these words the `otherwise` of the nearest `try`."""
     owner = scan.stack[-1].else_owner
-    if token.value != "if_fails" or owner is None or owner.opener is None or owner.opener.role != "try":
+    if token.value != _FAILS or owner is None or owner.opener is None or owner.opener.role != "try":
         return False
     token.kind = "otherwise"
     return True
@@ -57,6 +58,8 @@ def _skip_comma(scan: Scan) -> None:
 
 def _join(scan: Scan, token: Token, kind: str) -> None:
     entry = scan.stack[-1]
+    if token.value == _FAILS:
+        entry.settle("AND")  # `go to Bob, pick up the cup, and if that fails, A`: all of them fail
     before = [*entry.joints, *entry.commas]
     entry.begin_chain()
     made = scan.emit(kind, token)

@@ -101,9 +101,9 @@ class StackEntry:
         self._settle("")
         self.last = token
 
-    def settle(self) -> None:
-        """The commas before this place look no further."""
-        self._settle("")
+    def settle(self, meaning: str = "") -> None:
+        """The commas before this place look no further: they have a meaning, or else mean `then`."""
+        self._settle(meaning)
 
     def close_chain(self) -> None:
         """The chain of operands ends here: commas that no connective has decided mean `then` (or `and`)."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import Called, Listed, Token
-from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
+from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, is_question
 from btlang.frontends.mission.tokens.word_matches import words_of
 from btlang.vocabulary.entry import RECIPIENT, Entry
 from btlang.vocabulary.match import SlotValue
@@ -97,6 +97,8 @@ class AddressedTexts(SentenceReader):
         Returns where to go on if the clause ends before its words do, else 0: `ask Bob what he wants and tell Alice`.
         """
         values, text, at = self._vocabulary.values, self._text, value.first
+        if end := self._ask_too(entry, value, command):
+            return end
         if not self._is_clause(value):
             if (
                 value.name == "question"
@@ -125,6 +127,28 @@ class AddressedTexts(SentenceReader):
         if not self._doubt(entry, values.texts.doubt(text, at + 1, value.last)):
             self._doubt(entry, at, _NO_QUESTION)
         return 0
+
+    def _ask_too(self, entry: Entry, value: SlotValue, command: Token) -> int:
+        """`ask Bob "Tea?". If he says no, ask Alice`: the latest question again, to somebody else."""
+        asked = next((token.value for token in reversed(self._tokens) if is_question(token)), None)
+        if not isinstance(asked, Called) or not isinstance(command.value, Called):
+            return 0
+        people = self._vocabulary.values.names_tree(PERSON)
+        given = next((text for name, text in command.value.arguments if name != value.name), "")
+        named = (given, value.first) if given else find(people, self._text.words, value.first)
+        if named is None:
+            return 0
+        behind = self._phrase(named[1])
+        is_silent = behind is not None and behind.meaning.role in ("instead", "politeness")
+        if not (is_silent or self._is_end(named[1]) or self._text.words[named[1]] == ","):
+            return 0
+        question = dict(asked.arguments)[value.name]
+        said = {PERSON: named[0]}
+        command.value = Called(entry, tuple((slot.name, said.get(slot.type, question)) for slot in entry.slots))
+        command.end = self._text.ends[named[1] - 1]
+        self._tokens.append(command)
+        self._context.latest[PERSON] = named[0]
+        return named[1]
 
     def _end_before_command(self, value: SlotValue) -> int:
         """Where a clause ends before `and` and a command, whose verb can't go on with it; 0 if it doesn't."""

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from functools import cached_property
 
+from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import BEFORE_CONDITIONS, Called, Listed, Token, run_start, statement_start
 from btlang.frontends.mission.tokens.addressed_texts import AddressedTexts
+from btlang.frontends.mission.tokens.sentence_reader import is_question
 from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of
-from btlang.tree.answers import ABOUT_ANSWERS, ANSWERED, ASK, UNANSWERED, asking_verbs
+from btlang.tree.answers import ABOUT_ANSWERS, ANSWERED, ASK, EXAMPLE, OF_WHICH, UNANSWERED, asking_verbs
 from btlang.vocabulary.match import Match
+from btlang.vocabulary.references import choice_of
 from btlang.vocabulary.value_type import PERSON, TEXT
 from btlang.vocabulary.word_tree import find
 
@@ -22,6 +25,9 @@ _STOPS = frozenset(("semi", "newline"))
 
 class Answers(AddressedTexts):
     """Those of one text."""
+
+    _met = ""
+    """Of whom pronouns spoke when somebody was asked."""
 
     def _if(self, condition: Token, is_so: bool) -> None:
         """Begins a command that is done if a condition is so, or isn't."""
@@ -64,6 +70,7 @@ class Answers(AddressedTexts):
             return 0
         start, end = self._text.starts[at], self._text.ends[found[1] - 1]
         yes = Called(entry, ((entry.slots[0].name, self._vocabulary.asking["answers"][0]),))
+        self.note_answerer()
         self._if(Token("condition", start, end, yes), found[0])
         return found[1] + (self._text.words[found[1]] == ",")
 
@@ -73,6 +80,10 @@ class Answers(AddressedTexts):
         Right behind the question it is what is done if that fails.
         """
         text, last, entry = self._text, match.last, self._vocabulary.entry(UNANSWERED)
+        if self._asks_again():
+            words = text.span(at, last - (text.words[last - 1] == ","))
+            problem = diagnostic("BT144", words, words=words.text, problem=OF_WHICH, example=EXAMPLE)
+            self._calls.problems.append(problem)
         is_joined = any(text.words[last] in self._vocabulary.roles[role] for role in ("or", "and"))
         is_reply = is_joined if self._is_asked(right_before=True) else self._is_asked(right_before=False)
         if entry is None or not is_reply:
@@ -82,15 +93,50 @@ class Answers(AddressedTexts):
         asked = Token("condition", start, end, Called(entry, ()))
         self._tokens.append(Token("if", start, start))
         self._end_reply(asked)
+        self.note_answerer()
         self._tokens.append(asked)
         if has_comma:
             self._tokens.append(Token("comma", text.starts[last - 1], text.ends[last - 1]))
         return last
 
+    def _asks_again(self) -> bool:
+        """Whether the statement before asks the same person again for one answer: `if he says no, ask him again`."""
+        tokens = self._tokens
+        last = run_start(tokens, len(tokens), _STOPS)
+        first = statement_start(tokens, last)
+        if not 0 < first < last < len(tokens) or tokens[first].kind != "if":
+            return False
+        values = [token.value for token in tokens[first:last] if isinstance(token.value, Called | Listed)]
+        if not values or values[0].entry.id not in ABOUT_ANSWERS or values[-1].entry.id != ASK:
+            return False
+        asked = self._question(first, right_before=False)
+        return asked is not None and asked.arguments[:-1] == values[-1].arguments[:-1]
+
     def said(self, token: Token, at: int) -> None:
         """What a condition is about that was read at a word."""
         self._hear(token, at)
         self._end_reply(token)
+        if isinstance(token.value, Called) and token.value.entry.id in ABOUT_ANSWERS:
+            self.note_answerer()
+
+    def note_question(self, command: Token) -> None:
+        """Remember of whom pronouns behind the answers to a question to nobody by name speak."""
+        if is_question(command):
+            self._met = self._context.latest.get(PERSON, "")
+
+    def note_answerer(self) -> None:
+        """Make pronouns stand for who answers, whatever is done for another answer; else for the nearest person.
+
+        `ask Bob "Tea?". If he says yes, go to Alice. If he says no, wave at him`
+        """
+        if self._question_before() is None or not self._calls.speaks_of_people:
+            return
+        asked = self._asked_person() or self._met
+        choice = choice_of(asked)
+        if asked:
+            self._context.latest[PERSON] = asked if choice is None else f"{{{choice.key}}}"
+        else:
+            self._calls.note_nearest()
 
     def _end_reply(self, token: Token) -> None:
         """`if he says yes, A, and if he says no, B`: the second answer ends what is done for the first."""
@@ -108,7 +154,7 @@ class Answers(AddressedTexts):
     def _hear(self, token: Token, at: int) -> None:
         """`wait until she says stop` where nobody is asked is what is heard; `she says nothing` is silence."""
         value = token.value
-        if isinstance(value, Called) and value.entry.id == _PERSON_SAYS and self._may_ask:
+        if isinstance(value, Called) and value.entry.id in (_PERSON_SAYS, _SOMEBODY_SAYS) and self._may_ask:
             value = token.value = self._answer_of_asked(value)
         if not isinstance(value, Called) or value.entry.id != ANSWERED:
             return
@@ -124,10 +170,11 @@ class Answers(AddressedTexts):
             token.value = Called(heard, tuple((slot.name, by_type[slot.type]) for slot in heard.slots))
 
     def _answer_of_asked(self, heard: Called) -> Called:
-        """`if Bob is near or says yes` behind a question to Bob is about his answer."""
+        """`if Bob says yes` behind a question to Bob is about his answer; `if I say yes` where no one is named."""
         entry = self._vocabulary.entry(ANSWERED)
         values = {slot.type: text for slot, (_, text) in zip(heard.entry.slots, heard.arguments, strict=True)}
-        if entry is None or values[PERSON] != self._asked_person():
+        who = values.get(PERSON, "")
+        if entry is None or who != self._asked_person() or not (who or self._question_before() is not None):
             return heard
         return Called(entry, ((entry.slots[0].name, values[TEXT]),))
 
@@ -153,11 +200,15 @@ class Answers(AddressedTexts):
 
     def _asked_person(self) -> str:
         """Who is asked by the question that a condition may be about whose form has begun; "" if nobody alone is."""
-        asked = self._question(run_start(self._tokens, len(self._tokens), _OF_REPLY), right_before=False)
+        asked = self._question_before()
         if not isinstance(asked, Called):
             return ""
         persons = {slot.name for slot in asked.entry.slots if slot.type == PERSON}
         return next((text for name, text in asked.arguments if name in persons), "")
+
+    def _question_before(self) -> Called | Listed | None:
+        """The question that a condition may be about whose form has begun."""
+        return self._question(run_start(self._tokens, len(self._tokens), _OF_REPLY), right_before=False)
 
     def _is_asked(self, right_before: bool) -> bool:
         """Whether the statement before asks, or depends on the answer."""

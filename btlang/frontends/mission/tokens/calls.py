@@ -212,11 +212,14 @@ class Calls:
         somebody = self._vocabulary.negative_subjects.keys()
         names_none = all(slot.type != PERSON for slot in entry.slots)
         if names_none and entry.phrases and not somebody.isdisjoint(entry.phrases[0].split()):
-            key = self._context.keys.get(PERSON, PERSON)
             places = [value for value in match.values if value.type == PLACE and not value.more]
-            there = tuple(("at", value.text) for value in places if value.text[:1] not in _ODD)
-            self._context.latest[PERSON] = Choice("nearest", PERSON, key, there).text
-            self._context.listed.pop(PERSON, None)
+            self.note_nearest(tuple(("at", value.text) for value in places if value.text[:1] not in _ODD))
+
+    def note_nearest(self, parts: tuple[tuple[str, str], ...] = ()) -> None:
+        """Make pronouns stand for the nearest person of whom these parts are true."""
+        key = self._context.keys.get(PERSON, PERSON)
+        self._context.latest[PERSON] = Choice("nearest", PERSON, key, parts).text
+        self._context.listed.pop(PERSON, None)
 
     def _note_values(self, match: Match) -> None:
         for value in sorted(match.values, key=lambda value: value.name == value.type):  # a theme last: `it` prefers it

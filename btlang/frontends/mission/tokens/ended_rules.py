@@ -1,7 +1,8 @@
-"""Constraints that a condition ends: `avoid the hall until Bob arrives`, `stay in the kitchen until Bob arrives`.
+"""Constraints that depend on a condition: `avoid the hall until Bob arrives`, `avoid the hall while Bob is there`.
 
-A zone is closed until then, whatever comes behind: the first time that the condition holds, it is opened. Who stays
-somewhere waits there until then, or so long.
+A zone is closed until then, whatever comes behind: the first time that the condition holds, it is opened. With `while`,
+`if` or `unless` two standing rules close it whenever the condition begins to hold and open it whenever that ends. Who
+stays somewhere waits there until then, or so long: `stay in the kitchen until Bob arrives`.
 """
 
 from __future__ import annotations
@@ -18,6 +19,9 @@ from btlang.frontends.mission.token import (
     Token,
     begins_condition,
     constraint_of,
+    run_start,
+    statement_start,
+    texts_of,
 )
 from btlang.text.source import Span
 from btlang.vocabulary.entry import Entry
@@ -29,15 +33,21 @@ _ENDS = frozenset(("newline", "semi", "stop", "dedent", "close"))
 _IN_CONDITIONS = frozenset(("condition", "not", "open", "either", "neither", "both"))
 """What who stays somewhere does there meanwhile."""
 _ENDING = frozenset((*WAITING, "up_to"))
+_WHILE = frozenset(("while", "if", "unless"))
+"""Raw kinds behind which a condition says how long a zone stays closed."""
 
 
 def with_ends(tokens: list[Token], vocabulary: Lexicon, span: Callable[[int, int], Span]) -> list[Diagnostic]:
-    """Makes two statements of each constraint to keep out that a condition ends: the second opens its zones again.
+    """Make two statements of each constraint to keep out that depends on a condition: the second opens its zones.
 
-    Returns what is wrong with constraints that a time ends (BT161); `span` gives the place of some characters.
+    Returns what is wrong with constraints that a time ends (BT161), or that stand in a statement with others before a
+    condition (BT151); `span` gives the place of some characters.
     """
     opening = vocabulary.entry(_OPEN)
     problems: list[Diagnostic] = []
+    if opening is not None:
+        _front(tokens)
+        problems += _never_opened(tokens, opening, vocabulary, span)
     at = 0
     while at + 1 < len(tokens):
         until = tokens[at + 1]
@@ -51,8 +61,111 @@ def with_ends(tokens: list[Token], vocabulary: Lexicon, span: Callable[[int, int
             problems.append(diagnostic("BT161", whole, words=whole.text, example=example))
         elif constraint is not None and opening is not None and begins_condition(tokens, at + 2):
             _open_again(tokens, at, opening)
+        elif until.kind in _WHILE and begins_condition(tokens, at + 2) and _keeps_out(tokens[at]):
+            if begins and opening is not None:
+                _close_while(tokens, at, opening)
+            elif not begins:
+                problems.append(_two_readings(tokens, at, vocabulary, span))
         at += 1
     return problems
+
+
+def _keeps_out(token: Token) -> bool:
+    constraint = constraint_of(token)
+    return constraint is not None and constraint.kind == "keep out"
+
+
+def _front(tokens: list[Token]) -> None:
+    """Put what is forbidden in front: `while Bob is in the hall, avoid it`."""
+    for at, token in enumerate(tokens):
+        if (
+            token.kind != "while"
+            or (at > 0 and tokens[at - 1].kind not in LINES)
+            or not begins_condition(tokens, at + 1)
+        ):
+            continue
+        last, behind = _condition_end(tokens, at + 1)
+        if (
+            behind > last
+            and _keeps_out(tokens[behind])
+            and (tokens[behind + 1 :] or [token])[0].kind in (*_ENDS, "while")
+        ):
+            tokens[at : behind + 1] = [tokens[behind], *tokens[at:last]]
+
+
+def _never_opened(
+    tokens: list[Token], opening: Entry, vocabulary: Lexicon, span: Callable[[int, int], Span]
+) -> list[Diagnostic]:
+    """Return warnings for `whenever C, avoid the hall`, `if C, avoid the hall`: nothing opens it again."""
+    if any(isinstance(token.value, Called | Listed) and token.value.entry.id == opening.id for token in tokens):
+        return []
+    problems = []
+    for at, token in enumerate(tokens):
+        if token.kind not in ("whenever", "if") or (at > 0 and tokens[at - 1].kind not in LINES):
+            continue
+        last, behind = _condition_end(tokens, at + 1)
+        if (
+            behind > last
+            and _keeps_out(tokens[behind])
+            and (tokens[behind + 1 :] or [token])[0].kind in (*_ENDS, token.kind)
+        ):
+            whole, forbidden = (
+                span(token.start, tokens[behind].end),
+                span(tokens[behind].start, tokens[behind].end).text,
+            )
+            condition = span(tokens[at + 1].start, tokens[last - 1].end).text
+            other = f"{vocabulary.word('while')} {condition}, {forbidden}"
+            taken = f"{whole.text}, and it stays so"
+            problems.append(diagnostic("BT050", whole, taken=taken, fixed=whole.text, other=other))
+    return problems
+
+
+def _close_while(tokens: list[Token], at: int, opening: Entry) -> None:
+    """Put two rules for `avoid the hall while C`: one that closes it when C begins to hold, and one that opens it."""
+    closing, begin = tokens[at], tokens[at + 1]
+    last, behind = _condition_end(tokens, at + 2)
+    condition, end = tokens[at + 2 : last], tokens[last - 1].end
+
+    def rule(holds: bool, command: Token) -> list[Token]:
+        return [Token("whenever", begin.start, begin.end), *(condition if holds else denied), comma, command]
+
+    comma, semi = Token("comma", end, end), Token("semi", end, end)
+    is_single = len(condition) == 1
+    denied = [Token("not", begin.start, begin.start)] * is_single + condition
+    if not is_single:
+        around = Token("open", begin.start, begin.start), Token("close", end, end)
+        denied = (
+            condition[1:]
+            if len(condition) == 2 and condition[0].kind == "not"
+            else [Token("not", begin.start, begin.start), around[0], *condition, around[1]]
+        )
+    command = Token("command", end, end, _opened(closing, opening))
+    is_while = begin.kind != "unless"
+    rules = [*rule(is_while, closing), semi, *rule(not is_while, command)]
+    tokens[at : behind if behind > last else last] = [*rules, semi] if behind > last else rules
+
+
+def _two_readings(tokens: list[Token], at: int, vocabulary: Lexicon, span: Callable[[int, int], Span]) -> Diagnostic:
+    """Return the error for `go to the lab and avoid the hall while C`: what depends on the condition isn't clear."""
+    first = statement_start(tokens, at)
+    last, _ = _condition_end(tokens, at + 2)
+    before = span(tokens[first].start, tokens[run_start(tokens, at, JOINTS) - 1].end).text
+    whole, condition = (
+        span(tokens[first].start, tokens[last - 1].end),
+        span(tokens[at + 1].start, tokens[last - 1].end).text,
+    )
+    forbidden = span(tokens[at].start, tokens[at].end).text
+    commands = span(tokens[first].start, tokens[at].end).text
+    one, other = f"{forbidden} {condition}. {before}", f"{condition}, {commands}"
+    return diagnostic("BT151", whole, words=whole.text, one=one, other=other)
+
+
+def _opened(closing: Token, opening: Entry) -> Called | Listed:
+    """Return the command that opens the zones which another closes."""
+    said = closing.value
+    assert isinstance(said, Called | Listed)
+    values = tuple(((opening.slots[0].name, text),) for text in texts_of(said))
+    return Called(opening, values[0]) if len(values) == 1 else Listed(opening, values, "and")
 
 
 def _wait(tokens: list[Token], at: int) -> None:
@@ -78,11 +191,7 @@ def _condition_end(tokens: list[Token], at: int) -> tuple[int, int]:
 
 
 def _open_again(tokens: list[Token], at: int, opening: Entry) -> None:
-    until, said = tokens[at + 1], tokens[at].value
-    assert isinstance(said, Called | Listed)
-    lists = [said.arguments] if isinstance(said, Called) else said.arguments
-    values = tuple(((opening.slots[0].name, text),) for arguments in lists for _, text in arguments)
-    command = Called(opening, values[0]) if len(values) == 1 else Listed(opening, values, "and")
+    until, command = tokens[at + 1], _opened(tokens[at], opening)
     last, behind = _condition_end(tokens, at + 2)
     if behind > last:  # `avoid the hall until bumped, then wave`
         tokens[last:behind] = [Token("semi", tokens[last].start, tokens[last].end)]

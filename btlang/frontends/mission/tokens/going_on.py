@@ -118,8 +118,10 @@ class GoingOn(SentenceReader):
         BT168 for what goes on with a failure where something stands between: `A. If that fails, B. Otherwise C`.
         BT145 for silence behind what is no question: `ask "Tea?". If she says no, A. If she says nothing, B`.
         """
+        if role == _UNANSWERED and self._has_answered():
+            return "otherwise"
         if role == _UNANSWERED:
-            self._check_asked(words)
+            return self._about_question(words)
         if role in ("in_parallel", "meanwhile") and FAILS in self._statement(len(self._tokens))[1]:
             self._unclear(words)  # `A. If that fails, B. In parallel, C`
         if role not in ("otherwise", FAILS, WORKS):
@@ -166,6 +168,26 @@ class GoingOn(SentenceReader):
             self._unclear(words)
         return made if made == "otherwise" else role
 
+    def _about_question(self, words: Span) -> str:
+        """The role of words about silence, which are about the question alone: what stands before it has failed."""
+        self._check_asked(words)
+        kinds = self._statement(len(self._tokens))[1]
+        at = asked_about(self._tokens, len(self._tokens), hears) if BRANCHES.isdisjoint(kinds) else None
+        made = self._settle_command(at) if at is not None else ""
+        if made == "otherwise":
+            return made
+        self.try_question(len(self._tokens))
+        return _UNANSWERED
+
+    def try_question(self, end: int) -> None:
+        """Make the question right before a token what is tried: `go to Bob, ask him "Tea?" and if he is silent, A`."""
+        tokens = self._tokens
+        at = run_start(tokens, end, _JOINTS | MEASURES) - 1
+        if at > self._statement(end)[0] and tokens[at].kind == "command" and hears(tokens[at]):
+            if tokens[at - 1].kind in JOINTS:
+                tokens.insert(at, Token("try", tokens[at].start, tokens[at].start))
+                self._looked = 0, None, 0, frozenset()
+
     def _settle_command(self, at: int) -> str:
         """See `settle`; the tokens that it makes have to be looked at anew."""
         self._looked = 0, None, 0, frozenset()
@@ -193,6 +215,13 @@ class GoingOn(SentenceReader):
             for way in self._vocabulary.negations.get(verb, ())
         )
         return any(said[-len(each) :] == each for each in denied)
+
+    def _has_answered(self) -> bool:
+        """Whether the statement does something where somebody answers: `ask "Tea?". If he answers, wave`."""
+        if WORKS not in self._statement(len(self._tokens))[1]:
+            return False
+        at = next(at for at in reversed(range(len(self._tokens))) if self._tokens[at].kind == WORKS)
+        return hears(self._tokens[run_start(self._tokens, at, _JOINTS | MEASURES) - 1])
 
     def _asks(self) -> bool:
         """Whether the latest command waits for what somebody says."""

@@ -13,6 +13,7 @@ from btlang.frontends.mission.token import (
     JOINTS,
     LINES,
     RULES,
+    STATEMENT_ENDS,
     WAITING,
     Called,
     Listed,
@@ -25,8 +26,9 @@ from btlang.frontends.mission.tokens.clock_words import ClockWords
 from btlang.frontends.mission.tokens.journey_words import JourneyWords
 from btlang.frontends.mission.tokens.rules_inside import ON_WAY
 from btlang.frontends.mission.tokens.sentence_reader import leads_to
-from btlang.frontends.mission.tokens.settling import FAILS
+from btlang.frontends.mission.tokens.settling import FAILS, MEASURES
 from btlang.frontends.mission.tokens.silent_words import BEGINS, begins
+from btlang.vocabulary.entry import THEME
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.word_tree import find
 
@@ -208,6 +210,7 @@ class OrderWords(ClockWords, JourneyWords):
 
     def _instead(self, match: Match, at: int) -> int:
         """`otherwise wave instead`; elsewhere it is open what isn't done."""
+        self._with_rest_of_tried()
         before = self._tokens[statement_start(self._tokens, len(self._tokens)) :]
         settled = next((token for token in before if token.kind == "otherwise" and token.value == FAILS), None)
         if settled is not None:  # `find Alice and wave. If you can't find her, find Bob instead`: and wave?
@@ -221,6 +224,26 @@ class OrderWords(ClockWords, JourneyWords):
         span, otherwise = self._text.span(at, match.last), self._vocabulary.word("otherwise")
         self._calls.problems.append(diagnostic("BT166", span, words=span.text, otherwise=otherwise))
         return match.last
+
+    def _with_rest_of_tried(self) -> None:
+        """Complete a command in place of one with the same verb: `bring it to Bob. Otherwise bring the book instead`.
+
+        What it doesn't say is as it was in the command that failed.
+        """
+        tokens, said = self._tokens, self._tokens[-1].value
+        form = next((at for at in reversed(range(len(tokens))) if tokens[at].kind in ("or", "otherwise")), 0)
+        last = run_start(tokens, form, JOINTS | STATEMENT_ENDS | MEASURES) - 1
+        tried = tokens[last].value if last >= 0 and form < len(tokens) - 1 else None
+        if not isinstance(said, Called) or not isinstance(tried, Called):
+            return
+        words = self._text.source.text[tokens[-1].start : tokens[-1].end].lower().split()
+        themes, given = tried.entry.slots_of(THEME), dict(said.arguments)
+        is_same_verb = any(
+            words[: len(verb.split())] == verb.split() for verbs, _ in tried.entry.verbs for verb in verbs
+        )
+        if is_same_verb and given.keys() == themes:
+            rest = tuple((name, text) for name, text in tried.arguments if name not in given)
+            tokens[-1].value = Called(tried.entry, (*said.arguments, *rest))
 
     def _journey_of_constraint(self, at: int) -> int:
         """`avoid the hall until the lab`, `until you have been in the lab`: a constraint that a journey ends.

@@ -58,6 +58,7 @@ class Outcomes(GoingOn):
             token.value = FAILS if said != "otherwise" else None
         if said == "if_unanswered" and at not in self._text.going_on:
             self.check_asked(match, at)
+            self.try_question(len(self._tokens) - 1)
         if role in (WORKS, "if_it_works", FAILS):
             self.trailing(match.last)
         if role == "if_unanswered":

@@ -16,14 +16,12 @@ from btlang.frontends.mission.token import (
     statement_start,
 )
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, leads_to
-from btlang.frontends.mission.tokens.silent_words import begins
+from btlang.frontends.mission.tokens.silent_words import TRAVELS, begins
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.references import ALL, NAMES, choice_of
 from btlang.vocabulary.value_type import OBJECT, PLACE
 from btlang.vocabulary.word_tree import find
 
-_TRAVELS = "navigation"
-"""What a command needs that drives by itself: it takes a place in its own way, or none."""
 _HOLD = "Hold"
 _JOINS = ("and", "then", "or")
 _AND = frozenset(("and", "comma"))
@@ -62,8 +60,7 @@ class Places(SentenceReader):
         is_right_behind = at == run_start(tokens, len(tokens) - 1, _AND) - 1
         if len(goals) == 1 and choice is None:
             made = tuple((*each, (slot, goals[0])) for each in arguments_of(search))
-            is_one = isinstance(search, Called)
-            tokens[-1].value = Called(search.entry, made[0]) if is_one else search.replace(arguments=made)
+            tokens[-1].value = search.replace(arguments=made if isinstance(search, Listed) else made[0])
         elif is_set and is_right_behind and isinstance(search, Called):
             each = tuple((*search.arguments, (slot, goal)) for goal in goals)
             value = Called(search.entry, each[0]) if len(goals) == 1 else Listed(search.entry, each, "or")
@@ -73,8 +70,9 @@ class Places(SentenceReader):
     def _is_beside(token: Token) -> bool:
         """Whether a command is done where the robot is, or is a search that is about the same place."""
         value = token.value
-        is_said = token.kind == "command" and isinstance(value, Called | Listed) and constraint_of(token) is None
-        return is_said and (value.entry.first or _TRAVELS not in value.entry.needs)
+        if token.kind != "command" or not isinstance(value, Called | Listed) or constraint_of(token) is not None:
+            return False
+        return value.entry.first or TRAVELS not in value.entry.needs
 
     def at_goal(self, at: int) -> int:
         """`go to the lab and wave there`, `visit every room and wave in each of them`: where the robot is by then."""
@@ -113,7 +111,7 @@ class Places(SentenceReader):
         if not ends and (following is None or following.meaning.role not in _JOINS):
             return 0
         is_to_speaker = self._text.words[at - 1] in self._vocabulary.values.role_words.speaker
-        if isinstance(value, Called | Listed) and _TRAVELS in value.entry.needs and not is_to_speaker:
+        if isinstance(value, Called | Listed) and TRAVELS in value.entry.needs and not is_to_speaker:
             return 0
         if self._goes_there(journey, len(tokens) - 1):
             return journey.last

@@ -8,6 +8,7 @@ from btlang.frontends.mission.token import Called, Listed, Token, constraint_of,
 from btlang.frontends.mission.tokens.calls import Calls
 from btlang.frontends.mission.tokens.partial_commands import PartialCommands
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
+from btlang.tree.answers import ASK
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import ReadingContext
@@ -79,6 +80,11 @@ def may_fail(token: Token) -> bool:
 def hears(token: Token) -> bool:
     """Whether a command waits for what somebody says."""
     return isinstance(token.value, Called | Listed) and _HEARS in token.value.entry.needs
+
+
+def is_question(token: Token) -> bool:
+    """Whether a command asks somebody something."""
+    return isinstance(token.value, Called | Listed) and token.value.entry.id == ASK
 
 
 def searches(token: Token) -> bool:

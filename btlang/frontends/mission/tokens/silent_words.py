@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from btlang.frontends.mission.token import JOINTS, LINES, Token, constraint_of
+from btlang.frontends.mission.token import JOINTS, LINES, Called, Token, constraint_of
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import longest
+from btlang.vocabulary.value_type import PERSON, PLACE
 from btlang.vocabulary.word_tree import find
 
+TRAVELS = "navigation"
+"""What a command needs that drives by itself: it takes a place in its own way, or none."""
 MARKS = {",": "comma", ";": "semi", ":": "colon", "(": "open", ")": "close"}
 """The raw kinds of marks."""
+_COME = "ComeToMe"
 _STAYS_BEFORE = (",", ";", ")", END_OF_STATEMENT, END_OF_TEXT)
 _OPERANDS = frozenset(("command", "name", "close", "and", "comma"))
 BEGINS = frozenset(("newline", "semi", "indent", "dedent", "open", "define", "colon", "comma", "then"))
@@ -64,7 +68,12 @@ def without_meaning(
     going = find(vocabulary.going, text.words, at)
     if going is not None and going[1] not in text.articles:
         follows = longest(vocabulary.trie, text, going[1], context)
-        if follows is not None and follows.meaning.role == "command":
+        is_command = follows is not None and follows.meaning.role == "command"
+        if is_command or find(vocabulary.telling, text.words, going[1]) is not None:
+            begin, end = text.starts[at], text.ends[going[1] - 1]
+            if text.words[at] in vocabulary.asking["coming"] and not _goes(follows):
+                here = vocabulary.entry(_COME)
+                tokens += [Token("command", begin, end, Called(here, ())), Token("and", end, end)] if here else []
             return going[1]  # `go charge`
     if not tokens:
         return 0
@@ -100,6 +109,13 @@ def without_meaning(
         tokens.append(Token(kind, text.starts[at], text.ends[purpose[1] - 1]))
         return purpose[1]
     return 0
+
+
+def _goes(match: Match | None) -> bool:
+    """Whether a command drives to where it is done, or to whom it is about: no `come` before it says anything then."""
+    if match is None or match.meaning.role != "command" or match.meaning.entry is None:
+        return False
+    return TRAVELS in match.meaning.entry.needs or any(value.type in (PERSON, PLACE) for value in match.values)
 
 
 def verb_forms(text: Words, vocabulary: Lexicon) -> set[str]:

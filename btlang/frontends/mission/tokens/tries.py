@@ -10,18 +10,16 @@ from btlang.frontends.mission.token import (
     FORMS,
     JOINTS,
     STATEMENT_ENDS,
-    Called,
-    Listed,
     Token,
     run_start,
     statement_start,
 )
 from btlang.frontends.mission.tokens.rules_inside import asks_if_blocked
-from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, may_fail
+from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, is_question, may_fail
 from btlang.frontends.mission.tokens.settling import FAILS
 from btlang.frontends.mission.tokens.silent_words import begins
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
-from btlang.tree.answers import ASK, asking_verbs
+from btlang.tree.answers import asking_verbs
 from btlang.vocabulary.match import Match
 
 _JOINTS = JOINTS | {"stop"}
@@ -98,7 +96,7 @@ class Tries(SentenceReader):
         last = self._before_form(form)
         asks = self._text.words[at] in self._asking_verbs
         tried = tokens[last - 1] if form and last else None
-        if tried is None or tried.kind not in _OPERANDS or (asks and not _is_question(tried)):
+        if tried is None or tried.kind not in _OPERANDS or (asks and not is_question(tried)):
             return self._ask_again(match, at) if asks else self._after_repair(match, at) or self._try_that(match, at)
         first = _first_of_form(tokens, statement_start(tokens, last), last)
         number, end = self._attempts(match)
@@ -175,7 +173,7 @@ class Tries(SentenceReader):
 
     def _ask_again(self, match: Match, at: int) -> int:
         """`ask Bob "Tea?". If he says no, ask again`: what was asked before."""
-        asked = next((token for token in reversed(self._tokens) if _is_question(token)), None)
+        asked = next((token for token in reversed(self._tokens) if is_question(token)), None)
         behind = self._behind_comma(match.last)
         amount = self._phrase(behind)
         if asked is None or (amount is not None and amount.meaning.role in _IN_ALL):
@@ -237,10 +235,6 @@ class Tries(SentenceReader):
         if end and tokens[end - 1].kind == "or" and tokens[end - 1].value == FAILS:
             return end - 1
         return end - 2 if end > 2 and asks_if_blocked(tokens, end - 2) else 0
-
-
-def _is_question(token: Token) -> bool:
-    return isinstance(token.value, Called | Listed) and token.value.entry.id == ASK
 
 
 def _first_of_form(tokens: Sequence[Token], first: int, last: int) -> int:

@@ -329,6 +329,7 @@ class WordReader:
         if (word in self._unknown.before_doing or word in self._verb_forms) and constraint_of(said) is not None:
             said.role = "fronted"
         tokens.append(said)
+        self._requests.note_question(said)
         self._outcomes.give_up(match.last)
         self._places.search_there(match)
         if len(tokens) > 1 and tokens[-2].kind == "while" and constraint_of(said) is not None:
@@ -346,6 +347,8 @@ class WordReader:
         if role in ("if", "unless"):
             self._requests.finding_out(match.last)
             self._order.rule_of(tokens[-1])
+        if role == "otherwise":
+            self._requests.note_answerer()
         self._order.connect(role)
         if role == "apart" and len(tokens) > 1:
             self._tries.paused()
