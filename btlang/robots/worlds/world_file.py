@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from os import PathLike, fspath
 
 from btlang.robots.bodies.body import Body
 from btlang.robots.bodies.body_file import standard_body
 from btlang.robots.files import DataFileError, as_mission_error, load_data, make_from
-from btlang.robots.geometry import Point, Pose, Segment, segment_distance
+from btlang.robots.geometry import Point, Pose, Segment, centre_of, edges, segment_distance
 from btlang.robots.worlds.world import AREA, NEVER, FurnitureBox, Place, World, WorldFault, WorldNames, Zone
 from btlang.robots.worlds.world_bounds import entries, outside, spots
 from btlang.robots.worlds.world_tables import (
@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 
     T = TypeVar("T")
 
+_STEPS = 12
+"""Into how many parts each side of a zone is divided to find its middle."""
 _MOST_CHECKS = 5_000_000  # of a place with a piece of wall, in some seconds
 _NAMED = ("places", "dock", "docks", "objects", "people", "zones", "doors", "crowds")
 _SORTS = {"dock": "places", "docks": "places", "objects": "things", "people": "things", "crowds": "things"}
@@ -115,7 +117,35 @@ def _world(top: Table, radius: float | None, bounded: bool = False) -> World:
     if bounded:
         problems.found += outside(world, rows)
     problems.end()
-    return world
+    return _with_regions(world)
+
+
+def _with_regions(world: World) -> World:
+    """Return the world in which each zone that the robot may enter is also a place, unless a place has its name."""
+    named = {name.lower() for name in (*world.names.places, *world.names.objects, *world.names.people)}
+    regions = [zone for zone in world.zones if not zone.is_closed and zone.name.lower() not in named]
+    if not regions:
+        return world
+    segments = world.segments()
+    made = tuple(Place(zone.name, *_middle_of(zone, world.boxes, segments)) for zone in regions)
+    changed: World = world.replace(places=(*world.places, *made))
+    return changed
+
+
+def _middle_of(zone: Zone, boxes: Iterable[FurnitureBox], segments: Sequence[Segment]) -> Point:
+    """Return the point of a zone that is farthest from its border, from walls and from furniture."""
+    xs, ys = zip(*zone.points, strict=True)
+    steps = [number / _STEPS for number in range(1, _STEPS)]
+    grid = [(min(xs) + i * (max(xs) - min(xs)), min(ys) + j * (max(ys) - min(ys))) for i in steps for j in steps]
+    around = [*((*a, *b) for a, b in edges(zone.points)), *segments]
+    spots = [spot for spot in grid if zone.contains(spot) and not any(box.contains(spot) for box in boxes)]
+    if len(spots) * len(around) > _MOST_CHECKS:
+        spots = []
+    return max(
+        spots,
+        key=lambda spot: min(segment_distance(spot, segment) for segment in around),
+        default=centre_of(zone.points),
+    )
 
 
 def _made(rows: Iterable[T | None]) -> tuple[T, ...]:

@@ -32,6 +32,9 @@ from btlang.vocabulary.entry import THEME
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.word_tree import find
 
+BEFORE_ASIDE = JOINTS | {"otherwise", "or"}
+"""Raw kinds behind which words may say that the robot goes on with what it did."""
+
 
 class OrderWords(ClockWords, JourneyWords):
     """Those of one text."""
@@ -130,9 +133,11 @@ class OrderWords(ClockWords, JourneyWords):
         if words[at] not in interrupting and words[at] not in resuming:
             return 0  # as nearly always
         first = statement_start(tokens, len(tokens))
-        if tokens[first].kind not in (*RULES, "if"):
-            return 0
         found = find(resuming, words, at)
+        if found is not None and (end := self._go_on(first, at, found[1])):
+            return end
+        if not tokens or tokens[first].kind not in (*RULES, "if"):
+            return 0
         if found is not None and self._is_end(found[1]) and any(token.kind == "command" for token in tokens[-3:]):
             while tokens[-1].kind in JOINTS:
                 tokens.pop()
@@ -148,6 +153,21 @@ class OrderWords(ClockWords, JourneyWords):
         if joint is not None and joint.meaning.role in ("and", "then"):
             return joint.last
         return behind if behind > found[1] else 0
+
+    def _go_on(self, first: int, at: int, end: int) -> int:
+        """`otherwise carry on`, `if that fails, skip it and go on`: nothing is done in place of what comes then."""
+        tokens, text = self._tokens, self._text
+        last = run_start(tokens, len(tokens), JOINTS)
+        if not last or not (self._is_end(end) or text.words[end] in (",", *self._vocabulary.roles["and"])):
+            return 0
+        if tokens[last - 1].kind == "otherwise" or tokens[last - 1].value == FAILS:
+            tokens.append(Token("nothing", text.starts[at], text.ends[end - 1]))
+            return end
+        is_branch = any(token.kind == "otherwise" or token.value == FAILS for token in tokens[first:last])
+        if not is_branch or last == len(tokens) or not self._is_end(end):
+            return 0
+        del tokens[last:]
+        return end
 
     @staticmethod
     def _watch(form: Token) -> None:

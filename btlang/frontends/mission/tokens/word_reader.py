@@ -12,10 +12,10 @@ from btlang.frontends.mission.symbols.includes import ROLE as INCLUDE
 from btlang.frontends.mission.symbols.names import Names
 from btlang.frontends.mission.symbols.nodes import Unreadable, read_node, unreadable
 from btlang.frontends.mission.symbols.prefixes import SEPARATORS, Prefix, span_of
-from btlang.frontends.mission.token import BEFORE_CONDITIONS, JOINTS, RULES, Token, constraint_of, go_on
+from btlang.frontends.mission.token import BEFORE_CONDITIONS, RULES, Token, constraint_of, go_on, statement_start
 from btlang.frontends.mission.tokens.calls import NEGATED, Calls
 from btlang.frontends.mission.tokens.condition_words import check_negation, with_words_before
-from btlang.frontends.mission.tokens.order_words import OrderWords
+from btlang.frontends.mission.tokens.order_words import BEFORE_ASIDE, OrderWords
 from btlang.frontends.mission.tokens.outcomes import Outcomes
 from btlang.frontends.mission.tokens.partial_commands import PartialCommands, may_be_doing
 from btlang.frontends.mission.tokens.places import Places
@@ -102,8 +102,8 @@ class WordReader:
                 self._context.set_known(self._names.known_at(at))
             if at in others:
                 at = self._no_command(at)
-            elif tokens and tokens[-1].kind in JOINTS and (end := self._order.aside(at)):
-                self._is_apart = True
+            elif tokens and tokens[-1].kind in BEFORE_ASIDE and (end := self._order.aside(at)):
+                self._is_apart = tokens[statement_start(tokens, len(tokens))].kind in RULES
                 at = end
             elif words[at] in MARKS:
                 tokens.append(Token(MARKS[words[at]], self._text.starts[at], self._text.ends[at]))
