@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import errno
 import os
-import shutil
 import stat
 import sys
 from codecs import BOM_UTF8
@@ -153,6 +152,8 @@ def write_file(path: str, content: str | bytes) -> None:
 
     What a mission may hold and UTF-8 does not becomes an escape, which JSON and Python read back.
     """
+    import shutil  # only what writes needs it
+
     data = content.encode(errors="backslashreplace") if isinstance(content, str) else content
     target = os.path.realpath(path)
     new = f"{target}.{os.getpid()}.new"
