@@ -58,7 +58,7 @@ from btlang.builders import while_do_else as while_do_else
 from btlang.components.component import Component as Component
 from btlang.components.component import Parameter as Parameter
 from btlang.diagnostics.diagnostic import Diagnostic as Diagnostic
-from btlang.diagnostics.errors import MissionError as MissionError
+from btlang.diagnostics.diagnostic import MissionError as MissionError
 from btlang.engine.leaves.leaf import ActionFailed as ActionFailed
 from btlang.engine.leaves.leaf import Failed as Failed
 from btlang.engine.leaves.leaf import NotThere as NotThere

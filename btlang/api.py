@@ -6,8 +6,7 @@ import os
 from collections.abc import Mapping
 from importlib import import_module
 
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.frontends.mission.reader import DEFAULT_PARSER, read_mission
 from btlang.frontends.table import frontend_of, read_text
 from btlang.passes import compile_mission, errors_of, lower_mission, run_passes
@@ -85,7 +84,7 @@ def parse_file(
     Its first lines can name its world and keyword files there: `world "museum.toml"`, `words "referee.toml"`. These run
     Python. A given `world` wins; `keywords` are added.
     """
-    from btlang.diagnostics.reading import read_source
+    from btlang.diagnostics.files import read_source
 
     source = read_source(os.fspath(path), include_root)
     return parse_tree(source, parser=parser, keywords=keywords, world=world, main=main, language=language)
@@ -146,7 +145,7 @@ def format_mission(
 
     The text may contain only definitions. Raises MissionError if the mission has mistakes.
     """
-    from btlang.printer.layout import laid_out
+    from btlang.printer.layout import format_layout
 
     source = source_of(text)
     if frontend_of(source) != "english":
@@ -155,7 +154,7 @@ def format_mission(
         vocabulary, _ = mission_vocabulary(source, keywords, world, language)
         mission = read_mission(source, vocabulary, parser, errors_of=errors_of).mission
         compile_mission(mission, vocabulary, needs_command=False)
-    return laid_out(source, vocabulary.orthography)
+    return format_layout(source, vocabulary.orthography)
 
 
 def _known(values: Mapping[str, object]) -> dict[str, Known]:
@@ -249,10 +248,10 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):
             check_mission(read_world(self.world, body), body, self.tree, self.vocabulary)
         if not self.says_ids:
             return
-        from btlang.backends.checking import misnamed, tree_problems
+        from btlang.backends.checking import find_misnamed, tree_problems
 
         named = self.vocabulary.with_places(tuple(fact.name for fact in self.facts))
-        problems = [*tree_problems(self.tree, self.vocabulary), *misnamed(self.tree, named)]
+        problems = [*tree_problems(self.tree, self.vocabulary), *find_misnamed(self.tree, named)]
         if problems:
             raise MissionError(problems)
 
@@ -261,11 +260,11 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):
 
         Raises ValueError for an unknown target or option, MissionError if the target can't express it.
         """
-        from btlang.backends.targets import compiled
+        from btlang.backends.targets import compile_to
 
         needs = self.syntax.needs if self.syntax is not None else ()
         given = {"world": self.world, "facts": self.facts, "needs": needs}
-        return compiled(self.tree, self.vocabulary, target, given=given, **options)
+        return compile_to(self.tree, self.vocabulary, target, given=given, **options)
 
     def label(self, node: Node) -> str:
         """Return the English of a leaf, `Id port=value` of any other node."""
@@ -284,8 +283,8 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):
         return self.syntax is None or says_ports(self.syntax)
 
     def _described(self, node: Node) -> str:
-        from btlang.tree.dump import described
+        from btlang.tree.dump import describe_node
 
         if node.children or node.id not in self.vocabulary.entries:
-            return described(node)
+            return describe_node(node)
         return f"{node.id}: {self.label(node)}"

@@ -6,15 +6,13 @@ from collections.abc import Callable, Mapping
 from typing import TypeAlias
 
 from btlang.api import Mission, mission_of_tree, source_of
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
-from btlang.engine.script.values import kept
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.engine.script.values import to_stored
 from btlang.frontends.table import read_text
 from btlang.passes import compile_mission, errors_of
 from btlang.robots.mission_vocabulary import described, world_vocabulary
 from btlang.support.record import Record
-from btlang.text.python_line import calling_line
-from btlang.text.source import NOWHERE, Source, Span
+from btlang.text.source import NOWHERE, Source, Span, find_calling_line
 from btlang.tree.ast import Fact, all_facts
 from btlang.tree.catalogue import CATALOGUE, MOST_NODES, POST_CONDITIONS, PRE_CONDITIONS
 from btlang.tree.node import Node, Tree
@@ -100,7 +98,7 @@ def leaf(what: str | Callable[..., object], /, *values: Value, name: str = "", *
     if isinstance(what, str):
         if values:
             raise TypeError(f"the ports of {what} are set by their names")
-        return Behavior(what, (), _ports(ports), name, span=calling_line())
+        return Behavior(what, (), _ports(ports), name, span=find_calling_line())
     entry = _entry(what)
     slots = [slot.name for slot in entry.slots]
     if "name" in slots[len(values) :] and name:
@@ -110,7 +108,7 @@ def leaf(what: str | Callable[..., object], /, *values: Value, name: str = "", *
     if len(values) > len(slots) or unknown:
         wrong = f"{unknown[0]!r}" if unknown else f"{len(values)} values"
         raise TypeError(f"{entry.id} takes {', '.join(slots) or 'no values'}, not {wrong}")
-    return Behavior(entry.id, (), _ports({**given, **ports}), name, what, calling_line())
+    return Behavior(entry.id, (), _ports({**given, **ports}), name, what, find_calling_line())
 
 
 def from_py_trees(root: object, *, names: bool = True) -> Behavior:
@@ -123,7 +121,7 @@ def from_py_trees(root: object, *, names: bool = True) -> Behavior:
     """
     from btlang.backends.py_trees.lift import read_py_trees  # which needs py_trees
 
-    span = calling_line()
+    span = find_calling_line()
     tree, leaves = read_py_trees(root, span, names)
 
     def made(node: Node, children: list[Behavior]) -> Behavior:
@@ -156,7 +154,7 @@ def built(
     for script in scripts:
         if script not in (*PRE_CONDITIONS, *POST_CONDITIONS) and not kind.any_ports:
             raise TypeError(f"{node_id} has no port {script!r}")
-    return Behavior(node_id, own, _ports({**ports, **scripts}), name, span=calling_line())
+    return Behavior(node_id, own, _ports({**ports, **scripts}), name, span=find_calling_line())
 
 
 def _ports(ports: Mapping[str, object]) -> tuple[tuple[str, str], ...]:
@@ -167,7 +165,7 @@ def _text(port: str, value: object) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, int | float):
-        return str(kept(value))
+        return str(to_stored(value))
     if isinstance(value, str):
         return value
     raise TypeError(f"{port} is a text, a number or a bool, not {described(value)}")

@@ -9,16 +9,13 @@ from collections.abc import AsyncIterator, Callable, Collection, Generator, Iter
 from functools import cache, partial
 from importlib import import_module
 
-from btlang.backends.engine import bind_leaf
-from btlang.backends.touching import awaited
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.backends.engine import bind_leaf, find_awaited
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.engine.blackboard import Blackboard
-from btlang.engine.clock import Clock
+from btlang.engine.clock import Clock, LeafTimer
 from btlang.engine.engine import Engine, EngineError
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.engine.saving import SaveError
-from btlang.engine.timing import Stopwatch
 from btlang.robots.command_gate import RobotProxy
 from btlang.robots.registry import connector
 from btlang.robots.spoken_commands import SpokenCommands, choices
@@ -34,7 +31,7 @@ from btlang.run.recent import RecentEvents
 from btlang.run.runner import Runner, trace_engine
 from btlang.run.snapshot import RunFollower, Snapshot
 from btlang.run.statuses import Status
-from btlang.text.escaping import RED
+from btlang.text.formatting import RED
 from btlang.text.source import NOWHERE, Source
 from btlang.vocabulary.values import key_of
 
@@ -476,11 +473,11 @@ class Run:
         for sink in sinks:
             self.bus.add(sink)
         connection.begin(self.bus)
-        bind = cache(partial(_bind, mission.vocabulary, connection, awaited(mission.tree)))
+        bind = cache(partial(_bind, mission.vocabulary, connection, find_awaited(mission.tree)))
         try:
             return trace_engine(
                 mission.tree, bind, bus=self.bus, services={"robot": connection.robot}, proxies={"robot": RobotProxy},
-                blackboard=values, stopwatch=Stopwatch() if timed else None, hooks=hooks,
+                blackboard=values, stopwatch=LeafTimer() if timed else None, hooks=hooks,
             )  # fmt: skip
         except EngineError as error:
             raise MissionError(self._refused(error, connection)) from None

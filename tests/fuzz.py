@@ -20,11 +20,11 @@ from functools import partial
 
 from btlang.api import Mission
 from btlang.cli.examples import examples
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.frontends.mission.completion.completer import completions
 from btlang.frontends.mission.reader import read_mission
 from btlang.passes import compile_mission
-from btlang.printer.layout import laid_out
+from btlang.printer.layout import format_layout
 from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.text.source import Source
 
@@ -162,8 +162,8 @@ def _explain(text: str) -> None:
 
 def _format(text: str) -> None:
     compile_mission(read_mission(Source(text), VOCABULARY).mission, VOCABULARY, needs_command=False)
-    once = laid_out(Source(text), VOCABULARY.orthography)
-    assert laid_out(Source(once), VOCABULARY.orthography) == once, "a text that is laid out stays as it is"
+    once = format_layout(Source(text), VOCABULARY.orthography)
+    assert format_layout(Source(once), VOCABULARY.orthography) == once, "a text that is laid out stays as it is"
 
 
 def _complete(text: str, at: int) -> None:

@@ -12,13 +12,11 @@ from hypothesis import strategies as st
 
 import btlang
 from btlang.cli import main
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.render import render
-from btlang.text.drawing import lines
-from btlang.text.escaping import CYAN, PLAIN, RED, YELLOW, one_line, printable
+from btlang.diagnostics.diagnostic import MissionError, render
+from btlang.text.formatting import CYAN, PLAIN, RED, YELLOW, TextTable, one_line, printable
+from btlang.text.output import draw_lines
 from btlang.text.source import Source
-from btlang.text.table import Table
-from btlang.tree.dump import Outline, described
+from btlang.tree.dump import Outline, describe_node
 from btlang.tree.node import Node
 
 CLEAR = "\x1b[2J\x1b]52;c;aGk=\x07"
@@ -83,8 +81,8 @@ def test_own_colours_stay() -> None:
 @given(st.text(max_size=40), st.integers(30, 80))
 def test_what_rich_draws_has_no_escape_sequences_of_texts(text: str, width: int) -> None:
     tree = Outline((("", Node("Sequence", (Node("Say"),))), (text or "x", Node("Say"))), lambda node: node.id + text)
-    for drawing in (tree, Table(((text, "told"),))):
-        for line in lines(drawing, width, colour=False):
+    for drawing in (tree, TextTable(((text, "told"),))):
+        for line in draw_lines(drawing, width, colour=False):
             assert re.sub("\x1b\\[[0-9;]*m", "", line).isprintable() or not text.isprintable()
             assert not set(re.sub("\x1b\\[[0-9;]*m", "", line)) & {"\x1b", "\x07", "\x9b", "\r"}
 
@@ -94,14 +92,14 @@ def test_nothing_of_a_tree_is_lost_where_it_is_deep(depth: int) -> None:
     tree = Node("Wave")
     for number in range(depth):
         tree = Node("Repeat", (tree,), (("num_cycles", str(number)),))
-    outline = Outline((("", tree),), described)
-    drawn = "\n".join(lines(outline, 60, colour=False))
+    outline = Outline((("", tree),), describe_node)
+    drawn = "\n".join(draw_lines(outline, 60, colour=False))
     assert [f"num_cycles={number}" in drawn for number in range(depth)] == [True] * depth
     assert outline.height == str(outline).count("\n") + 1 == depth + 1
 
 
 def test_a_table_as_text() -> None:
-    table = Table((("a", "bc", "first"), ("long", "d", "second")), widths=(0, 4), gap=1, indent=2)
+    table = TextTable((("a", "bc", "first"), ("long", "d", "second")), widths=(0, 4), gap=1, indent=2)
     assert str(table) == "  a    bc   first\n  long d    second"
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Generator
 
 from btlang.actions.common import BaseWatch, DrivingRobot, share_of, where
-from btlang.engine.leaves.leaf import ActionFailed, unheard
+from btlang.engine.leaves.leaf import ActionFailed, ignore_progress
 from btlang.robots.geometry import wrap
 from btlang.robots.motion.progress import Approach, DriveProgress
 
@@ -26,7 +26,7 @@ def move_forward(
     distance: float,
     speed: float | None = None,
     manner: str | None = None,
-    progress: Report = unheard,
+    progress: Report = ignore_progress,
 ) -> Steps:
     """Drive straight ahead by `distance` metres, to the centimetre, at `speed` m/s (or in this manner)."""
     yield from drive_straight(robot, distance, _speed(robot, speed, manner), progress)
@@ -37,7 +37,7 @@ def move_backward(
     distance: float,
     speed: float | None = None,
     manner: str | None = None,
-    progress: Report = unheard,
+    progress: Report = ignore_progress,
 ) -> Steps:
     """Drive straight back by `distance` metres, to the centimetre, at `speed` m/s (or in this manner)."""
     yield from drive_straight(robot, -distance, _speed(robot, speed, manner), progress)
@@ -47,12 +47,12 @@ def _speed(robot: DrivingRobot, speed: float | None, manner: str | None) -> floa
     return share_of(robot, manner) * (speed or robot.normal_speed)
 
 
-def turn_left(robot: DrivingRobot, angle: float, progress: Report = unheard) -> Steps:
+def turn_left(robot: DrivingRobot, angle: float, progress: Report = ignore_progress) -> Steps:
     """Turn on the spot by `angle` degrees counter-clockwise, to the degree."""
     yield from turn(robot, angle, progress)
 
 
-def turn_right(robot: DrivingRobot, angle: float, progress: Report = unheard) -> Steps:
+def turn_right(robot: DrivingRobot, angle: float, progress: Report = ignore_progress) -> Steps:
     """Turn on the spot by `angle` degrees clockwise, to the degree."""
     yield from turn(robot, -angle, progress)
 
@@ -95,7 +95,7 @@ def face_object(robot: DrivingRobot, object: str) -> Steps:
 
 
 def drive_straight(
-    robot: DrivingRobot, distance: float, speed: float | None = None, progress: Report = unheard
+    robot: DrivingRobot, distance: float, speed: float | None = None, progress: Report = ignore_progress
 ) -> Steps:
     """Drive `distance` metres along the heading (negative: backwards), keep the course, and brake."""
     start, watch = robot.pose, BaseWatch(robot)
@@ -122,7 +122,7 @@ def drive_straight(
         robot.drive(0.0, 0.0)
 
 
-def turn(robot: DrivingRobot, angle: float, progress: Report = unheard) -> Steps:
+def turn(robot: DrivingRobot, angle: float, progress: Report = ignore_progress) -> Steps:
     """Turn on the spot by `angle` degrees (left positive; more than a whole turn is fine) and brake."""
     heading, turned, watch = robot.pose.heading, 0.0, BaseWatch(robot)
     turning = robot.body.turning

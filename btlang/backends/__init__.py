@@ -1,1 +1,1 @@
-"""What a tree becomes: something that runs, or another notation."""
+"""Back ends: a tree becomes something that runs, or another notation."""

@@ -1,27 +1,36 @@
-"""What is wrong with a tree that no compiler of ours has made, such as one from XML: all of it, as diagnostics."""
+"""Checks of trees that our compiler hasn't made, such as those from XML: all problems, as diagnostics.
+
+Also what a mission may have meant by an unknown id of a node: a word, a known node, or a subtree.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache, partial
 
 from btlang.backends.engine import bind_leaf, leaf_binding
 from btlang.backends.keywords import Draft, drafts
-from btlang.backends.near_ids import respelt_leaf, respelt_subtree, said_at
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.errors import in_order
-from btlang.engine.faults import UnknownNode, UnknownSubTree, faults
+from btlang.backends.wording import id_words
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic, sort_diagnostics
+from btlang.engine.faults import UnknownNode, UnknownSubTree, find_faults
 from btlang.engine.instance import EngineError
 from btlang.engine.leaves.leaf import LeafBinding
-from btlang.text.source import NOWHERE, Span
+from btlang.frontends.mission.explanations.spelling_rule import is_respelling
+from btlang.support.record import Record
+from btlang.text.source import NOWHERE, Source, Span
 from btlang.text.spelling import nearest
+from btlang.text.words import split
 from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.node import Node, Tree
+from btlang.vocabulary.correct_words import correct_words
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.node_words import id_of_name, said_id
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
+
+    Fix = tuple[Span, str]
 
 
 def tree_problems(
@@ -30,28 +39,29 @@ def tree_problems(
     bind: Callable[[str], LeafBinding | None] | None = None,
     services: Mapping[str, Any] = {},
 ) -> list[Diagnostic]:
-    """Unknown leaves (BT130) and nodes (BT131), subtrees (BT126), and whatever the engine would refuse (BT132).
+    """Report unknown leaves (BT130) and nodes (BT131), subtrees (BT126), and whatever the engine would refuse
+    (BT132).
 
     `bind` and `services` are those of a run, by default what a keyword entry says, without the robot: a `call` that
     cannot be loaded here is no problem then, as it may be there on the robot.
     """
-    bind, services = bind or cache(partial(bound, vocabulary)), services or {"robot": None}
-    found = faults(tree, bind, services)
+    bind, services = bind or cache(partial(bind_placeholder, vocabulary)), services or {"robot": None}
+    found = find_faults(tree, bind, services)
     found.sort(key=_place)  # so that a missing entry is reported at its first use
     entries = drafts(tree, vocabulary) if any(isinstance(error, UnknownNode) for error in found) else {}
     problems = []
 
     def fits(node: Node) -> bool:
-        return not faults(Tree(node), bind, services)
+        return not find_faults(Tree(node), bind, services)
 
     for error in found:
-        problems.append(_diagnosed(error, tree, vocabulary, entries, fits))
+        problems.append(_diagnose(error, tree, vocabulary, entries, fits))
         entries.pop(error.node.id, None)  # once is enough
-    return in_order(problems)
+    return sort_diagnostics(problems)
 
 
-def misnamed(tree: Tree, vocabulary: Lexicon) -> Iterator[Diagnostic]:
-    """Names of places and the like that nothing has (BT132): no phrase could hold them."""
+def find_misnamed(tree: Tree, vocabulary: Lexicon) -> Iterator[Diagnostic]:
+    """Find names of places and the like that nothing has (BT132): no phrase could hold them."""
     for node in tree.walk():
         slots = {slot.name: slot.type for entry in vocabulary.entries.get(node.id, ()) for slot in entry.slots}
         for port, text in node.ports:
@@ -66,22 +76,22 @@ def misnamed(tree: Tree, vocabulary: Lexicon) -> Iterator[Diagnostic]:
             yield diagnostic("BT132", node.span or NOWHERE, id=node.id, reason=reason)
 
 
-def _diagnosed(
+def _diagnose(
     error: EngineError,
     tree: Tree,
     vocabulary: Lexicon,
     entries: dict[str, Draft | None],
     fits: Callable[[Node], bool],
 ) -> Diagnostic:
-    """`fits` says whether a leaf can run."""
+    """Make a diagnostic of an error; `fits` says whether a leaf can run."""
     node = error.node
     span, names = node.span or NOWHERE, [name for name, _ in tree.subtrees]
     if isinstance(error, UnknownSubTree):
         name = node.port("ID")
         near = nearest(name.lower(), names)
-        said = said_at(node, name, vocabulary)
-        fix = respelt_subtree(said, names, vocabulary) if said is not None else None
-        return _helped(diagnostic("BT126", span, fix=fix, name=name), _near(near), _defining(name, span))
+        said = find_said_id(node, name, vocabulary)
+        fix = correct_subtree(said, names, vocabulary) if said is not None else None
+        return _add_help(diagnostic("BT126", span, fix=fix, name=name), _near(near), _advise_definition(name, span))
     missing = node.id not in CATALOGUE and node.id not in vocabulary.entries
     if not isinstance(error, UnknownNode) and not (node.children and missing):
         return diagnostic("BT132", span, id=node.id, reason=error.message)
@@ -89,19 +99,19 @@ def _diagnosed(
         near = nearest(node.id.lower(), [id for id, kind in CATALOGUE.items() if kind.most])
         return diagnostic("BT131", span, id=node.id, help=_near(near))
     ids = [*vocabulary.entries, *(id for id, kind in CATALOGUE.items() if not kind.least)]
-    said, fix = said_at(node, node.id, vocabulary), None
+    said, fix = find_said_id(node, node.id, vocabulary), None
     if said is not None and said.may_be_subtree:
-        ids, fix = [*names, *ids], respelt_subtree(said, names, vocabulary)
+        ids, fix = [*names, *ids], correct_subtree(said, names, vocabulary)
     if said is not None and fix is None:
-        fix = respelt_leaf(said, ids, vocabulary, lambda id: fits(node.replace(id=id)))
+        fix = correct_leaf(said, ids, vocabulary, lambda id: fits(node.replace(id=id)))
     if said is not None and fix is None and said.is_sentence:
         return diagnostic("BT010", span, kind="command", words=span.text, help=_near(nearest(node.id.lower(), ids)))
     advice = "" if fix else _entry(node, entries)
-    return _helped(diagnostic("BT130", span, fix=fix, id=node.id), _near(nearest(node.id.lower(), ids)), advice)
+    return _add_help(diagnostic("BT130", span, fix=fix, id=node.id), _near(nearest(node.id.lower(), ids)), advice)
 
 
-def _helped(problem: Diagnostic, *advice: str) -> Diagnostic:
-    """With advice of several lines."""
+def _add_help(problem: Diagnostic, *advice: str) -> Diagnostic:
+    """Add advice of several lines."""
     lines = "\n".join(line for line in advice if line)
     helped: Diagnostic = problem.replace(arguments=(*problem.arguments, ("help", lines)))
     return helped
@@ -112,7 +122,7 @@ def _place(error: EngineError) -> tuple[str, int]:
     return (span.source.name, span.start) if span else ("", 0)
 
 
-def _defining(name: str, span: Span) -> str:
+def _advise_definition(name: str, span: Span) -> str:
     if span.text[:1] == "<":
         return 'If it is in another file: <include path="..."/>'
     return f'Define it, at the left margin: "{name}" means: ...'
@@ -131,8 +141,8 @@ def _entry(node: Node, entries: dict[str, Draft | None]) -> str:
     return f"This entry of a keyword file would define it:\n{draft.text()}"
 
 
-def bound(vocabulary: Lexicon, node_id: str) -> LeafBinding | None:
-    """A leaf that takes the ports of its `call`, and does nothing."""
+def bind_placeholder(vocabulary: Lexicon, node_id: str) -> LeafBinding | None:
+    """Bind a leaf that takes the ports of its `call`, and does nothing."""
     entries = vocabulary.entries.get(node_id, ())
     if not entries:
         return None
@@ -141,17 +151,17 @@ def bound(vocabulary: Lexicon, node_id: str) -> LeafBinding | None:
         assert binding is not None
     except EngineError:
         slots = {slot.name: slot for entry in entries for slot in entry.slots}
-        return leaf_binding(entries[0].replace(measures=""), vocabulary, anything, tuple(slots.values()))
-    made: LeafBinding = binding.replace(call=_standing_in(binding.call), thread=False)
+        return leaf_binding(entries[0].replace(measures=""), vocabulary, accept_anything, tuple(slots.values()))
+    made: LeafBinding = binding.replace(call=_make_placeholder(binding.call), thread=False)
     return made
 
 
-def anything(**ports: object) -> None:
-    """A leaf that takes every port and does nothing."""
+def accept_anything(**ports: object) -> None:
+    """Take every port and do nothing."""
 
 
-def _standing_in(call: Callable[..., Any]) -> Callable[..., Any]:
-    """A function with the parameters of a leaf."""
+def _make_placeholder(call: Callable[..., Any]) -> Callable[..., Any]:
+    """Make a function with the parameters of a leaf."""
     from inspect import isclass, signature
 
     def leaf(**ports: object) -> None:
@@ -160,7 +170,74 @@ def _standing_in(call: Callable[..., Any]) -> Callable[..., Any]:
     try:
         found = signature(call.start if isclass(call) else call)  # type: ignore[attr-defined]
     except (AttributeError, TypeError, ValueError):
-        return anything
+        return accept_anything
     parameters = list(found.parameters.values())
     leaf.__signature__ = found.replace(parameters=parameters[1:] if isclass(call) else parameters)  # type: ignore[attr-defined]
     return leaf
+
+
+class SaidId(Record):
+    """A place where a mission says the id of a node, in quotes or in words, and whether more is said about the node.
+
+    It `may_be_subtree` behind a bare `do`, and is a `sentence` where these are words of the language alone: `do
+    anything`.
+    """
+
+    span: Span
+    id: str
+    in_quotes: bool
+    is_last: bool
+    may_be_subtree: bool
+    is_sentence: bool = False
+
+
+def find_said_id(node: Node, node_id: str, vocabulary: Lexicon) -> SaidId | None:
+    """Find where the words of a node say an id; None if they don't, as in XML."""
+    if node.span is None or node.span.text[:1] == "<":
+        return None
+    text = split(Source(node.span.text), vocabulary.orthography)
+    parts = id_words(node_id)
+    for at in range(1, len(text.words)):
+        in_quotes = text.words[at] == f'"{node_id}'
+        last = at + 1 if in_quotes else at + len(parts)
+        if in_quotes or (at == 1 and text.words[at:last] == parts):
+            start = node.span.start
+            span = Span(node.span.source, start + text.starts[at], start + text.ends[last - 1])
+            may_be_subtree = " ".join(text.words[:at]) in vocabulary.roles["do"]
+            is_last, words = span.end == node.span.end, text.words[at:last]
+            is_sentence = not in_quotes and is_last and span.text.islower() and _are_correct(words, vocabulary)
+            return SaidId(span, node_id, in_quotes, is_last, may_be_subtree, is_sentence)
+    return None
+
+
+def _are_correct(words: Iterable[str], vocabulary: Lexicon) -> bool:
+    return correct_words(vocabulary.word_list).issuperset(words)
+
+
+def correct_leaf(said: SaidId, ids: Iterable[str], vocabulary: Lexicon, fits: Callable[[str], bool]) -> Fix | None:
+    """Return the change to the one known id that only a slip keeps apart; None if there is none, or it doesn't fit."""
+    near = _near_ids(said.id, ids, vocabulary)
+    if len(near) != 1 or not fits(near[0]):
+        return None
+    words = "" if said.in_quotes else said_id(near[0], "do", vocabulary)
+    return said.span, words or f'"{near[0]}"'
+
+
+def correct_subtree(said: SaidId, names: Iterable[str], vocabulary: Lexicon) -> Fix | None:
+    """Return the change to the one subtree that only a slip keeps apart; None if there is none."""
+    near = _near_ids(said.id, names, vocabulary)
+    if len(near) != 1:
+        return None
+    [name] = near
+    quoted = f'"{name}"'
+    if not said.may_be_subtree:  # `do subtree "Tuor"`
+        return said.span, quoted
+    words = said_id(id_of_name(name), "do", vocabulary)
+    if name == name.lower():  # may be a phrase: `do` takes that in words alone
+        return (said.span, words) if words and said.is_last else None
+    return said.span, quoted if said.in_quotes else words or quoted
+
+
+def _near_ids(written: str, known: Iterable[str], vocabulary: Lexicon) -> list[str]:
+    words = " ".join(id_words(written))
+    return [name for name in known if is_respelling(words, " ".join(id_words(name)), vocabulary)]

@@ -1,4 +1,4 @@
-"""Trees as text for Graphviz."""
+"""Trees as graphs for Graphviz."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from btlang.printer.phrase import phrase_of
 from btlang.tree.catalogue import CATALOGUE, SUBTREE
-from btlang.tree.dump import described
+from btlang.tree.dump import describe_node
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.lexicon import Lexicon
 
@@ -21,7 +21,8 @@ _LONGEST = 60  # characters of a line in a box
 
 
 def to_dot(tree: Tree, vocabulary: Lexicon) -> str:
-    """A digraph. Each named subtree is a cluster, to which a dashed edge leads from each SubTree node that uses it.
+    """Return a digraph. Each named subtree is a cluster, to which a dashed edge leads from each SubTree node that uses
+    it.
 
     Nodes are `n0`, `n1` and so on, in the order of Tree.walk.
     """
@@ -36,8 +37,8 @@ def to_dot(tree: Tree, vocabulary: Lexicon) -> str:
         roots.setdefault(name, number)
         indent = "  " if at == 0 else "    "
         if at:
-            lines += [f"  subgraph cluster_{at} {{", f"    label={_quoted(name)};"]
-        for index, node, above in _numbered(root, number):
+            lines += [f"  subgraph cluster_{at} {{", f"    label={_quote(name)};"]
+        for index, node, above in _number(root, number):
             kind = _kind(node, vocabulary, kinds)
             lines.append(f"{indent}n{index} [label={_label(node, vocabulary)}, {_LOOKS[kind]}];")
             if above >= 0:
@@ -54,8 +55,8 @@ def to_dot(tree: Tree, vocabulary: Lexicon) -> str:
     return "\n".join([*lines, "}"]) + "\n"
 
 
-def _numbered(root: Node, first: int) -> Iterator[tuple[int, Node, int]]:
-    """Number, node and the number of its parent (-1 for the root), in preorder."""
+def _number(root: Node, first: int) -> Iterator[tuple[int, Node, int]]:
+    """Yield number, node and the number of its parent (-1 for the root), in preorder."""
     stack = [(root, -1)]
     number = first
     while stack:
@@ -80,11 +81,11 @@ def _kind(node: Node, vocabulary: Lexicon, kinds: dict[str, str]) -> str:
 
 def _label(node: Node, vocabulary: Lexicon) -> str:
     plain = not node.children and not any(port.startswith("_") for port, _ in node.ports)
-    words = phrase_of(node, vocabulary) if plain else described(node)
-    return _quoted(words if len(words) <= _LONGEST else words[: _LONGEST - 1] + "\N{HORIZONTAL ELLIPSIS}")
+    words = phrase_of(node, vocabulary) if plain else describe_node(node)
+    return _quote(words if len(words) <= _LONGEST else words[: _LONGEST - 1] + "\N{HORIZONTAL ELLIPSIS}")
 
 
-def _quoted(text: str) -> str:
-    """A string of the language: only the quote is escaped there, and a backslash begins an escape of labels."""
+def _quote(text: str) -> str:
+    """Return a string of the language: only the quote is escaped there, and a backslash begins an escape of labels."""
     shown = "".join(c if c.isprintable() else " " for c in text)
     return '"' + shown.replace("\\", "\\\\").replace('"', '\\"') + '"'

@@ -1,40 +1,54 @@
-"""The engine as a target: binds leaf ids to the Python that `call` in a keyword file names, just before a run."""
+"""The engine as a target: leaf ids are bound to the Python that `call` in a keyword file names, just before a run."""
 
 from __future__ import annotations
 
+import operator
 import os
 import sys
+from collections.abc import Callable, Mapping
+from functools import wraps
 from importlib import import_module
 from importlib.util import find_spec
+from inspect import Parameter, signature
 from types import ModuleType
 
-from btlang.backends.comparing import comparing
-from btlang.backends.touching import touching
 from btlang.engine.instance import EngineError
-from btlang.engine.leaves.leaf import LeafBinding, described
+from btlang.engine.leaves.leaf import Failed, LeafBinding, Unknown, describe_exception
 from btlang.engine.script.values import as_text
 from btlang.printer.phrase import leaf_words
-from btlang.tree.node import Node
+from btlang.tree.catalogue import CATALOGUE
+from btlang.tree.node import Node, Tree
 from btlang.vocabulary.entry import MEASURED, Entry, SlotSpec
 from btlang.vocabulary.lexicon import Lexicon
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Mapping
+    from collections.abc import Collection, Generator
     from typing import Any
+
+_packages: dict[str, str] = {}  # of the modules beside keyword files, by their folders
+_MOVED = {
+    "btlang.actions.commands:do_what_somebody_says": "btlang.actions.conversation:do_what_somebody_says",
+    "btlang.actions.show:bow": "btlang.actions.gestures:bow",
+    "btlang.actions.show:dance": "btlang.actions.gestures:dance",
+    "btlang.actions.sides:go_to_side": "btlang.actions.navigation:go_to_side",
+}
+"""Where functions that keyword files of 0.1 may name in `call` are now."""
+_AS_GOOD_AS_EQUAL = 1e-9
+_MOST_DIGITS = 17  # all that a double has
 
 
 def bind_leaf(
     node_id: str,
     vocabulary: Lexicon,
     own: Callable[[Entry, Lexicon], LeafBinding | None] | None = None,
-    awaited: Collection[str] = (),
+    find_awaited: Collection[str] = (),
 ) -> LeafBinding | None:
-    """None where no keyword entry has the id. Raises EngineError where its `call` leads nowhere or is of no use.
+    """Bind an id, None if no keyword entry has it. Raises EngineError if its `call` leads nowhere or is of no use.
 
     `own` is how the robot of the run binds an entry; what it leaves is bound by `call`. The latest entry that it binds
     counts, so that a keyword file can bind words that ship. An entry that replaces the others goes before the robot.
-    `awaited` are the ids of conditions for which the mission waits: see btlang.backends.touching.
+    `find_awaited` are the ids of conditions for which the mission waits: see btlang.backends.engine.
     """
     entries = vocabulary.entries.get(node_id, ())
     replacing = [entry for entry in entries if entry.replaces]
@@ -46,16 +60,16 @@ def bind_leaf(
         return None
     entry = (replacing or entries)[-1 if replacing else 0]
     slots = {slot.name: slot for other in entries for slot in other.slots}
-    call = _imported(entry)
-    if entry.touches and (entry.sort == "action" or node_id in awaited):
-        call = touching(call)
+    call = import_call(entry)
+    if entry.touches and (entry.sort == "action" or node_id in find_awaited):
+        call = allow_touching(call)
     return leaf_binding(entry, vocabulary, call, tuple(slots.values()))
 
 
 def leaf_binding(
     entry: Entry, vocabulary: Lexicon, call: Callable[..., Any], slots: tuple[SlotSpec, ...]
 ) -> LeafBinding:
-    """What does the work of an entry, with the values of slots as its parameters.
+    """Return the binding that does the work of an entry, with the values of slots as its parameters.
 
     Raises EngineError where it is of no use for such an entry.
     """
@@ -74,7 +88,7 @@ def leaf_binding(
         return leaf_words(entry.id, {**ports, "equal": value}, vocabulary) or f"it is {value}"
 
     try:
-        return LeafBinding(comparing(call, say), converters, defaults, (MEASURED,), condition=True)
+        return LeafBinding(compare_quantity(call, say), converters, defaults, (MEASURED,), condition=True)
     except (TypeError, ValueError) as error:
         raise EngineError(f"{entry.call} cannot be a quantity: {error}", Node(entry.id, span=entry.span)) from error
 
@@ -86,11 +100,8 @@ def _converter(slot: SlotSpec, vocabulary: Lexicon) -> Callable[[str], Any]:
     return as_text
 
 
-_packages: dict[str, str] = {}  # of the modules beside keyword files, by their folders
-
-
 def _module(entry: Entry, name: str) -> ModuleType:
-    """The module beside the keyword file, else an installed one.
+    """Import the module beside the keyword file, else an installed one.
 
     Those of one folder are a package with a unique name: the modules of two packs may be called the same.
     """
@@ -118,16 +129,7 @@ def _module(entry: Entry, name: str) -> ModuleType:
         raise
 
 
-_MOVED = {
-    "btlang.actions.commands:do_what_somebody_says": "btlang.actions.conversation:do_what_somebody_says",
-    "btlang.actions.show:bow": "btlang.actions.gestures:bow",
-    "btlang.actions.show:dance": "btlang.actions.gestures:dance",
-    "btlang.actions.sides:go_to_side": "btlang.actions.navigation:go_to_side",
-}
-"""Where functions that keyword files of 0.1 may name in `call` are now."""
-
-
-def _imported(entry: Entry) -> Callable[..., Any]:
+def import_call(entry: Entry) -> Callable[..., Any]:
     if not isinstance(entry.call, str):
         return entry.call
     node = Node(entry.id, span=entry.span)
@@ -141,7 +143,106 @@ def _imported(entry: Entry) -> Callable[..., Any]:
     except KeyboardInterrupt:
         raise
     except BaseException as error:  # whatever a user's module raises while it is imported
-        raise EngineError(f"{entry.call} cannot be loaded ({described(error)})", node) from error
+        raise EngineError(f"{entry.call} cannot be loaded ({describe_exception(error)})", node) from error
     if not callable(found):
         raise EngineError(f"{entry.call} isn't a function or class", node)
     return found  # type: ignore[no-any-return]
+
+
+def _is_equal(value: Any, wanted: Any) -> bool:
+    """Whether two values are equal: numbers up to rounding, texts in any case."""
+    if isinstance(value, str) or isinstance(wanted, str):
+        return str(value).casefold() == str(wanted).casefold()
+    return bool(abs(value - wanted) <= _AS_GOOD_AS_EQUAL * max(1.0, abs(wanted)))
+
+
+_HOLDS: dict[str, Callable[[float, float], bool]] = {
+    "below": operator.lt,
+    "above": operator.gt,
+    "at_least": operator.ge,
+    "at_most": operator.le,
+    "equal": _is_equal,
+}
+
+
+def compare_quantity(
+    quantity: Callable[..., Any], say: Callable[[Mapping[str, Any], str], str]
+) -> Callable[..., bool | Failed]:
+    """Make a function that calls the quantity and holds if all comparisons with given ports hold.
+
+    What the quantity gives goes to the function in the output port first, so without comparisons it is just remembered.
+    `say` gives the words for what was read, of the arguments of the quantity and the value as a text. Raises ValueError
+    where the quantity has a parameter that is named as one of these ports.
+    """
+
+    def compare(**given: Any) -> bool | Failed:
+        store = given.pop(MEASURED, None)
+        limits = {name: given.pop(name) for name in _HOLDS if name in given}
+        value = quantity(**given)
+        if store is not None:
+            store(value)
+        if _hold(limits, value):
+            return True
+        if value != value:
+            raise Unknown("it is not a number")
+        return Failed(lambda: say(given, _round(value, limits)))
+
+    own = signature(quantity)
+    ports = [Parameter(name, Parameter.KEYWORD_ONLY, default=None) for name in (*_HOLDS, MEASURED)]
+    compare.__signature__ = own.replace(parameters=[*own.parameters.values(), *ports])  # type: ignore[attr-defined]
+    compare.__name__ = getattr(quantity, "__name__", "quantity")
+    return compare
+
+
+def _hold(limits: Mapping[str, Any], value: Any) -> bool:
+    return all(_HOLDS[name](value, limit) for name, limit in limits.items() if limit is not None)
+
+
+def _round(value: Any, limits: Mapping[str, Any]) -> str:
+    """Return the value in three digits, or in more if so few would hold: 19.96 is not at least 20."""
+    if isinstance(value, str):
+        return value
+    texts = (f"{value:.{digits}g}" for digits in range(3, _MOST_DIGITS + 1))
+    return next((text for text in texts if not _hold(limits, float(text))), str(value))
+
+
+def find_awaited(tree: Tree) -> frozenset[str]:
+    """Find the ids of leaves that a node looks at while it runs another child, and that may end it: `until bumped`."""
+    found: set[str] = set()
+    for node in tree.walk():
+        kind = CATALOGUE.get(node.id)
+        if kind is not None and kind.reactive and kind.interrupts:
+            looked_at = node.children[:1] if kind.roles else node.children[:-1]
+            for child in looked_at:
+                found.update(each.id for each in Tree(child).walk() if not each.children)
+    return frozenset(found)
+
+
+def allow_touching(call: Callable[..., Any]) -> Callable[..., Any]:
+    """Wrap the function of a leaf, which takes a `robot`: at each tick it may touch what is ahead."""
+    from inspect import isgeneratorfunction  # takes longer to import than most checks
+
+    if not isgeneratorfunction(call):
+
+        @wraps(call)
+        def look(robot: Any, **values: Any) -> Any:
+            robot.touch()
+            return call(robot=robot, **values)
+
+        return look
+
+    @wraps(call)
+    def work(robot: Any, **values: Any) -> Generator[None, None, Any]:
+        running = call(robot=robot, **values)
+        try:
+            while True:
+                robot.touch()
+                try:
+                    next(running)
+                except StopIteration as end:
+                    return end.value
+                yield
+        finally:
+            running.close()
+
+    return work

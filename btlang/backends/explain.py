@@ -1,4 +1,4 @@
-"""A mission as it was read: each statement as written, in English whose brackets show the reading, and as a tree."""
+"""Explanations of a mission: each statement as written, in English whose brackets show the reading, and as a tree."""
 
 from __future__ import annotations
 
@@ -7,9 +7,8 @@ import textwrap
 from bisect import bisect_right
 from collections.abc import Callable, Iterator
 
-from btlang.printer.blocks import lines_of
-from btlang.printer.mission import printer_of
-from btlang.printer.pieces import is_longer
+from btlang.printer.fragments import is_longer
+from btlang.printer.mission import lines_of, printer_of
 from btlang.printer.printer import Printer
 from btlang.printer.sentence import statements
 from btlang.support.record import Record
@@ -31,7 +30,7 @@ _NO_LIMIT = 10_000
 
 
 class Statement(Record):
-    """What one sentence became: its place in the text, its nodes, and what they were lowered to."""
+    """A sentence and what it became: its place in the text, its nodes, and what they were lowered to."""
 
     at: int
     items: tuple[ast.Ast, ...]
@@ -40,17 +39,17 @@ class Statement(Record):
 
 
 class Understood(Record):
-    """How one sentence was understood: its number, and English whose brackets show it."""
+    """A sentence as it was understood: its number, and English whose brackets show it."""
 
     number: int
     english: str
 
 
 def understood(mission: ast.Program, tree: Tree, vocabulary: Lexicon, sentences: Sentences) -> list[Understood]:
-    """Every statement and definition, in the order of the text; `sentences` are those of the text as it was written."""
+    """Return every statement and definition, in the order of the text; `sentences` are those of the text as written."""
     printer = printer_of(mission, vocabulary, "all")
     return [
-        Understood(each.at, "\n".join(_reading(each, printer, _NO_LIMIT)).removeprefix(_READ_AS))
+        Understood(each.at, "\n".join(_read_sentence(each, printer, _NO_LIMIT)).removeprefix(_READ_AS))
         for each in _all_statements(mission, tree, sentences)
     ]
 
@@ -58,7 +57,7 @@ def understood(mission: ast.Program, tree: Tree, vocabulary: Lexicon, sentences:
 def explain_mission(
     mission: ast.Program, tree: Tree, vocabulary: Lexicon, label: Callable[[Node], str], width: int = 100
 ) -> str:
-    """Every statement and definition in the order of the text, below each other and at most `width` columns wide.
+    """Explain every statement and definition in the order of the text, at most `width` columns wide.
 
     `tree` is what the mission was compiled to; a line of it that is wider is cut, and its words stand above it.
     """
@@ -69,10 +68,10 @@ def explain_mission(
     for statement in _all_statements(mission, tree, sentences):
         number, written = sentences.written(statement.at)
         lines = textwrap.wrap(f"line {number}: {written}", width, subsequent_indent=INDENT * 2)
-        lines += _reading(statement, printer, width)
+        lines += _read_sentence(statement, printer, width)
         if statement.node is not None:
             lines.append("")
-            shown = outline(Tree(_pruned(statement.node, width // len(_BRANCH))), label)
+            shown = outline(Tree(_prune(statement.node, width // len(_BRANCH))), label)
             lines += [_cut(INDENT + line, width) for line in shown.splitlines()]
         blocks.append("\n".join(lines))
     return "\n\n".join(blocks)
@@ -91,7 +90,7 @@ def _definitions(mission: ast.Program, tree: Tree, sentences: Sentences) -> Iter
 
 
 def _commands(body: ast.Ast | None, root: Node, sentences: Sentences) -> Iterator[Statement]:
-    """The commands of a mission by the sentence in which they stand."""
+    """Yield the commands of a mission by the sentence in which they stand."""
     if body is None:
         return
     items, joined = [item for item, _ in statements(body)], next(statements(body))[1]
@@ -110,13 +109,13 @@ def _commands(body: ast.Ast | None, root: Node, sentences: Sentences) -> Iterato
         yield Statement(number, tuple(item for item, _ in pairs), node, joined)
 
 
-def _reading(statement: Statement, printer: Printer, width: int) -> Iterator[str]:
-    """`read as:` and the sentence behind it, or its lines below it."""
+def _read_sentence(statement: Statement, printer: Printer, width: int) -> Iterator[str]:
+    """Return `read as:` and the sentence behind it, or its lines below it."""
     items, joined = statement.items, statement.joined
     whole = items[0] if len(items) == 1 else ast.Chain(joined, items, False, items[0].span)
     said = printer.say(whole)
     room = width - len(_READ_AS)
-    if not said.in_lines and not is_longer(said.pieces, room):
+    if not said.in_lines and not is_longer(said.fragments, room):
         line = printer.line(whole, said, joined if len(items) == 1 else "")
         if len(line) <= room:
             yield _READ_AS + line
@@ -131,8 +130,8 @@ def _reading(statement: Statement, printer: Printer, width: int) -> Iterator[str
             )
 
 
-def _pruned(root: Node, most: int) -> Node:
-    """The tree without what is deeper than any line can show: drawing that costs the square of its depth."""
+def _prune(root: Node, most: int) -> Node:
+    """Return the tree without what is deeper than any line can show: drawing that costs the square of its depth."""
 
     def parts(item: tuple[Node, int]) -> list[tuple[Node, int]]:
         node, depth = item
@@ -152,7 +151,7 @@ def _cut(line: str, width: int) -> str:
 
 
 class Sentences:
-    """The sentences of a text: what stands between line ends, `;` and full stops outside brackets and blocks."""
+    """The sentences of a text: what is between line ends, `;` and full stops outside brackets and blocks."""
 
     def __init__(self, source: Source, vocabulary: Lexicon) -> None:
         self._words: Words = split(source, vocabulary.orthography)
@@ -163,7 +162,7 @@ class Sentences:
                 self._add(line.first, line.last)
 
     def _add(self, first: int, last: int) -> None:
-        """The sentences of a line; of one with a block, its first line."""
+        """Add the sentences of a line; of one with a block, its first line."""
         words, depth = self._words, 0
         for at in range(first, last + 1):
             word = words.words[at]
@@ -177,17 +176,17 @@ class Sentences:
         return len(self._sentences)
 
     def number(self, offset: int) -> int:
-        """The sentence that a character belongs to, counted from 0."""
+        """Return the sentence that a character belongs to, counted from 0."""
         return bisect_right(self._sentences, (offset, math.inf, 0)) - 1
 
     def reach(self, number: int) -> tuple[int, int]:
-        """The characters of a sentence, with the block below it."""
+        """Return the characters of a sentence, with the block below it."""
         text = self._words.source.text
         end = self._sentences[number + 1][0] if number + 1 < len(self._sentences) else len(text)
         return self._words.begin(self._sentences[number][1]), end
 
     def written(self, number: int) -> tuple[int, str]:
-        """The line (from 1) and the text of a sentence."""
+        """Return the line (from 1) and the text of a sentence."""
         words, (_, first, last) = self._words, self._sentences[number]
         start = words.begin(first)
         end = words.ends[last if words.words[last] == END_OF_STATEMENT else last - 1]

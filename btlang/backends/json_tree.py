@@ -9,13 +9,11 @@ from __future__ import annotations
 import os
 import re
 
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.frontends.json.reader import FORMAT, PORT_KEYS
 from btlang.printer.phrase import phrase_of
 from btlang.text.source import NOWHERE
-from btlang.tree.model import NodeModel
-from btlang.tree.node import Node, Tree
+from btlang.tree.node import Node, NodeModel, Tree
 from btlang.vocabulary.lexicon import Lexicon
 
 TYPE_CHECKING = False
@@ -30,7 +28,7 @@ _UNFIT_WRITTEN = re.compile(r"(?<!\\)(?:\\\\)*\\u0000|[\ud800-\udfff]")
 
 
 def to_json(tree: Tree, vocabulary: Lexicon) -> str:
-    """One document, one line a node. `read_json` gives an equal tree; spans are written, but not read back.
+    """Return one document, one line a node. `read_json` makes an equal tree; spans are written, but not read back.
 
     Raises MissionError (BT134) for a text with NUL or a lone surrogate, which `read_json` would refuse.
     """
@@ -55,7 +53,7 @@ def to_json(tree: Tree, vocabulary: Lexicon) -> str:
 
 
 def _items(root: Node, vocabulary: Lexicon) -> list[dict[str, Any]]:
-    """The nodes in preorder; what is empty is left out, but for the id."""
+    """List the nodes in preorder; what is empty is left out, but for the id."""
     items: list[dict[str, Any]] = []
     stack: list[tuple[Node, int]] = [(root, -1)]
     while stack:

@@ -1,4 +1,4 @@
-"""A keyword pack for the nodes of other programs; before it is given it is loaded, and its phrases are read.
+"""Keyword packs for the nodes of other programs, which are loaded and read back before they are returned.
 
 A file with models may stand for the pack that is made of it.
 """
@@ -7,17 +7,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
-from btlang.backends.keywords import Draft, Leaf, drafted, is_unknown, keyword_text, why_none
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import read_source
+from btlang.backends.keywords import Draft, Leaf, draft_entries, is_unknown, keyword_text, why_none
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
+from btlang.diagnostics.files import read_source
 from btlang.frontends.btcpp.files import read_files
 from btlang.frontends.mission.reader import PARSERS, read_mission
 from btlang.passes import lower_mission
 from btlang.support.record import Record
 from btlang.text.source import NOWHERE, Source, Span
-from btlang.tree.model import NodeModel
-from btlang.tree.node import Node
+from btlang.tree.node import Node, NodeModel
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.keyword_file import KeywordFile, read_keyword_file
 from btlang.vocabulary.lexicon import Lexicon
@@ -38,7 +36,8 @@ class KeywordPack(Record):
 def pack_of_files(
     sources: Sequence[Source], vocabulary: Lexicon, load: Callable[[Source], Lexicon]
 ) -> tuple[KeywordPack, KeywordFile]:
-    """Words for the unknown nodes in XML files, as `keyword_pack`; and what the pack declares, at the nodes' tags.
+    """Make a pack for the unknown nodes in XML files, as `keyword_pack` does, and what it declares, at the nodes'
+    tags.
 
     The warnings are those of the files, too. Raises MissionError (BT120 to BT129).
     """
@@ -54,7 +53,7 @@ def pack_of_files(
 def vocabulary_of_models(
     paths: Sequence[str], vocabulary: Lexicon, load: Callable[[Source | KeywordFile], Lexicon]
 ) -> Lexicon:
-    """A vocabulary with the words of XML files; `load` is that of `keyword_pack`.
+    """Return a vocabulary with the words of XML files; `load` is that of `keyword_pack`.
 
     Raises MissionError (BT001, BT002, BT120 to BT129).
     """
@@ -62,7 +61,7 @@ def vocabulary_of_models(
 
 
 def leaves_of(models: Iterable[NodeModel], nodes: Iterable[Node], vocabulary: Lexicon) -> list[Leaf]:
-    """The leaves that the vocabulary does not know, those with models first."""
+    """List the leaves that the vocabulary doesn't know, those with models first."""
     uses: dict[str, list[Node]] = {}
     for node in nodes:
         if not node.children:
@@ -82,7 +81,7 @@ def keyword_pack(
     load: Callable[[Source], Lexicon],
     places: Mapping[str, Span] = {},
 ) -> KeywordPack:
-    """Words for these leaves. `load` makes the vocabulary with a keyword file, as a mission with the pack has it;
+    """Make words for these leaves. `load` makes the vocabulary with a keyword file, as a mission with the pack has it;
     `places` are those of ids in the files.
 
     A phrase that either parser reads as anything else gives way to the next one. A leaf without any is left out, with
@@ -90,7 +89,7 @@ def keyword_pack(
     """
     refused: dict[str, list[str]] = {}
     while True:
-        found = drafted(leaves, vocabulary, refused)
+        found = draft_entries(leaves, vocabulary, refused)
         text = keyword_text((_HEAD,), found, module="")
         misread = list(_misread(found, load(Source(text, "<words>"))))
         if not misread:
@@ -103,7 +102,7 @@ def keyword_pack(
 
 
 def _misread(found: Mapping[str, Draft | None], words: Lexicon) -> Iterator[Entry]:
-    """The entries with a phrase that isn't read as its node; all are tried at once, as hardly ever one is."""
+    """Yield the entries with a phrase that isn't read as its node; all are tried at once, as hardly ever one is."""
     entries = [draft.entry for draft in found.values() if draft is not None]
     if _reads(entries, words):
         return
@@ -134,7 +133,7 @@ def _bare(node: Node) -> Node:
 
 
 def _sample(type: ValueType) -> tuple[str, str]:
-    """A value as it is said, and the text of its port."""
+    """Return a value as it is said, and the text of its port."""
     if type.kind == "text":
         return '"two words"', "two words"
     if type.kind == "names" and type.names:

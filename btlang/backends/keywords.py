@@ -1,24 +1,22 @@
-"""Keyword entries for the leaves that the vocabulary does not know: a draft for a person to go on from."""
+"""Keyword entries for leaves that the vocabulary doesn't know: drafts for a person to continue."""
 
 from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 
-from btlang.backends.slot_types import NUMBER, SlotTypes
 from btlang.backends.wording import SpokenPorts, asks, id_words, phrases
 from btlang.support.record import Record
-from btlang.text.toml_writing import toml_key, toml_value
+from btlang.text.toml import toml_key, toml_value
 from btlang.tree.catalogue import CATALOGUE
-from btlang.tree.model import NodeModel, PortModel
-from btlang.tree.node import Node, Tree
+from btlang.tree.node import Node, NodeModel, PortModel, Tree
 from btlang.vocabulary.entry import Entry, Meaning, SlotSpec
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.pattern import PatternError, forms
 from btlang.vocabulary.trie import TrieNode, add, collisions
-from btlang.vocabulary.value_type import TEXT, ValueType
+from btlang.vocabulary.value_type import TEXT, ValueType, format_number
 
 MODULE = "my_robot.leaves"
 """Stands for the user's module in what is drafted."""
@@ -26,10 +24,16 @@ MODULE = "my_robot.leaves"
 _MOST_REQUIRED = 12  # of what people would say
 _MOST_OPTIONAL = 5  # each doubles the ways to say a phrase
 _WITH_DEFAULTS = ("server_name", "server_timeout", "service_name")  # in C++, though no model says so
+_WHOLE = re.compile(r"(?:std::)?(?:u?int(?:8|16|32|64)?(?:_t)?|unsigned(?: int)?|size_t|u?long)")
+_DECIMAL = re.compile(r"float|double|(?:std::)?float(?:32|64)_t")
+_CHOICE = re.compile(r"\w+(?:\|\w+)+")
+NUMBER = "number"
+_BOOLEANS = ValueType("boolean", "names", names=("true", "false"))
+_WHOLE_NUMBERS = ValueType("whole_number", NUMBER, whole=True)
 
 
 class Leaf(Record):
-    """What is known of a kind of leaf: its model and its uses in trees."""
+    """The facts about a kind of leaf: its model and its uses in trees."""
 
     model: NodeModel
     uses: tuple[Node, ...] = ()
@@ -46,7 +50,7 @@ class Draft(Record):
     left_out: tuple[str, ...] = ()
 
     def text(self, module: str = MODULE) -> str:
-        """The entry in a keyword file, with a function of a module to call, or none for ""."""
+        """Return the entry in a keyword file, with a function of a module to call, or none for ""."""
         entry = self.entry
         said: dict[str, object] = {"phrase": entry.phrases[0], "id": entry.id}
         if module:
@@ -63,8 +67,8 @@ class Draft(Record):
         return "\n".join(lines)
 
 
-def unknown_leaves(tree: Tree, vocabulary: Lexicon) -> dict[str, list[Node]]:
-    """The leaves whose id is that of no entry and no node of the engine, by id, in the order of Tree.walk."""
+def find_unknown_leaves(tree: Tree, vocabulary: Lexicon) -> dict[str, list[Node]]:
+    """Find the leaves whose id is that of no entry and no node of the engine, by id, in the order of Tree.walk."""
     found: dict[str, list[Node]] = {}
     for node in tree.walk():
         if not node.children and is_unknown(node.id, vocabulary):
@@ -78,16 +82,16 @@ def is_unknown(node_id: str, vocabulary: Lexicon) -> bool:
 
 
 def drafts(tree: Tree, vocabulary: Lexicon) -> dict[str, Draft | None]:
-    """As `drafted`, for the unknown leaves of a tree."""
+    """Draft entries as `draft_entries` does, for the unknown leaves of a tree."""
     models = {model.id: model for model in tree.models}
-    found = unknown_leaves(tree, vocabulary).items()
-    return drafted([Leaf(models.get(id) or NodeModel("", id), tuple(nodes)) for id, nodes in found], vocabulary)
+    found = find_unknown_leaves(tree, vocabulary).items()
+    return draft_entries([Leaf(models.get(id) or NodeModel("", id), tuple(nodes)) for id, nodes in found], vocabulary)
 
 
-def drafted(
+def draft_entries(
     leaves: Iterable[Leaf], vocabulary: Lexicon, refused: Mapping[str, Sequence[str]] = {}
 ) -> dict[str, Draft | None]:
-    """A draft for each leaf by its id, None where none can be made (`why_none`). Phrases that are `refused` are not
+    """Draft an entry for each leaf by its id, None if none can be made (`why_none`). Phrases that are `refused` aren't
     used again.
     """
     taken: TrieNode = {}
@@ -100,12 +104,12 @@ def drafted(
 
 
 def why_none(node_id: str) -> str:
-    """Why a leaf has no draft."""
+    """Return why a leaf has no draft."""
     return "its words mean something else already" if _is_id(node_id) else "an id is one word of letters, digits and _"
 
 
 def to_keywords(tree: Tree, vocabulary: Lexicon) -> str:
-    """The text of a keyword file with an entry for each unknown leaf; it loads as it is."""
+    """Return the text of a keyword file with an entry for each unknown leaf; it loads as it is."""
     found = drafts(tree, vocabulary)
     if not found:
         return "# Every leaf of this tree has a keyword entry.\n"
@@ -117,7 +121,7 @@ def to_keywords(tree: Tree, vocabulary: Lexicon) -> str:
 
 
 def keyword_text(head: Iterable[str], found: Mapping[str, Draft | None], module: str = MODULE) -> str:
-    """A keyword file with these drafts, and comments above them."""
+    """Return a keyword file with these drafts, and comments above them."""
     lines = [*head]
     types = {type.name: type for draft in found.values() if draft is not None for type in draft.types}
     for type in types.values():
@@ -161,7 +165,7 @@ def _draft(leaf: Leaf, vocabulary: Lexicon, taken: TrieNode, types: SlotTypes, r
 
 
 def _spoken(leaf: Leaf) -> tuple[tuple[list[PortModel], ...], tuple[str, ...]]:
-    """The ports that must be said, may be said and are given values to, and the names of all others.
+    """Return the ports that must be said, may be said and are given values to, and the names of all others.
 
     Those that trees use are said before others.
     """
@@ -210,7 +214,59 @@ def _is_free(entry: Entry, vocabulary: Lexicon, typed: Mapping[str, ValueType], 
 
 
 def _like(type: ValueType, vocabulary: Lexicon) -> str:
-    """The name of a known type that takes whatever this one takes."""
+    """Return the name of a known type that takes whatever this one takes."""
     if type.name in vocabulary.types:
         return type.name
     return TEXT if type.kind == "names" else NUMBER
+
+
+class SlotTypes:
+    """The types that a keyword file needs beside those that are `known`; each has a name of its own."""
+
+    def __init__(self, known: Mapping[str, ValueType]) -> None:
+        self._known = known
+        self._own: dict[str, ValueType] = {}
+
+    def of(self, node_id: str, port: PortModel, uses: Iterable[Node]) -> ValueType:
+        """Return the type of a slot. It is text if a tree has a text that another type wouldn't return as it is."""
+        texts = [text for node in uses for name, text in node.ports if name == port.name and "{" not in text]
+        if port.direction != "output":
+            names = _choices(port)
+            if port.type == "bool" and set(texts) <= set(_BOOLEANS.names):
+                return self._name_type(_BOOLEANS, node_id)
+            if names and set(texts) <= set(names):
+                return self._name_type(ValueType(port.name, "names", names=names), node_id)
+            if _WHOLE.fullmatch(port.type) and all(map(_is_whole, texts)):
+                return self._name_type(_WHOLE_NUMBERS, node_id)
+            if (_DECIMAL.fullmatch(port.type) or (not port.type and texts)) and all(map(_is_number, texts)):
+                return self._known[NUMBER]
+        return self._known[TEXT]
+
+    def _name_type(self, type: ValueType, node_id: str) -> ValueType:
+        """Return the type under its name, or under one with that of the node if something else has it."""
+        for name in (type.name, f"{node_id}_{type.name}"):
+            made: ValueType = type.replace(name=name)
+            if self._known.get(name, made) == made and self._own.setdefault(name, made) == made:
+                return made
+        return self._known[TEXT]
+
+
+def _choices(port: PortModel) -> tuple[str, ...]:
+    """Return the values of a port whose type or description lists them: `top|side|front`."""
+    found = _CHOICE.fullmatch(port.type) or _CHOICE.search(port.text)
+    return tuple(dict.fromkeys(found[0].split("|"))) if found else ()
+
+
+def _is_number(text: str) -> bool:
+    return _reads_as(text, float)
+
+
+def _is_whole(text: str) -> bool:
+    return _reads_as(text, int)
+
+
+def _reads_as(text: str, number: Callable[[str], float]) -> bool:
+    try:
+        return text.isascii() and format_number(number(text)) == text and "e" not in text
+    except (ValueError, OverflowError):
+        return False

@@ -1,4 +1,4 @@
-"""What a tree can be written as. A target is a line in `TARGETS`, and a function that is imported when it is used."""
+"""Targets that a tree can be written as. A target is a line in `TARGETS`, and a function that is imported when used."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Target(Record):
-    """`make` names the function that makes it, "module:function" of (tree, vocabulary, **options) to str or bytes.
+    """A target; `make` names its function, "module:function" of (tree, vocabulary, **options) to str or bytes.
 
     A file that ends in one of the `suffixes` is of this target where none is named. `options` are the options that the
     function takes from whoever asks, `given` those that a btlang.api.Mission fills in: "world" and "facts".
@@ -62,13 +62,15 @@ TARGETS = {
 
 
 def target_of(path: str) -> str:
-    """The name of the target that a file of this name is of, "" where its ending is that of none."""
+    """Return the name of the target that a file of this name is of, "" if its ending is that of none."""
     ending = os.path.splitext(path)[1].lower()
     return next((name for name, target in TARGETS.items() if ending in target.suffixes), "")
 
 
-def compiled(tree: Tree, vocabulary: Lexicon, name: str, given: Mapping[str, Any] = {}, **options: Any) -> str | bytes:
-    """The tree as a target, with the options that are not None and what the target uses of what is `given`.
+def compile_to(
+    tree: Tree, vocabulary: Lexicon, name: str, given: Mapping[str, Any] = {}, **options: Any
+) -> str | bytes:
+    """Write the tree as a target, with the options that aren't None and what the target uses of what is `given`.
 
     Raises ValueError for an unknown name or option, MissionError if the target can't express the tree.
     """
@@ -86,7 +88,7 @@ def compiled(tree: Tree, vocabulary: Lexicon, name: str, given: Mapping[str, Any
 
 
 def to_plain(tree: Tree, vocabulary: Lexicon) -> str:
-    """The tree as `btc tree --plain` prints it."""
+    """Return the tree as `btc tree --plain` prints it."""
     from btlang.tree.dump import plain
 
     return plain(tree) + "\n"

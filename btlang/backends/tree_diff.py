@@ -1,13 +1,13 @@
-"""What differs between two trees, in words: `new step 'wave' behind 'dock'`, `attempts of 'go to lab': 6 to 3`."""
+"""Differences of two trees, in words: `new step 'wave' behind 'dock'`, `attempts of 'go to lab': 6 to 3`."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from difflib import SequenceMatcher
 
+from btlang.tree.alignment import SubtreeNumbers
 from btlang.tree.catalogue import CATALOGUE, ON_FAILURE, SUBTREE
 from btlang.tree.node import Node, Tree
-from btlang.tree.subtree_numbers import SubtreeNumbers
 from btlang.tree.visit import children_first
 
 TYPE_CHECKING = False
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     """The words of a node with all that is below it, in one line."""
 
 
-def differences(old: Tree, new: Tree, say_old: Say, say_new: Say) -> Iterator[str]:
-    """A line for each, in the order of the new tree; none where the trees are equal but for comments and layout."""
+def find_differences(old: Tree, new: Tree, say_old: Say, say_new: Say) -> Iterator[str]:
+    """Yield a line for each, in the order of the new tree; none if the trees are equal but for comments and layout."""
     before, after = dict(old.subtrees), dict(new.subtrees)
     for name in before:
         if name not in after:
@@ -39,7 +39,7 @@ class _Diff:
         self._numbers = SubtreeNumbers(lambda node: node.ports)
 
     def lines(self, old: Node, new: Node, place: str) -> Iterator[str]:
-        """The differences of two trees of nodes; `place` says where they are."""
+        """Yield the differences of two trees of nodes; `place` says where they are."""
         self._numbers.add((*children_first(old), *children_first(new)))
         pending = [(old, new)]
         while pending:
@@ -47,12 +47,12 @@ class _Diff:
             if self._numbers.are_equal(one, other):
                 continue
             pairs: list[tuple[Node, Node]] = []
-            for line in self._compared(one, other, pairs):
+            for line in self._compare(one, other, pairs):
                 yield line + place
             pending += reversed(pairs)
 
-    def _compared(self, one: Node, other: Node, pairs: list[tuple[Node, Node]]) -> Iterator[str]:
-        """The lines about two nodes themselves; what is below them and may differ goes into `pairs`."""
+    def _compare(self, one: Node, other: Node, pairs: list[tuple[Node, Node]]) -> Iterator[str]:
+        """Yield the lines about two nodes themselves; what is below them and may differ goes into `pairs`."""
         if one.id == other.id and bool(one.children) == bool(other.children):
             yield from self._ports(one, other)
             yield from self._children(one, other, pairs)
@@ -88,7 +88,7 @@ class _Diff:
         for port in dict.fromkeys((*before, *after)):
             if before.get(port) != after.get(port):
                 texts = [_value(other, port, ports.get(port, "none")) for ports in (before, after)]
-                yield f"{_named(other, port)} of {words}: {texts[0]} to {texts[1]}"
+                yield f"{_port_label(other, port)} of {words}: {texts[0]} to {texts[1]}"
         if one.name != other.name:
             yield f"the name of {words}: '{one.name}' to '{other.name}'"
 
@@ -120,8 +120,8 @@ class _Diff:
         return f"new step '{self._say_new(children[at])}'{where}"
 
 
-def _named(node: Node, port: str) -> str:
-    """What a port is called: that of the rounds by what they are."""
+def _port_label(node: Node, port: str) -> str:
+    """Return what a port is called: that of the rounds by what they are."""
     kind = CATALOGUE.get(node.id)
     if kind is not None and port == kind.rounds:
         return "attempts" if kind.again == ON_FAILURE else "rounds"
@@ -140,6 +140,6 @@ def _value(node: Node, port: str, text: str) -> str:
 
 def _head(node: Node) -> str:
     ports = ", ".join(
-        f"{_named(node, port).partition(' of ')[0]} {_value(node, port, text)}" for port, text in node.ports
+        f"{_port_label(node, port).partition(' of ')[0]} {_value(node, port, text)}" for port, text in node.ports
     )
     return f"{node.id} ({ports})" if ports else node.id

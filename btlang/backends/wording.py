@@ -1,4 +1,4 @@
-"""The words for a node that has none yet: what people could say, made of its id and of the names of its ports."""
+"""Wording for a node that has no words yet: what people could say, made of its id and the names of its ports."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class SpokenPorts(Record):
 
 
 def id_words(name: str) -> list[str]:
-    """`GoToPose2` -> go, to, pose, 2."""
+    """Split an id: `GoToPose2` becomes go, to, pose, 2."""
     return [word.lower() for word in re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[^\WA-Z\d_]+|\d+", name)]
 
 
@@ -47,7 +47,9 @@ def asks(node_id: str) -> bool:
 
 
 def phrases(node_id: str, ports: SpokenPorts, articles: Collection[str], *, is_condition: bool) -> Iterator[str]:
-    """Patterns for a leaf, the most natural first; the further ones are for words that mean something else already."""
+    """Yield patterns for a leaf, the most natural first; the further ones are for words that mean something else
+    already.
+    """
     words = id_words(node_id)
     if not is_condition:
         starts: list[list[str]] = [[], ["run"], ["run", "node"]]
@@ -57,7 +59,7 @@ def phrases(node_id: str, ports: SpokenPorts, articles: Collection[str], *, is_c
     state = _state(words)
     if state is not None:
         subject, said = state
-        about = _named_last(subject, ports.required)
+        about = _find_last_port(subject, ports.required)
         middle = [f"{{{about}}}"] if about else []
         others = tuple(port for port in ports.required if port != about)
         rest = ports.replace(required=others, texts=ports.texts if not about else frozenset())
@@ -67,7 +69,9 @@ def phrases(node_id: str, ports: SpokenPorts, articles: Collection[str], *, is_c
 
 
 def _state(words: list[str]) -> tuple[list[str], list[str]] | None:
-    """What a condition is about, and what is said of it: `IsDoorOpen` is `door`, `is open`. None for anything else."""
+    """Return what a condition is about, and what is said about it: `IsDoorOpen` is `door`, `is open`. None for anything
+    else.
+    """
     if words and words[0] in _CHECKING:
         words = words[1:]
     if len(words) < 2:
@@ -86,8 +90,10 @@ def _state(words: list[str]) -> tuple[list[str], list[str]] | None:
 
 
 def _slots(words: list[str], ports: SpokenPorts, articles: Collection[str]) -> Iterator[str]:
-    """The slots behind words. One needs no name: the one that the words end with, or a text that is the only one."""
-    bare = _named_last(words, ports.required)
+    """Yield the slots behind words. One needs no name: the one that the words end with, or a text that is the only
+    one.
+    """
+    bare = _find_last_port(words, ports.required)
     if not bare and len(ports.required) == 1 and ports.required[0] in ports.texts:
         [bare] = ports.required
     if bare:
@@ -101,13 +107,13 @@ def _slots(words: list[str], ports: SpokenPorts, articles: Collection[str]) -> I
         yield f"[{_label(port, words, articles) if at else 'giving'} {{{port}}}]"
 
 
-def _named_last(words: list[str], ports: Sequence[str]) -> str:
-    """The port whose name the words end with, "" if there is none."""
+def _find_last_port(words: list[str], ports: Sequence[str]) -> str:
+    """Return the port whose name the words end with, "" if there is none."""
     return next((port for port in ports if words[-len(id_words(port)) or len(words) :] == id_words(port)), "")
 
 
 def _label(port: str, words: list[str], articles: Collection[str]) -> str:
-    """The words of a port, without those of the node that they begin with."""
+    """Return the words of a port, without those of the node that they begin with."""
     own = id_words(port)
     if own[: len(words)] == words and own[len(words) :]:
         own = own[len(words) :]

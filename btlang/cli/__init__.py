@@ -7,8 +7,8 @@ import os
 import sys
 from importlib import import_module
 
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import reason_of
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.files import os_error_reason
 from btlang.text.output import show
 
 TYPE_CHECKING = False
@@ -32,10 +32,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         from btlang.cli.missions import add_robot_files
         from btlang.cli.parser import parse_arguments
         from btlang.cli.verbs import VERBS
-        from btlang.diagnostics.report import Report
+        from btlang.diagnostics.report import DiagnosticReport
 
         options = parse_arguments(arguments)
-        options.report = Report(options.format, on_output=options.verb in ("check", "world"))
+        options.report = DiagnosticReport(options.format, on_output=options.verb in ("check", "world"))
         try:
             add_robot_files(options)
             code = _run_handler(options, VERBS[options.verb].handler)
@@ -50,7 +50,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         # the reader of our output has seen enough, or the terminal is gone
         codes = {errno.EPIPE: SUCCESS, errno.EIO: INTERRUPTED}
         if error.errno not in codes:
-            show(f"btc: {reason_of(error)}", stream=sys.stderr)
+            show(f"btc: {os_error_reason(error)}", stream=sys.stderr)
         nowhere = os.open(os.devnull, os.O_WRONLY)
         for stream in (sys.stdout, sys.stderr):
             os.dup2(nowhere, stream.fileno())
@@ -60,9 +60,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except Exception as error:
         if os.environ.get("BTC_DEBUG"):
             raise
-        from btlang.diagnostics.crash import crashed
+        from btlang.diagnostics.report import report_crash
 
-        show(crashed(error), sys.stderr)
+        show(report_crash(error), sys.stderr)
         return CRASHED
 
 

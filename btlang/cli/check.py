@@ -9,9 +9,8 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 from btlang.cli.missions import hint_at_text, mission_of, parse_mission, read_typed
-from btlang.diagnostics.diagnostic import Diagnostic
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import has_mark, read_source
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError
+from btlang.diagnostics.files import has_mark, read_source
 from btlang.frontends.table import frontend_of
 from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.support.test_files import is_test_file
@@ -60,19 +59,19 @@ class _FileCheck:
 
     def mend(self) -> None:
         """Write corrections into the files; show what a text, or standard input, becomes."""
-        from btlang.diagnostics.mending import mended, mended_together
+        from btlang.diagnostics.diagnostic import apply_fixes, apply_fixes_together
 
-        done = [mended(source, self._problems_alone) for source in self._alone]
+        done = [apply_fixes(source, self._problems_alone) for source in self._alone]
         self._alone = [source for source, _ in done]
         if self._trees:
-            done += (both := mended_together(self._trees, self._problems_together))
+            done += (both := apply_fixes_together(self._trees, self._problems_together))
             self._trees = [source for source, _ in both]
         for source, count in done:
             with self._report_errors():
                 self._put(source, count)
 
     def _put(self, source: Source, count: int) -> None:
-        from btlang.backends.files import replace_text
+        from btlang.diagnostics.files import replace_text
 
         aside = sys.stderr if self._options.report.is_for_programs else sys.stdout
         if self._options.text is not None or source.name == "-":

@@ -7,9 +7,8 @@ import re
 import textwrap
 from collections.abc import Iterable, Sequence
 
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import unwritable
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
+from btlang.diagnostics.files import unwritable
 from btlang.support.record import Record
 from btlang.text.source import Source, Span
 from btlang.vocabulary.shipped import shipped

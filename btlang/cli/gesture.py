@@ -7,11 +7,9 @@ import tomllib
 from functools import partial
 
 from btlang.api import parse_tree
-from btlang.backends.files import write_file
 from btlang.components.words import words_of
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.diagnostics.files import read_source, write_file
 from btlang.gestures.checking import check_file
 from btlang.gestures.recording import record
 from btlang.pictures.files import MOVING, STILL, check_picture, picture_ending

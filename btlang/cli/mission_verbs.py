@@ -9,8 +9,8 @@ from functools import partial
 
 from btlang.api import Mission, format_mission
 from btlang.cli.missions import hint_at_text, mission_of, parse_mission, read_typed
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.files import read_source
 from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.support.test_files import is_test_file
 from btlang.text.output import listing_width, pass_on, show
@@ -96,7 +96,7 @@ def _format_one(source: Source, options: argparse.Namespace) -> bool:
     if options.text is not None or source.name == "-":
         pass_on(text)
     elif changes:
-        from btlang.backends.files import replace_text
+        from btlang.diagnostics.files import replace_text
 
         replace_text(source.name, text)
         show(f"Formatted {source.name}.")
@@ -124,13 +124,13 @@ def compile_mission(options: argparse.Namespace) -> int:
     if options.onto is not None:
         if options.dialect is not None:
             options.refuse("the dialect is that of the file with --onto")
-        from btlang.editing.onto import write_onto
+        from btlang.editing.english_of_xml import write_onto
 
         write_onto(mission_of(options), options.onto, options.out, force=options.force)
         return _SUCCESS
-    from btlang.backends.files import put
+    from btlang.diagnostics.files import write_output
 
-    put(mission_of(options).to(name, dialect=options.dialect), options.out)
+    write_output(mission_of(options).to(name, dialect=options.dialect), options.out)
     return _SUCCESS
 
 
@@ -146,10 +146,10 @@ def _write_pages(options: argparse.Namespace) -> None:
 
 def write_grammar(options: argparse.Namespace) -> int:
     """Write a grammar of missions."""
-    from btlang.backends.files import put
     from btlang.backends.grammar.targets import GRAMMARS
+    from btlang.diagnostics.files import write_output
 
-    put(GRAMMARS[options.to](world_vocabulary(options.keywords, options.world, options.language)), options.out)
+    write_output(GRAMMARS[options.to](world_vocabulary(options.keywords, options.world, options.language)), options.out)
     return _SUCCESS
 
 
@@ -175,8 +175,8 @@ def list_words(options: argparse.Namespace) -> int:
 
 def _make_words(options: argparse.Namespace) -> None:
     """Write the pack; the nodes that it has no words for go to the report."""
-    from btlang.backends.files import put
     from btlang.backends.keyword_pack import pack_of_files
+    from btlang.diagnostics.files import write_output
     from btlang.passes.lint.allow import not_allowed
     from btlang.vocabulary.load import vocabulary_with
 
@@ -184,7 +184,7 @@ def _make_words(options: argparse.Namespace) -> None:
     load = partial(vocabulary_with, keywords=options.keywords, language=options.language)
     pack, _ = pack_of_files([read_source(path) for path in options.sources], vocabulary, load)
     options.report.add(not_allowed(pack.warnings))
-    put(pack.text, options.out)
+    write_output(pack.text, options.out)
 
 
 def show_examples(options: argparse.Namespace) -> int:
@@ -214,7 +214,7 @@ def make_project(options: argparse.Namespace) -> int:
 def edit(options: argparse.Namespace) -> int:
     """Show a page for one file until Ctrl-C, or open an XML file in English in an editor. Raises MissionError."""
     if options.editor:
-        from btlang.editing.in_editor import edit_xml
+        from btlang.editing.english_of_xml import edit_xml
 
         return edit_xml(options)
     from btlang.server.page import editor

@@ -9,9 +9,8 @@ from contextlib import contextmanager
 
 from btlang.api import Mission, parse_tree
 from btlang.cli.parser import quote_mission, reads_as_mission
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.diagnostics.files import read_source
 from btlang.robots.platforms import ROBOTS
 from btlang.support.test_files import is_test_file
 from btlang.text.source import Source, Span

@@ -198,7 +198,7 @@ def looks_like_path(text: str) -> bool:
 def reads_as_mission(text: str) -> bool:
     """Return whether a text is a mission in the words that ship."""
     from btlang.api import parse_tree
-    from btlang.diagnostics.errors import MissionError
+    from btlang.diagnostics.diagnostic import MissionError
 
     try:
         parse_tree(text)

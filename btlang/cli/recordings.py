@@ -102,7 +102,7 @@ def _show_in_groot(
 
 def _write_log(path: str, recording: Recording, mission: Mission, nodes: RecordedNodes) -> int:
     """Write a recording as a log of BehaviorTree.CPP."""
-    from btlang.backends.files import write_file
+    from btlang.diagnostics.files import write_file
     from btlang.monitor.groot import groot_tree
     from btlang.monitor.groot_protocol import to_btlog
 

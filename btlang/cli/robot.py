@@ -15,7 +15,7 @@ from urllib.parse import parse_qs, urlsplit
 from btlang.cli.parser import check_act, check_count
 from btlang.cli.task import print_answer
 from btlang.components.words import words_of
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.robots.ears import read_answers
 from btlang.robots.registry import connector, runs_in_real_time
 from btlang.run.controls import emergency_signal
@@ -30,7 +30,7 @@ from btlang.task.layer import KEPT, TaskLayer, keep_ticks_in_time, make_robot_la
 from btlang.task.store.backup import restore_backup
 from btlang.task.store.records import LibraryKind
 from btlang.task.store.task_store import open_store
-from btlang.text.escaping import one_line
+from btlang.text.formatting import one_line
 from btlang.text.output import pass_on, show
 
 TYPE_CHECKING = False

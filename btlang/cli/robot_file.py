@@ -6,13 +6,13 @@ from collections.abc import Iterator
 
 from btlang.components.checking import check_robot, describe_apart, levels
 from btlang.components.component import ComponentError
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.files import read_source
 from btlang.robots.bodies.body import Body, ComponentPart
 from btlang.robots.bodies.body_file import BodyError, read_body
 from btlang.robots.bodies.urdf import urdf
 from btlang.robots.files import as_mission_error
-from btlang.text.escaping import one_line
+from btlang.text.formatting import one_line
 from btlang.text.output import pass_on, show
 from btlang.text.source import Source
 

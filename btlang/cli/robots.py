@@ -5,11 +5,11 @@ from __future__ import annotations
 import sys
 from contextlib import closing
 
-from btlang.diagnostics.render import render
+from btlang.diagnostics.diagnostic import render
 from btlang.passes.lint.allow import not_allowed, not_silenced
 from btlang.robots.registry import connector, runs_in_real_time, runs_on
+from btlang.text.formatting import TextTable
 from btlang.text.output import has_colour, show
-from btlang.text.table import Table
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -68,7 +68,7 @@ def print_preflight(tree: Tree, vocabulary: Lexicon, world: World, robot: Any) -
     ]
     rows += [("part", part, "", "missing: it is not in the robot file") for part in lacks]
     if rows:
-        show(Table(tuple(rows), widths=(7, 20, 36), gap=1))
+        show(TextTable(tuple(rows), widths=(7, 20, 36), gap=1))
     for warning in warnings:
         show(f"warning: {warning}")
     for problem in blind:

@@ -16,8 +16,7 @@ from typing import Any
 
 from btlang.backends.engine import bind_leaf
 from btlang.cli.robots import platform_of
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.engine.instance import EngineError
 from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.robots.preflight import find_missing_parts

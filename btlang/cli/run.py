@@ -14,8 +14,8 @@ from functools import partial
 from btlang.api import Mission
 from btlang.cli.missions import mission_of
 from btlang.cli.robots import choose_robot, print_preflight
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import unwritable
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.files import unwritable
 from btlang.pictures.files import check_picture
 from btlang.robots.ears import read_answers
 from btlang.robots.voice import voice_track

@@ -12,9 +12,8 @@ import threading
 from contextlib import suppress
 from ipaddress import ip_address
 
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import reason_of
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.diagnostics.files import os_error_reason
 from btlang.robots.files import socket_folder
 from btlang.support.user_dirs import user_dir
 from btlang.task.commands.companion import require_server
@@ -94,7 +93,7 @@ def serve(options: argparse.Namespace) -> int:
             Api(accounts, load_key(server_folder()), ros=options.ros), listener, certificate, control_path(), ready
         )
     except (OSError, ssl.SSLError) as error:
-        raise _refuse(options, reason_of(error)) from None
+        raise _refuse(options, os_error_reason(error)) from None
     finally:
         accounts.close()
     return 0
@@ -123,7 +122,7 @@ def _certificate(options: argparse.Namespace) -> Certificate:
         tls(given)
         return given
     except (OSError, ssl.SSLError) as error:
-        raise _refuse(options, f"its certificate can't be used: {reason_of(error)}") from None
+        raise _refuse(options, f"its certificate can't be used: {os_error_reason(error)}") from None
     except ValueError:
         raise _refuse(options, "its certificate can't be read: it must be in PEM") from None
 

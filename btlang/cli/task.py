@@ -11,12 +11,12 @@ from collections.abc import Callable
 
 from btlang.cli.parser import check_act, check_count
 from btlang.cli.verbs import VERBS
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.files import read_source
 from btlang.task import messages
 from btlang.task.commands.client import RobotClient
 from btlang.task.messages import Answer, Command, wrong
 from btlang.task.store.records import TaskState
-from btlang.text.escaping import one_line
+from btlang.text.formatting import one_line
 from btlang.text.output import pass_on, show
 
 TYPE_CHECKING = False

@@ -11,17 +11,15 @@ from contextlib import suppress
 from functools import cache, partial
 from xml.etree import ElementTree
 
-from btlang.backends.files import write_file
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.diagnostics.files import read_source, write_file
 from btlang.support.record import Record
 from btlang.support.test_files import ENDING
 from btlang.testing.observations import measure_coverage
 from btlang.testing.runner import Result, brief_time, run_chaos, run_test
 from btlang.testing.test import MissionTest
 from btlang.testing.test_file import read_tests
-from btlang.text.escaping import one_line
+from btlang.text.formatting import one_line
 from btlang.text.output import show
 from btlang.text.source import Source, Span
 

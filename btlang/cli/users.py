@@ -14,7 +14,7 @@ from btlang.task.commands.client import check_name, names_up
 from btlang.task.commands.companion import require_server
 from btlang.task.messages import wrong
 from btlang.task.schedule.calendar import format_moment
-from btlang.text.escaping import one_line
+from btlang.text.formatting import one_line
 from btlang.text.output import pass_on, show
 
 TYPE_CHECKING = False

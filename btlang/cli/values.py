@@ -154,7 +154,7 @@ def server_address(text: str) -> str:
 
 def robot_name(text: str) -> str:
     """Read the name of a robot that is up, or ""."""
-    from btlang.diagnostics.errors import MissionError
+    from btlang.diagnostics.diagnostic import MissionError
     from btlang.task.commands.client import check_name
 
     try:

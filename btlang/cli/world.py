@@ -6,15 +6,14 @@ import os
 import sys
 from shutil import get_terminal_size
 
-from btlang.backends.files import write_file
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import read_source, unwritable
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.files import read_source, unwritable, write_file
 from btlang.maps.summary import summarize
 from btlang.robots.registry import body_of
 from btlang.robots.worlds.world_file import read_world
 from btlang.robots.worlds.world_writing import to_toml
 from btlang.run.robot_state import RobotState
-from btlang.text.escaping import one_line
+from btlang.text.formatting import one_line
 from btlang.text.output import WIDEST, can_draw, is_unicode, show
 from btlang.text.source import Source
 from btlang.vocabulary.shipped import DEFAULT_WORLD

@@ -11,7 +11,7 @@ from queue import Empty, SimpleQueue
 
 from btlang.devices import kinds
 from btlang.devices.kinds import Command, Reading
-from btlang.engine.leaves.leaf import ActionFailed, Failed, Unknown, reason_of, reason_text
+from btlang.engine.leaves.leaf import ActionFailed, Failed, Unknown, failure_reason, reason_text
 from btlang.robots.geometry import Pose
 from btlang.robots.robot import Robot
 from btlang.support.record import Record
@@ -62,7 +62,7 @@ def unpack(data: bytes) -> Any:
 
 def pack_error(problem: BaseException) -> dict[str, Any]:
     """Return the answer for an exception; `value_of` raises it on the other side."""
-    return {"problem": reason_of(problem), "unknown": isinstance(problem, Unknown)}
+    return {"problem": failure_reason(problem), "unknown": isinstance(problem, Unknown)}
 
 
 def value_of(answer: Mapping[str, Any]) -> Any:

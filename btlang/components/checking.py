@@ -13,8 +13,7 @@ from btlang.components.words import check_words
 from btlang.devices.driver import SIMULATED, DeviceError, driver_class, make_driver
 from btlang.devices.kinds import KINDS
 from btlang.devices.simulated import SimulatedDevice
-from btlang.diagnostics.diagnostic import Diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError
 from btlang.robots.bodies.body import Body, ComponentPart, Device
 from btlang.robots.bodies.body_file import BodyError, load_body
 from btlang.robots.bodies.gesture_words import gesture_words

@@ -17,7 +17,7 @@ from btlang.devices.device_set import DeviceSet, Reads
 from btlang.devices.driver import DeviceError
 from btlang.devices.kinds import KINDS, Command, Reading
 from btlang.devices.simulated import twin
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.robots.bodies.body_file import unusable_robot
 from btlang.robots.platforms import NODES, import_function
 from btlang.robots.simulation.connection import Simulation

@@ -9,7 +9,7 @@ from inspect import isgenerator, signature
 
 from btlang.components.component import ACTIVE, TRANSITIONS, UNCONFIGURED, Component, ComponentError
 from btlang.components.location import describe, load_class
-from btlang.engine.leaves.leaf import ActionFailed, NotThere, described, reason_of
+from btlang.engine.leaves.leaf import ActionFailed, NotThere, describe_exception, failure_reason
 from btlang.robots.command_gate import RobotProxy
 
 TYPE_CHECKING = False
@@ -67,7 +67,7 @@ class InsideHost:
         if problems:
             self.state = transition.fails
             self._fail(problems[0])
-            raise ComponentError(reason_of(problems[0])) from problems[0]
+            raise ComponentError(failure_reason(problems[0])) from problems[0]
         self.state = transition.ends
 
     def look(self) -> str | None:
@@ -87,7 +87,7 @@ class InsideHost:
         except KeyboardInterrupt:
             raise
         except BaseException as problem:
-            self.state, self.problem = UNCONFIGURED, f"failed in its step: {reason_of(problem)}"
+            self.state, self.problem = UNCONFIGURED, f"failed in its step: {failure_reason(problem)}"
             self._fail(problem)
             self._changed()
 
@@ -117,9 +117,11 @@ class InsideHost:
 
     def _fail(self, problem: BaseException) -> None:
         try:
-            self._component.error(problem if isinstance(problem, Exception) else ComponentError(described(problem)))
+            self._component.error(
+                problem if isinstance(problem, Exception) else ComponentError(describe_exception(problem))
+            )
         except Exception as another:
-            self.problem = f"failed in its error hook: {described(another)}"
+            self.problem = f"failed in its error hook: {describe_exception(another)}"
 
 
 def _call(method: Callable[..., Any], ports: Mapping[str, Any], robot: Any) -> Any:

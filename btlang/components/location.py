@@ -9,7 +9,7 @@ from importlib.util import find_spec
 from inspect import signature
 
 from btlang.components.component import Component, ComponentError, ParameterError
-from btlang.engine.leaves.leaf import described
+from btlang.engine.leaves.leaf import describe_exception
 from btlang.robots.files import module_of
 from btlang.text.output import pass_on, show
 
@@ -59,7 +59,7 @@ def load_class(place: str, folder: str) -> type[Component]:
         for part in name.split("."):
             found = getattr(found, part)
     except Exception as problem:  # whatever somebody's module raises
-        raise ComponentError(f"{place} can't be loaded: {described(problem)}") from problem
+        raise ComponentError(f"{place} can't be loaded: {describe_exception(problem)}") from problem
     if not (isinstance(found, type) and issubclass(found, Component)):
         raise ComponentError(f"{place} isn't a class that is derived from btlang.Component")
     return found

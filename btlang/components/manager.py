@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from btlang.components.component import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED, ComponentAbsent, ComponentError
 from btlang.components.location import locate_class
-from btlang.engine.leaves.leaf import ActionFailed, NotThere, described
+from btlang.engine.leaves.leaf import ActionFailed, NotThere, describe_exception
 from btlang.robots.bodies.body import ComponentPart
 from btlang.support.record import Record
 
@@ -302,7 +302,7 @@ class ComponentKeeper:
         except ComponentError as problem:
             self._fail(str(problem))
         except BaseException as problem:  # of a class by somebody else, sys.exit() too
-            self._fail(described(problem))
+            self._fail(describe_exception(problem))
         finally:
             host.close()
 

@@ -20,7 +20,7 @@ from btlang.components.calls import pack, pack_error, unpack
 from btlang.components.component import ACTIVE, SHARED, UNCONFIGURED, ComponentError
 from btlang.components.remote_leaf import RemoteLeaf, WorkerRequest
 from btlang.devices.driver import DeviceError
-from btlang.engine.leaves.leaf import ActionFailed, NotThere, Unknown, described
+from btlang.engine.leaves.leaf import ActionFailed, NotThere, Unknown, describe_exception
 from btlang.robots.files import socket_folder
 
 TYPE_CHECKING = False
@@ -252,7 +252,7 @@ class ProcessHost:
                     self._disconnect(f"says what can't be understood: a message of more than {_LONGEST >> 20} MB")
                 break
             except Exception as problem:  # whatever it says, and whoever hears it
-                self._disconnect(f"says what can't be understood: {described(problem)}")
+                self._disconnect(f"says what can't be understood: {describe_exception(problem)}")
                 break
         self._disconnect(self._ending())
 

@@ -7,8 +7,7 @@ from itertools import chain
 
 from btlang.components.component import ComponentError
 from btlang.components.location import words_file
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.robots.bodies.body_file import unusable_robot
 from btlang.robots.registry import body_of
 from btlang.text.source import NOWHERE

@@ -33,7 +33,7 @@ from btlang.components.component import (
     Transition,
 )
 from btlang.components.location import describe, load_class
-from btlang.engine.leaves.leaf import described
+from btlang.engine.leaves.leaf import describe_exception
 from btlang.robots.bodies.body_file import load_body
 
 TYPE_CHECKING = False
@@ -217,7 +217,7 @@ class ComponentLifeCycle:
         try:
             self.component.step(seconds)
         except BaseException as problem:
-            self.problem = f"failed in its step: {described(problem)}"
+            self.problem = f"failed in its step: {describe_exception(problem)}"
             self._fail(problem, UNCONFIGURED)
             for worker in tuple(self.workers):
                 worker.report()
@@ -227,9 +227,11 @@ class ComponentLifeCycle:
         for worker in self.workers:
             worker.state = state
         try:
-            self.component.error(problem if isinstance(problem, Exception) else ComponentError(described(problem)))
+            self.component.error(
+                problem if isinstance(problem, Exception) else ComponentError(describe_exception(problem))
+            )
         except Exception as another:
-            self.problem = f"failed in its error hook: {described(another)}"
+            self.problem = f"failed in its error hook: {describe_exception(another)}"
 
     def _report_event(self, kind: str, data: Mapping[str, Any]) -> None:
         for worker in tuple(self.workers):

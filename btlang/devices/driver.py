@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Protocol
 
 from btlang.devices.kinds import Command, Reading
-from btlang.engine.leaves.leaf import described
+from btlang.engine.leaves.leaf import describe_exception
 from btlang.robots.bodies.body import Device
 from btlang.robots.files import module_of
 from btlang.robots.robot import RobotError, SensorSilent
@@ -110,4 +110,4 @@ def make_driver(name: str, folder: str, port: str, devices: Sequence[Device]) ->
     except DeviceError:
         raise
     except Exception as problem:
-        raise DeviceError(f'the driver "{name}" can\'t be made: {described(problem)}') from problem
+        raise DeviceError(f'the driver "{name}" can\'t be made: {describe_exception(problem)}') from problem

@@ -11,7 +11,7 @@ from math import fsum, isfinite, isnan
 
 from btlang.devices.driver import Device, DeviceError, DeviceSilent, Driver
 from btlang.devices.kinds import KINDS, Charge, Command, Distance, Image, JointTarget, Reading, Scan
-from btlang.engine.leaves.leaf import described
+from btlang.engine.leaves.leaf import describe_exception
 from btlang.robots.motion.guard.readings import ChargeCheck
 
 _NUMBERS, _NO_NUMBER, _NOT_FINITE = ("float", "int"), "not a number", "not finite"
@@ -147,7 +147,7 @@ class DeviceLoop:
             except DeviceError as problem:
                 self._lost(str(problem))
             except BaseException as problem:  # of a driver by somebody else, sys.exit() too: others go on
-                self._lost(described(problem))
+                self._lost(describe_exception(problem))
             with suppress(Exception):
                 self._driver.close()
             self._stopped.wait(_RETRY)

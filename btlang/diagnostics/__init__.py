@@ -1,1 +1,1 @@
-"""What was wrong with an input: data here, prose in `codes`, layout in `render`."""
+"""Messages about inputs: diagnostics as data, their codes and texts, and how they are reported."""

@@ -1,4 +1,4 @@
-"""Every code that a message can have, with its texts. Codes are a contract: they are never given a new meaning.
+"""The table of all codes that a message can have, with their texts. A code never gets a new meaning.
 
 BT00x reading, BT01x words, BT02x and BT03x how a sentence is put together, BT04x what it means,
 BT05x what is allowed but probably not meant, BT06x keyword files,

@@ -1,4 +1,4 @@
-"""The page of each code: what its message means, an example that gets it, and the same example mended.
+"""Pages about codes: what a message means, an example that causes it, and the same example corrected.
 
 A page is `pages/BTnnn.md`; its first line is `# BTnnn: title`. tests/diagnostics/test_pages.py says how examples are
 written, and runs them.
@@ -11,11 +11,9 @@ import re
 from collections.abc import Iterable
 
 from btlang.diagnostics.codes import CODES, NAMES, PLAIN
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.errors import MissionError
-from btlang.text.enumeration import joined
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
+from btlang.text.formatting import TextTable, joined
 from btlang.text.source import Source, Span
-from btlang.text.table import Table
 
 PAGES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "pages")
 _CODE = re.compile(r"(?:bt)?(\d+)", re.IGNORECASE | re.ASCII)
@@ -27,7 +25,8 @@ def is_code(text: str) -> bool:
 
 
 def explain_code(code: str) -> str:
-    """The page of a code without its last line end; `13` is BT013, too, and a warning has a name: `two readings`.
+    """Return the page of a code without its last line end. `13` is BT013, too, and a warning has a name: `two
+    readings`.
 
     Raises MissionError (BT090).
     """
@@ -40,20 +39,20 @@ def explain_code(code: str) -> str:
 
 
 def pointer(codes: Iterable[str]) -> str:
-    """Which command says more about messages with these codes, "" if none does."""
+    """Return which command says more about messages with these codes, "" if none does."""
     known = sorted({code for code in codes if code not in PLAIN})
     if len(known) < 2:
         return "".join(f"For more, run: btc explain {code}" for code in known)
     return f"For more, run: btc explain CODE, where CODE is {joined(known, 'or')}"
 
 
-def all_codes() -> Table:
-    """Each code with the title of its page."""
-    return Table(tuple((code, title_of(code)) for code in sorted(CODES)))
+def all_codes() -> TextTable:
+    """List each code with the title of its page."""
+    return TextTable(tuple((code, title_of(code)) for code in sorted(CODES)))
 
 
 def title_of(code: str) -> str:
-    """The title of its page."""
+    """Return the title of the page of a code."""
     return _page(code).partition("\n")[0].partition(": ")[2]
 
 

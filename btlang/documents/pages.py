@@ -7,17 +7,15 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from btlang.backends.english import to_english
-from btlang.backends.files import put, write_file
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import read_source, unwritable
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.files import read_source, unwritable, write_file, write_output
 from btlang.documents.project import DocumentedProject, KeyReader, TreeChapter, nodes_of
 from btlang.frontends.btcpp.models import nav2_models
 from btlang.pictures.tree_picture import to_svg
-from btlang.text.escaping import one_line, printable
+from btlang.text.formatting import one_line, printable
 from btlang.tree.catalogue import BEHAVIOR_TREE_CPP, CATALOGUE, SUBTREE
 from btlang.tree.comments import KEPT
-from btlang.tree.model import NodeModel, PortModel
-from btlang.tree.node import Tree
+from btlang.tree.node import NodeModel, PortModel, Tree
 from btlang.vocabulary.lexicon import Lexicon
 
 TYPE_CHECKING = False
@@ -262,7 +260,7 @@ def write_pages(project: DocumentedProject, paths: Sequence[str], out: str | Non
         [file] = project.files
         if out is not None:
             _check(out)
-        put(writer.page(file, pictures=False), out)
+        write_output(writer.page(file, pictures=False), out)
         return True
     contents = {writer.pages[file]: writer.page(file) for file in project.files}
     contents |= {INDEX: writer.index(), **dict(writer.pictures())}

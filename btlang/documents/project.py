@@ -6,10 +6,10 @@ import os
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
 from btlang.api import Mission
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.files import read_source
 from btlang.engine.instance import blackboard_key
-from btlang.engine.script.names import READS, SETS, uses_of_names
+from btlang.engine.script.tokens import READS, SETS, find_name_uses
 from btlang.frontends.btcpp.file import XmlFile
 from btlang.frontends.btcpp.files import read_files
 from btlang.frontends.btcpp.models import nav2_models
@@ -21,9 +21,8 @@ from btlang.projects.files import begins_as_tree, empty_folder_error, find_files
 from btlang.support.record import Record
 from btlang.support.test_files import is_test_file
 from btlang.text.source import Source
-from btlang.tree.catalogue import CATALOGUE, KEY, SCRIPT, SUBTREE, held
-from btlang.tree.model import NodeModel
-from btlang.tree.node import Node, Tree
+from btlang.tree.catalogue import CATALOGUE, KEY, SCRIPT, SUBTREE, port_content
+from btlang.tree.node import Node, NodeModel, Tree
 from btlang.tree.visit import subtree_names
 from btlang.vocabulary.lexicon import Lexicon
 
@@ -44,9 +43,9 @@ class KeyReader:
         return found
 
     def _of_port(self, node: Node, port: str, text: str) -> list[tuple[str, set[str]]]:
-        holds = held(node.id, port)
+        holds = port_content(node.id, port)
         if holds == SCRIPT:
-            return list(uses_of_names(text).items())
+            return list(find_name_uses(text).items())
         if holds == KEY:
             return [(text.strip("{} "), {SETS})]
         key = blackboard_key(port, text)

@@ -1,1 +1,1 @@
-"""What an editor asks of a text: its tree and outline, help, completions, names, and changes by the tree."""
+"""Editing: what an editor asks of a text, namely its tree, help, completions and names, and changes by the tree."""

@@ -1,20 +1,21 @@
-"""All that an editor shows of a text: its messages, its tree and its outline."""
+"""Documents: everything that an editor shows of a text, namely its messages, its tree and its outline."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
+
 from btlang.api import Mission
-from btlang.diagnostics.diagnostic import Diagnostic
-from btlang.diagnostics.errors import MissionError
-from btlang.editing.messages import messages
-from btlang.editing.outline import outline
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError
+from btlang.diagnostics.formats import to_data
 from btlang.editing.syntax import Syntax
 from btlang.editing.values import abilities, values_of
-from btlang.editing.words import Words
+from btlang.editing.words import RobotWords
 from btlang.frontends.table import frontend_of
 from btlang.printer.mission import printer_of
 from btlang.printer.phrase import is_written
 from btlang.support.gc_pause import gc_paused
-from btlang.text.source import Source
+from btlang.text.source import Source, Span
+from btlang.tree import ast
 from btlang.tree.ast import Phrase, Program
 
 TYPE_CHECKING = False
@@ -24,11 +25,15 @@ if TYPE_CHECKING:
 
     from btlang.passes.compilation import Origins
 
+_kept: list[_Read] = []
+"""What was read for its messages last: only the next document may use it, as files that it names may change later."""
+_LONGEST = 80  # characters of what has no name
+
 
 class _Read:
     """A text that was read: its mission, None for one that doesn't compile, and what is wrong with it."""
 
-    def __init__(self, source: Source, words: Words) -> None:
+    def __init__(self, source: Source, words: RobotWords) -> None:
         self.key, self.source, self.sort = _cache_key(source, words), source, frontend_of(source)
         self.origins: Origins = {}
         self.mission: Mission | None = None
@@ -38,28 +43,24 @@ class _Read:
         except MissionError as error:
             self.problems = error.diagnostics
         else:
-            self.problems = (*self.mission.warnings, *_misnamed(self.mission))
+            self.problems = (*self.mission.warnings, *_report_misnamed(self.mission))
 
     def summary(self) -> dict[str, Any]:
         ok = self.mission is not None
         return {"ok": ok, "sort": self.sort, "messages": messages(self.problems, self.source)}
 
 
-_kept: list[_Read] = []
-"""What was read for its messages last: only the next document may use it, as files that it names may change later."""
-
-
-def text_messages(source: Source, words: Words) -> dict[str, Any]:
+def text_messages(source: Source, words: RobotWords) -> dict[str, Any]:
     """Return `ok`, `sort` and `messages` of a document. That of the same text is faster if it is the next one."""
     with gc_paused:
         _kept[:] = [_Read(source, words)]
         return _kept[0].summary()
 
 
-def document(source: Source, words: Words) -> dict[str, Any]:
+def document(source: Source, words: RobotWords) -> dict[str, Any]:
     """Return what is shown of a text, which may be anything. Offsets are characters.
 
-    - `ok`: whether it compiles; `sort`: "english", "xml" or "json"; `messages`: see btlang.editing.messages.
+    - `ok`: whether it compiles; `sort`: "english", "xml" or "json"; `messages`: see btlang.editing.document.
 
     Where it compiles also:
 
@@ -67,7 +68,7 @@ def document(source: Source, words: Words) -> dict[str, Any]:
     One that can be changed (btlang.editing.edits) has the number of its `kind`;
     - `kinds`: of each the `sort`, "command" or "condition", the `edits` that may be done, and the `values`: name, type
     and words of each;
-    - `outline`: see btlang.editing.outline.
+    - `outline`: see btlang.editing.document.
     """
     with gc_paused:
         kept = _kept.pop() if _kept else None
@@ -80,13 +81,13 @@ def document(source: Source, words: Words) -> dict[str, Any]:
         return {**read.summary(), "nodes": nodes, "kinds": kinds, "outline": outline(mission, read.source)}
 
 
-def _cache_key(source: Source, words: Words) -> tuple[object, ...]:
+def _cache_key(source: Source, words: RobotWords) -> tuple[object, ...]:
     """Return what decides how a text is read, but for the files that it names."""
     world = words.world.text if isinstance(words.world, Source) else words.world
     return source.text, source.name, tuple(words.keywords), world, words.language
 
 
-def _misnamed(mission: Mission) -> tuple[Diagnostic, ...]:
+def _report_misnamed(mission: Mission) -> tuple[Diagnostic, ...]:
     """Return what would keep a tree from running that names its nodes by their ids."""
     try:
         mission.check()
@@ -143,3 +144,69 @@ def _kinds(nodes: list[dict[str, Any]], mission: Mission, program: Program, orig
                 numbers[phrase] = number
         node["kind"] = number
     return kinds
+
+
+def outline(mission: Mission, source: Source) -> list[dict[str, Any]]:
+    """Return the parts in the order of the text. Offsets are characters.
+
+    Each has its `name`; `start` and `end` of it, `of` the whole; its `kind`: "definition", "fact", "rule", "command" or
+    "include". Of XML and JSON there are only the subtrees.
+    """
+    named = [
+        {"name": name, "start": place.start, "end": place.end, "kind": kind, "of": (whole.start, whole.end)}
+        for kind, name, place, whole in _parts(mission)
+        if whole.source is source
+    ]
+    return sorted(named, key=lambda part: part["of"][0])
+
+
+def _parts(mission: Mission) -> Iterator[tuple[str, str, Span, Span]]:
+    """Return the kind, the name, where that is, and the whole."""
+    program = mission.syntax
+    if program is None:
+        for name, root in mission.tree.subtrees:
+            if root.span is not None:
+                yield "definition", name, root.span, root.span
+        return
+    for definition in program.definitions:
+        yield "definition", definition.name, definition.name_span, definition.span
+    for fact in program.facts:
+        yield "fact", fact.name, fact.span, fact.span
+    for include in program.includes:
+        yield "include", include.path, include.span, include.span
+    for command in _statements(program.body):
+        kind = "rule" if isinstance(command, ast.Whenever) else "command"
+        yield kind, _first_line(command.span.text), command.span, command.span
+
+
+def _statements(body: ast.Ast | None) -> tuple[ast.Ast, ...]:
+    """Return the commands that follow one another."""
+    if isinstance(body, ast.Chain) and body.operator == "sequence" and not body.bracketed:
+        return body.items
+    return () if body is None else (body,)
+
+
+def _first_line(text: str) -> str:
+    line = text.partition("\n")[0].rstrip()
+    return line if len(line) <= _LONGEST else f"{line[: _LONGEST - 1]}…"
+
+
+def messages(problems: Iterable[Diagnostic], source: Source) -> list[dict[str, Any]]:
+    """Return the messages of `to_data`; each place has its `start` and `end`, None where it is in another text."""
+    return [_message(problem, source) for problem in problems]
+
+
+def offsets(span: Span | None, source: Source) -> dict[str, int | None]:
+    """Return the characters of a place in a text."""
+    if span is None or span.source is not source:
+        return {"start": None, "end": None}
+    return {"start": span.start, "end": span.end}
+
+
+def _message(problem: Diagnostic, source: Source) -> dict[str, Any]:
+    data = to_data(problem) | offsets(problem.span, source)
+    if problem.fix is not None:
+        data["fix"] |= offsets(problem.fix[0], source)
+    for name, spans in (("readings", problem.readings), ("notes", problem.notes)):
+        data[name] = [each | offsets(place, source) for each, (place, _) in zip(data[name], spans, strict=True)]
+    return data

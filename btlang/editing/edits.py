@@ -1,4 +1,4 @@
-"""Changes of a mission by its tree: what somebody does to nodes, done to the English that says them.
+"""Edits of a mission by its tree: what somebody does to nodes is done to the English that says them.
 
 The English afterwards compiles to exactly the tree that was meant, only what was touched is rewritten, and all
 comments stay. Which form says a node is looked up in the syntax (btlang.editing.syntax).
@@ -8,14 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
-from btlang.editing.changes import Change, changed
-from btlang.editing.forms import FORMS, amount_of
-from btlang.editing.paths import at_path, difference, path_of, place_of
-from btlang.editing.syntax import Step, Syntax, Unplaced, are_equal, joined
-from btlang.editing.values import valued
-from btlang.editing.words import Words
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.editing.changes import Change, apply_changes, find_at_path, find_difference, find_path, find_place
+from btlang.editing.palette import FORMS, amount_of
+from btlang.editing.syntax import ChangeStep, Syntax, Unplaced, are_equal, joined
+from btlang.editing.values import find_place_of_value
+from btlang.editing.words import RobotWords
 from btlang.editing.writing import Writer
 from btlang.frontends.mission.reader import read_mission
 from btlang.frontends.table import frontend_of
@@ -30,7 +28,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from btlang.editing.paths import Path
+    from btlang.editing.changes import Path
 
 
 class Edit(Record):
@@ -39,8 +37,8 @@ class Edit(Record):
     - `delete`: it goes, with what only serves it.
     - `insert`: the commands or conditions `words` come `place` ("before", "after", "inside") the node.
     - `copy`, `move`: the node comes `place` the node `to`.
-    - `wrap`: it becomes the body of the `form` (a key of btlang.editing.forms.FORMS), with `words` for what that needs:
-    a condition, a number, a duration or a time.
+    - `wrap`: it becomes the body of the `form` (a key of btlang.editing.palette.FORMS), with `words` for what that
+      needs: a condition, a number, a duration or a time.
     - `unwrap`: the parts of a form or chain take its place, conditions and amounts go.
     - `turn`: a condition, or that of a form, becomes its opposite; the parts of a chain of commands change their order.
     - `value`: its `port` gets the value `words`.
@@ -64,13 +62,13 @@ def read_edit(data: object) -> Edit:
         kind = int if name in ("node", "last", "to") else str
         optional = value is None and name in ("last", "to")
         if name not in Edit.fields or not (type(value) is kind or optional):
-            raise _refused(f"'{name}' can't be {value!r}")
+            raise _refuse(f"'{name}' can't be {value!r}")
     if "do" not in fields or "node" not in fields:
-        raise _refused("it must be an object with 'do' and 'node'")
+        raise _refuse("it must be an object with 'do' and 'node'")
     return Edit(**fields)
 
 
-def _refused(reason: str, span: Span = NOWHERE) -> MissionError:
+def _refuse(reason: str, span: Span = NOWHERE) -> MissionError:
     return MissionError([diagnostic("BT220", span, reason=reason)])
 
 
@@ -83,7 +81,7 @@ class Edited(Record):
     end: int
 
 
-def edit(source: Source, words: Words, edit: Edit) -> dict[str, Any]:
+def edit(source: Source, words: RobotWords, edit: Edit) -> dict[str, Any]:
     """Return the `changes` of a mission in English, and `start` and `end` of what they touched, in the text that they
     make.
 
@@ -91,12 +89,12 @@ def edit(source: Source, words: Words, edit: Edit) -> dict[str, Any]:
     mission then, or is wrong with it now.
     """
     if frontend_of(source) != "english":
-        raise _refused("it isn't English")
+        raise _refuse("it isn't English")
     editor = Editor(source, words.vocabulary(source))
     try:
         done = editor.edited(edit)
     except Unplaced as error:
-        raise _refused(str(error), editor.span(edit)) from None
+        raise _refuse(str(error), editor.span(edit)) from None
     return {"changes": [done.change.as_dict()], "start": done.start, "end": done.end}
 
 
@@ -122,8 +120,8 @@ class Editor:
         read = read_mission(self._source.with_text(text), self._vocabulary).mission
         if not are_equal(compile_mission(read, self._vocabulary), lower_mission(program, self._vocabulary)):
             raise Unplaced("no English says it there")
-        start, end = place_of(focus, Syntax(program, self._vocabulary), read)
-        return Edited(text, difference(self._source.text, text), start, end)
+        start, end = find_place(focus, Syntax(program, self._vocabulary), read)
+        return Edited(text, find_difference(self._source.text, text), start, end)
 
     # -- what is done, as the text and the syntax afterwards, and what of that was touched
 
@@ -134,7 +132,7 @@ class Editor:
     def insert(self, wanted: Edit) -> _Done:
         target = self._node(wanted.node)
         new = self._read(wanted.words, self._takes_condition(target, wanted.place))
-        return self._write(self._placed(target, wanted.place, new), new[0])
+        return self._write(self._place(target, wanted.place, new), new[0])
 
     def copy(self, wanted: Edit) -> _Done:
         nodes = self._nodes(wanted)
@@ -142,7 +140,7 @@ class Editor:
         if self._takes_condition(target, wanted.place) != self._syntax.is_condition(nodes[0]):
             raise Unplaced("a condition stands where a condition is asked for, and a command elsewhere")
         copies = [node.replace(bracketed=True) if isinstance(node, ast.Chain) else node.replace() for node in nodes]
-        steps = self._placed(target, wanted.place, copies)
+        steps = self._place(target, wanted.place, copies)
         program = self._syntax.changed(steps[-1])
         writer = Writer(self._source, self._syntax, copies=dict(zip(map(id, copies), nodes, strict=True)))
         return self._done(writer.written(steps, program), program, copies[0])
@@ -157,8 +155,8 @@ class Editor:
         copied = Syntax(program, self._vocabulary)
         if any(id(node) not in copied.slots for node in nodes):  # it holds the copy now
             raise Unplaced("it can't come into itself")
-        paths = [path_of(node, copied) for node in nodes]
-        text, _ = self._replaced(text, paths, ())
+        paths = [find_path(node, copied) for node in nodes]
+        text, _ = self._replace(text, paths, ())
         return text, copied.changed(copied.steps(nodes, ())[-1]), focus
 
     def wrap(self, wanted: Edit) -> _Done:
@@ -213,7 +211,7 @@ class Editor:
 
     def value(self, wanted: Edit) -> _Done:
         node = self._node(wanted.node)
-        place = valued(node, wanted.port)
+        place = find_place_of_value(node, wanted.port)
         new = place.filled(amount_of(place.kind, wanted.words, self._vocabulary))
         first = self._writer().values(node, place.kind, place.text, wanted.words)
         return self._write(self._syntax.steps((node,), (new,)), new, first)
@@ -229,7 +227,7 @@ class Editor:
         body = joined(nodes, self._operator(nodes[0]))
         defined = ast.Definition(name, (), body, nodes[0].span, nodes[0].span)
         mission = self._syntax.mission
-        step = Step(mission, "definitions", len(mission.definitions), (), (defined,))
+        step = ChangeStep(mission, "definitions", len(mission.definitions), (), (defined,))
         writer, program = self._writer(), self._syntax.changed(step)
         near = self._statement(nodes[0])
         try:
@@ -237,30 +235,30 @@ class Editor:
         except (Unplaced, MissionError):
             change = writer.written([step], program)
         used = ast.Name(name, (), nodes[0].span)
-        paths = [path_of(node, self._syntax) for node in nodes]
-        return *self._replaced(changed(self._source.text, [change]), paths, (used,)), used
+        paths = [find_path(node, self._syntax) for node in nodes]
+        return *self._replace(apply_changes(self._source.text, [change]), paths, (used,)), used
 
     # -- parts of edits
 
-    def _replaced(self, text: str, paths: Sequence[Path], new: Sequence[ast.Ast]) -> tuple[str, ast.Program]:
+    def _replace(self, text: str, paths: Sequence[Path], new: Sequence[ast.Ast]) -> tuple[str, ast.Program]:
         """Return the second step of an edit, in the text that the first one made: other nodes in the place of those at
         the end of some ways. Their comments go, as far as they stand elsewhere by then.
         """
         source = self._source.with_text(text)
         syntax = Syntax(read_mission(source, self._vocabulary).mission, self._vocabulary)
-        old = [at_path(path, syntax.mission) for path in paths]
+        old = [find_at_path(path, syntax.mission) for path in paths]
         steps = syntax.steps(old, new)
         after = syntax.changed(steps[-1])
         writer = Writer(source, syntax)
         change = writer.written(steps, after, gone=writer.comments_of(old, self._source.text))
-        return changed(text, [change]), after
+        return apply_changes(text, [change]), after
 
     def _operator(self, node: ast.Ast) -> str:
         """Return the operator of the chain that a node is a part of, or would be with others in its place."""
         around = self._syntax.holder(node)
         return around.operator if isinstance(around, ast.Chain) else "sequence"
 
-    def _placed(self, target: ast.Ast, place: str, new: Sequence[ast.Ast]) -> list[Step]:
+    def _place(self, target: ast.Ast, place: str, new: Sequence[ast.Ast]) -> list[ChangeStep]:
         """Return what comes before, after or inside a node."""
         syntax = self._syntax
         if place == "inside":
@@ -286,14 +284,14 @@ class Editor:
     def _writer(self) -> Writer:
         return Writer(self._source, self._syntax, self._given)
 
-    def _write(self, steps: list[Step], focus: ast.Ast | None, first: Iterable[Change] = ()) -> _Done:
+    def _write(self, steps: list[ChangeStep], focus: ast.Ast | None, first: Iterable[Change] = ()) -> _Done:
         program = self._syntax.changed(steps[-1])
         if program.body is None and self._syntax.mission.body is not None:
             raise Unplaced("a mission needs a command")
         return self._done(self._writer().written(steps, program, first=first), program, focus)
 
     def _done(self, change: Change, program: ast.Program, focus: ast.Ast | None) -> _Done:
-        return changed(self._source.text, [change]), program, focus
+        return apply_changes(self._source.text, [change]), program, focus
 
     def _read(self, words: str, is_condition: bool) -> list[ast.Ast]:
         """Read new commands or a condition, where all names of the mission are known."""

@@ -1,4 +1,4 @@
-"""Where the parts of a mission stand in its text: which lines are a statement's own, and where comments are."""
+"""Lines of a text: which belong to a statement, and where comments are."""
 
 from __future__ import annotations
 

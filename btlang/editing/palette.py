@@ -1,19 +1,24 @@
-"""What can be put into a mission, by topic, each as a text that is whole: phrases, forms, the mission's own names."""
+"""Palettes: the phrases, forms and names that can be put into a mission, by topic, each as a whole text.
+
+Forms, in which commands and conditions can be wrapped, go by the names that editors use for them.
+"""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from functools import lru_cache
 
-from btlang.diagnostics.errors import MissionError
-from btlang.editing.forms import FORMS
-from btlang.editing.words import Words
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.editing.syntax import Unplaced
+from btlang.editing.words import RobotWords
 from btlang.frontends.mission.reader import lexed, read_mission
 from btlang.frontends.table import frontend_of
 from btlang.passes import compile_mission
-from btlang.printer.exact import quoted
+from btlang.printer.exact import quote
+from btlang.support.record import Record
 from btlang.text.source import Source
+from btlang.tree import ast
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.items import Item, items
 from btlang.vocabulary.lexicon import Lexicon
@@ -24,11 +29,12 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+
 _SORTS = {"command": "action", "condition": "condition", "word": "form"}
 _OWN = "this mission"
 
 
-def palette(source: Source, words: Words) -> dict[str, Any]:
+def palette(source: Source, words: RobotWords) -> dict[str, Any]:
     """Return what can be put in, and put round what is there.
 
     `topics`: each with its `topic` and its `items`, the names of the mission first.
@@ -36,13 +42,13 @@ def palette(source: Source, words: Words) -> dict[str, Any]:
     An item has its `words`, `help`, `example`, `sort` ("action", "condition", "form" or "name") and what to `insert`: a
     whole command or condition, with examples in its slots.
 
-    `forms`: what nodes can be wrapped in (btlang.editing.forms): `name`, `sort` of what it is round ("command" or
+    `forms`: what nodes can be wrapped in (btlang.editing.palette): `name`, `sort` of what it is round ("command" or
     "condition"), what it `needs` and an `example` of that. Raises MissionError for words that can't be used.
     """
     vocabulary = words.vocabulary(source)
     own = [*_names(source, vocabulary)] if frontend_of(source) == "english" else []
     topics = [{"topic": _OWN, "items": own}] if own else []
-    return {"topics": [*topics, *_shipped(vocabulary)], "forms": [*_forms(vocabulary)]}
+    return {"topics": [*topics, *_list_shipped(vocabulary)], "forms": [*_forms(vocabulary)]}
 
 
 def _forms(vocabulary: Lexicon) -> Iterator[dict[str, str]]:
@@ -57,17 +63,17 @@ def _names(source: Source, vocabulary: Lexicon) -> Iterator[dict[str, str]]:
     for header in definitions.headers.values():
         if header.name:
             types = dict(definitions.types.get(header.body, ()))
-            insert = _filled(name_form(header.name), types, vocabulary)
+            insert = _fill(name_form(header.name), types, vocabulary)
             if header.is_quoted:
-                insert = f"{vocabulary.word('do')} {quoted(header.name, vocabulary)}"
+                insert = f"{vocabulary.word('do')} {quote(header.name, vocabulary)}"
             yield {"words": header.name, "help": "", "example": "", "sort": "name", "insert": insert}
 
 
 @lru_cache(maxsize=4)
-def _shipped(vocabulary: Lexicon) -> list[dict[str, Any]]:
+def _list_shipped(vocabulary: Lexicon) -> list[dict[str, Any]]:
     topics: dict[str, list[dict[str, str]]] = {}
     for item in items(vocabulary):
-        insert = _inserted(item, vocabulary)
+        insert = _insert(item, vocabulary)
         if insert:
             topics.setdefault(item.topic, []).append(
                 {
@@ -78,7 +84,7 @@ def _shipped(vocabulary: Lexicon) -> list[dict[str, Any]]:
     return [{"topic": topic, "items": found} for topic, found in topics.items()]
 
 
-def _inserted(item: Item, vocabulary: Lexicon) -> str:
+def _insert(item: Item, vocabulary: Lexicon) -> str:
     """Return the example where it is whole in this world and says the item; else the phrase with other values."""
     if item.sort == "value":
         return ""
@@ -105,10 +111,10 @@ def _example(entry: Entry, vocabulary: Lexicon) -> Iterator[str]:
     types = {slot.name: slot.type for slot in entry.slots}
     for phrase in entry.phrases:
         for form in reversed(forms(phrase)):
-            yield _filled(form, types, vocabulary)
+            yield _fill(form, types, vocabulary)
 
 
-def _filled(form: Form, types: dict[str, str], vocabulary: Lexicon) -> str:
+def _fill(form: Form, types: dict[str, str], vocabulary: Lexicon) -> str:
     return " ".join(
         _value(vocabulary.types[types.get(part.name, "text")], vocabulary) if isinstance(part, Slot) else part
         for part in form
@@ -126,3 +132,60 @@ def _is_whole(text: str, vocabulary: Lexicon) -> bool:
     except MissionError:
         return False
     return True
+
+
+class EditorForm(Record):
+    """A form of the language.
+
+    `needs` is "condition", the type of an amount, or "". `make` makes it of a body and of what it needs; one with an
+    `operator` is a chain of two or more instead. One of `of_conditions` is round conditions, any other one round
+    commands.
+    """
+
+    needs: str = ""
+    make: Callable[[ast.Ast, Any], ast.Ast] | None = None
+    operator: str = ""
+    of_conditions: bool = False
+
+    def made(self, body: ast.Ast, what: object) -> ast.Ast:
+        """Make a form, but only one without an operator."""
+        assert self.make is not None
+        return self.make(body, what)
+
+
+FORMS: Mapping[str, EditorForm] = {
+    "repeat": EditorForm("count", lambda body, rounds: ast.Repeat(rounds, body, body.span)),
+    "forever": EditorForm("", lambda body, _: ast.Repeat("-1", body, body.span)),
+    "retry": EditorForm("count", lambda body, attempts: ast.Retry(attempts, body, "", body.span)),
+    "try": EditorForm("", lambda body, _: ast.Try(body, None, body.span)),
+    "within": EditorForm("duration", lambda body, seconds: ast.Within(seconds, body, body.span)),
+    "for": EditorForm("duration", lambda body, seconds: ast.For(seconds, body, body.span)),
+    "up to": EditorForm("duration", lambda body, seconds: ast.UpTo(seconds, body, body.span)),
+    "every": EditorForm("duration", lambda body, seconds: ast.Every(seconds, body, "", body.span)),
+    "after": EditorForm("duration", lambda body, seconds: ast.Delay(seconds, body, body.span)),
+    "until time": EditorForm("time_of_day", lambda body, time: ast.UntilTime(time, body, body.span)),
+    "if": EditorForm("condition", lambda body, condition: ast.If(False, condition, body, None, body.span)),
+    "unless": EditorForm("condition", lambda body, condition: ast.If(True, condition, body, None, body.span)),
+    "while": EditorForm("condition", lambda body, condition: ast.While(False, condition, body, None, body.span)),
+    "until": EditorForm("condition", lambda body, condition: ast.While(True, condition, body, None, body.span)),
+    "provided": EditorForm("condition", lambda body, condition: ast.Provided(condition, body, body.span)),
+    "stop when": EditorForm("condition", lambda body, condition: ast.StopWhen(condition, body, body.span)),
+    "whenever": EditorForm("condition", lambda body, condition: ast.Whenever(condition, body, False, body.span)),
+    "in sequence": EditorForm(operator="sequence"),
+    "in parallel": EditorForm(operator="parallel"),
+    "in order": EditorForm(operator="fallback"),
+    "not": EditorForm("", lambda body, _: ast.Not(body, body.span), of_conditions=True),
+    "all of": EditorForm(operator="all", of_conditions=True),
+    "any of": EditorForm(operator="any", of_conditions=True),
+}
+
+
+def amount_of(kind: str, words: str, vocabulary: Lexicon) -> str:
+    """Return the port text of an amount. Raises Unplaced."""
+    if not kind:
+        return ""
+    found = vocabulary.value(kind, words)
+    if found is None:
+        example = vocabulary.types[kind].example
+        raise Unplaced(f"'{words}' is no {kind.replace('_', ' ')}, such as {example}")
+    return found

@@ -1,4 +1,4 @@
-"""What is understood of a text that is refused, sentence by sentence, and what may be said for the rest.
+"""Partial reading: what is understood of a refused text, sentence by sentence, and what may be said for the rest.
 
 A language model rewrites what was not understood with it, and shows people how the rest is read.
 """
@@ -7,8 +7,7 @@ from __future__ import annotations
 
 from btlang.api import Mission
 from btlang.backends.explain import Sentences, understood
-from btlang.diagnostics.diagnostic import Diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError
 from btlang.text.source import Source
 from btlang.text.words import split
 from btlang.vocabulary.language_tables import GOES_ON, ORDER
@@ -46,7 +45,7 @@ def partial_reading(text: str, vocabulary: Lexicon, compiled: Callable[[str], Mi
                 raise
             for problem in placed:
                 refused.setdefault(max(sentences.number(problem.span.start), 0), []).append(problem)
-    depending = _depending(sentences, refused, vocabulary)
+    depending = _find_depending(sentences, refused, vocabulary)
     read: dict[int, str] = {}
     if mission is not None and mission.syntax is not None:
         for each in understood(mission.syntax, mission.tree, mission.vocabulary, sentences):
@@ -65,7 +64,7 @@ def partial_reading(text: str, vocabulary: Lexicon, compiled: Callable[[str], Mi
     }
 
 
-def _depending(sentences: Sentences, refused: dict[int, list[Diagnostic]], vocabulary: Lexicon) -> set[int]:
+def _find_depending(sentences: Sentences, refused: dict[int, list[Diagnostic]], vocabulary: Lexicon) -> set[int]:
     """Return the sentences that go on with one that is refused, or may speak of its things: `it` would be something
     else.
     """

@@ -1,4 +1,4 @@
-"""Another name for a definition and all its uses, if the mission means the same then."""
+"""Renaming of a definition and all its uses, if the mission means the same then."""
 
 from __future__ import annotations
 
@@ -8,13 +8,12 @@ from collections.abc import Container, Iterable, Iterator
 from functools import partial
 
 from btlang.api import Mission
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
-from btlang.editing.changes import Change, changed
-from btlang.editing.words import Words
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.editing.changes import Change, apply_changes
+from btlang.editing.words import RobotWords
 from btlang.frontends.mission.reader import lexed
 from btlang.frontends.mission.tokens.lexer import Lexer
-from btlang.printer.exact import is_one_piece, quoted
+from btlang.printer.exact import is_one_piece, quote
 from btlang.support.record import Record
 from btlang.text.source import Source, Span
 from btlang.tree import ast
@@ -40,7 +39,7 @@ class _Use(Record):
     is_exact: bool
 
 
-def rename(source: Source, at: int, words: Words, name: str | None = None) -> dict[str, Any]:
+def rename(source: Source, at: int, words: RobotWords, name: str | None = None) -> dict[str, Any]:
     """Return what gives the definition that is named at a character another name: `changes`, from the front of the
     text.
 
@@ -49,25 +48,25 @@ def rename(source: Source, at: int, words: Words, name: str | None = None) -> di
     `greet {someone}`. Raises MissionError: that of the text, if it doesn't compile; else BT210.
     """
     mission = words.mission(source)
-    found = _named_at(mission, source, at)
+    found = _find_name(mission, source, at)
     if found is None:
         start = at - len(_WORD_END.search(source.text, max(0, at - _LONGEST), at)[0])  # type: ignore[index]
         end = _WORD.match(source.text, start).end()  # type: ignore[union-attr]
-        raise _refused(source, start, end, source.text[start:end], "it isn't a name that this file defines")
+        raise _refuse(source, start, end, source.text[start:end], "it isn't a name that this file defines")
     definition, place = found
     if name is None:
         return {"words": definition.name, "start": place.start, "end": place.end}
-    refuse = partial(_refused, source, place.start, place.end, definition.name)
-    changes = _changes(mission, source, definition, _checked(name, definition, mission.vocabulary.articles, refuse))
+    refuse = partial(_refuse, source, place.start, place.end, definition.name)
+    changes = _changes(mission, source, definition, _check(name, definition, mission.vocabulary.articles, refuse))
     _verify(mission, source, definition, changes, words, refuse)
     return {"changes": [change.as_dict() for change in changes]}
 
 
-def _refused(source: Source, start: int, end: int, words: str, reason: str) -> MissionError:
+def _refuse(source: Source, start: int, end: int, words: str, reason: str) -> MissionError:
     return MissionError([diagnostic("BT210", Span(source, start, end), words=words, reason=reason)])
 
 
-def _named_at(mission: Mission, source: Source, at: int) -> tuple[ast.Definition, Span] | None:
+def _find_name(mission: Mission, source: Source, at: int) -> tuple[ast.Definition, Span] | None:
     """Return a definition of this file, and the characters that name it at a place."""
     program = mission.syntax
     for definition in program.definitions if program is not None else ():
@@ -88,7 +87,7 @@ def _uses(mission: Mission, name: str) -> Iterator[_Use]:
                 yield _Use(part.span, True)
 
 
-def _checked(name: str, definition: ast.Definition, articles: Container[str], refuse: partial[MissionError]) -> str:
+def _check(name: str, definition: ast.Definition, articles: Container[str], refuse: partial[MissionError]) -> str:
     """Return a new name without blanks around it, and without an article, which the old one may have before it."""
     first, _, rest = name.strip().partition(" ")
     name = rest.strip() if first.lower() in articles and not definition.is_quoted else name.strip()
@@ -109,16 +108,16 @@ def _changes(mission: Mission, source: Source, definition: ast.Definition, name:
     vocabulary = mission.vocabulary
     lexer = lexed(source, vocabulary)
     own = definition.name_span
-    text = quoted(name, vocabulary) if definition.is_quoted else _like(own.text, name)
+    text = quote(name, vocabulary) if definition.is_quoted else _like(own.text, name)
     changes = {own.start: Change(own.start, own.end, text)}
     for use in _uses(mission, definition.name):
         if use.span.source is not source or use.span.start in changes:
             continue
         if use.is_exact:
             place = _quote(use.span, definition.name, lexer)
-            text = quoted(name if definition.is_quoted else " ".join(vocabulary.orthography.words(name)), vocabulary)
+            text = quote(name if definition.is_quoted else " ".join(vocabulary.orthography.words(name)), vocabulary)
         else:
-            place, text = use.span, _like(use.span.text, _filled(use.span, definition.name, name, lexer))
+            place, text = use.span, _like(use.span.text, _fill(use.span, definition.name, name, lexer))
         if place is not None:
             changes[place.start] = Change(place.start, place.end, text)
     return [changes[start] for start in sorted(changes)]
@@ -138,7 +137,7 @@ def _quote(place: Span, name: str, lexer: Lexer) -> Span | None:
     return None
 
 
-def _filled(place: Span, old: str, new: str, lexer: Lexer) -> str:
+def _fill(place: Span, old: str, new: str, lexer: Lexer) -> str:
     """Return a new name with the values of a use as they were written."""
     if "{" not in new:
         return new
@@ -149,11 +148,11 @@ def _filled(place: Span, old: str, new: str, lexer: Lexer) -> str:
     match = longest(lexer.names.definitions.trie, text, word, context)
     if match is None or match.meaning.entry is None or match.meaning.entry.id != old:
         return new  # which the comparison of the trees refuses
-    values = {value.name: _written(value.first, value.last, lexer) for value in match.values}
+    values = {value.name: _write(value.first, value.last, lexer) for value in match.values}
     return " ".join(values.get(part.name, "") if isinstance(part, Slot) else part for part in name_form(new))
 
 
-def _written(first: int, last: int, lexer: Lexer) -> str:
+def _write(first: int, last: int, lexer: Lexer) -> str:
     """Return words with the article before them."""
     text = lexer.text
     start, end = text.articles.get(first, (text.starts[first], 0))
@@ -161,11 +160,11 @@ def _written(first: int, last: int, lexer: Lexer) -> str:
 
 
 def _verify(
-    mission: Mission, source: Source, definition: ast.Definition, changes: Iterable[Change], words: Words,
+    mission: Mission, source: Source, definition: ast.Definition, changes: Iterable[Change], words: RobotWords,
     refuse: partial[MissionError],
 ) -> None:  # fmt: skip
     """Return the new text has to compile to the same tree, but for the name."""
-    text = changed(source.text, changes)
+    text = apply_changes(source.text, changes)
     try:
         renamed = words.mission(source.with_text(text))
     except MissionError as error:

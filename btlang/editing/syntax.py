@@ -1,4 +1,4 @@
-"""The syntax tree of a mission with its tree: who holds each node, what a node of the tree was made of, and changes."""
+"""The syntax tree of a mission linked with its tree: parents, what a node of the tree was made of, and changes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from btlang.passes.compilation import Origins
 
 
-class Slot(Record):
+class SyntaxSlot(Record):
     """A place of a node in the syntax: the field of its parent, and its number there if that holds several."""
 
     parent: ast.Ast
@@ -24,7 +24,7 @@ class Slot(Record):
     at: int | None
 
 
-class Step(Record):
+class ChangeStep(Record):
     """A step of a change: siblings that others take the place of: `old` becomes `new`, both perhaps nothing.
 
     They stand in `parent`; if that holds several, from number `at` on. Several new ones make a chain of the `operator`.
@@ -51,15 +51,15 @@ class Syntax:
         self.mission = mission
         self.vocabulary = vocabulary
         self.nodes = ast.parents_first(mission)
-        self.slots: dict[int, Slot] = {}
+        self.slots: dict[int, SyntaxSlot] = {}
         """Where each node stands, by its identity."""
         for node in self.nodes:
             for field in node.parts:
                 part = getattr(node, field)
                 if type(part) is tuple:
-                    self.slots.update((id(each), Slot(node, field, i)) for i, each in enumerate(part))
+                    self.slots.update((id(each), SyntaxSlot(node, field, i)) for i, each in enumerate(part))
                 elif part is not None:
-                    self.slots[id(part)] = Slot(node, field, None)
+                    self.slots[id(part)] = SyntaxSlot(node, field, None)
 
     def lowered(self) -> tuple[Tree, list[ast.Ast | None]]:
         """Return the tree, and of each of its nodes, in the order of `Tree.walk`, the syntax that says it, None for
@@ -97,7 +97,7 @@ class Syntax:
         at: int | None = None,
         operator: str = "sequence",
         before: bool = False,
-    ) -> list[Step]:
+    ) -> list[ChangeStep]:
         """Return what changes if some siblings become others, innermost first; the last step is one in the program.
 
         `new` may be empty. For an insertion into a chain `old` has the chain alone, and `at` is the place among its
@@ -106,23 +106,23 @@ class Syntax:
         steps = []
         if at is not None:
             [chain] = old
-            step = Step(chain, "items", at, (), tuple(new), getattr(chain, "operator", operator), before)
+            step = ChangeStep(chain, "items", at, (), tuple(new), getattr(chain, "operator", operator), before)
         else:
             slot = self.slots[id(old[0])]
             operator = getattr(slot.parent, "operator", operator)
-            step = Step(slot.parent, slot.field, slot.at, tuple(old), tuple(new), operator)
+            step = ChangeStep(slot.parent, slot.field, slot.at, tuple(old), tuple(new), operator)
         while True:
             steps.append(step)
             if isinstance(step.parent, ast.Program):
                 return steps
             slot = self.slots[id(step.parent)]
             operator = getattr(slot.parent, "operator", step.operator)
-            step = Step(slot.parent, slot.field, slot.at, (step.parent,), _held(step), operator)
+            step = ChangeStep(slot.parent, slot.field, slot.at, (step.parent,), _link(step), operator)
 
-    def changed(self, last: Step) -> ast.Program:
+    def changed(self, last: ChangeStep) -> ast.Program:
         """Return the mission after the last of some steps. Raises Unplaced."""
         if last.field == "definitions":
-            held = _put(self.mission.definitions, last)
+            held = _replace_part(self.mission.definitions, last)
             return self.mission.replace(definitions=held)  # type: ignore[no-any-return]
         body = joined(last.new, last.operator) if last.new else None
         return self.mission.replace(body=body)  # type: ignore[no-any-return]
@@ -151,24 +151,24 @@ def _sources(tree: Tree, origins: Origins) -> list[ast.Ast | None]:
     return found
 
 
-def _put(items: tuple[ast.Ast, ...], step: Step) -> tuple[ast.Ast, ...]:
+def _replace_part(items: tuple[ast.Ast, ...], step: ChangeStep) -> tuple[ast.Ast, ...]:
     assert step.at is not None
     return (*items[: step.at], *step.new, *items[step.at + len(step.old) :])
 
 
-def _held(step: Step) -> tuple[ast.Ast, ...]:
+def _link(step: ChangeStep) -> tuple[ast.Ast, ...]:
     """Return what takes the place of the parent of a step."""
     parent = step.parent
     if isinstance(parent, ast.Chain):
         items: list[ast.Ast] = []
-        for item in _put(parent.items, step):
+        for item in _replace_part(parent.items, step):
             melts = type(item) is ast.Chain and item.operator == parent.operator and not item.bracketed
             items += item.items if melts and isinstance(item, ast.Chain) else (item,)
         if len(items) > 1:
             return (parent.replace(items=tuple(items)),)
         return tuple(items)
     if step.at is not None:
-        items = list(_put(getattr(parent, step.field), step))
+        items = list(_replace_part(getattr(parent, step.field), step))
         if not items and isinstance(parent, ast.Exact):
             return ()
         if isinstance(parent, ast.AtLeast) and len(items) < max(parent.number, 2):

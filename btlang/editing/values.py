@@ -1,4 +1,4 @@
-"""What an editor can change of a node: its values (arguments, counts, durations, times), and what else can be done."""
+"""Values of a node that an editor can change: arguments, counts, durations and times, and what else can be done."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from btlang.tree import ast
 from btlang.vocabulary.lexicon import Lexicon
 
 
-class Place(Record):
+class ValuePlace(Record):
     """A place for a value of a node: its type, its port text, and the node with another one."""
 
     kind: str
@@ -31,10 +31,10 @@ _FIELDS: Mapping[type[ast.Ast], Sequence[tuple[str, str]]] = {
 _COUNTED = frozenset(("num_cycles", "num_attempts", "rounds", "attempts"))  # the names of counts in trees, too
 
 
-def places_of(node: ast.Ast) -> dict[str, Place]:
+def places_of(node: ast.Ast) -> dict[str, ValuePlace]:
     """Return the values that a node says or may say, by the names of ports and fields."""
     if isinstance(node, ast.Assign):
-        return {node.key: Place(node.kind, node.text, partial(_with_field, node, "text"))}
+        return {node.key: ValuePlace(node.kind, node.text, partial(_with_field, node, "text"))}
     if isinstance(node, ast.Compared):
         known = {name: (node.kind, text) for name, text in node.arguments}
     elif isinstance(node, ast.Phrase):
@@ -44,12 +44,12 @@ def places_of(node: ast.Ast) -> dict[str, Place]:
         fields = _FIELDS.get(type(node), ())
         said = ((field, kind, getattr(node, field)) for field, kind in fields)
         return {
-            field: Place(kind, text, partial(_with_field, node, field))
+            field: ValuePlace(kind, text, partial(_with_field, node, field))
             for field, kind, text in said
             if ";" not in text  # several times of day
         }
     order = tuple(known)
-    return {name: Place(*found, partial(_with_argument, node, order, name)) for name, found in known.items()}
+    return {name: ValuePlace(*found, partial(_with_argument, node, order, name)) for name, found in known.items()}
 
 
 def _with_field(node: ast.Ast, field: str, text: str) -> ast.Ast:
@@ -61,7 +61,7 @@ def _with_argument(node: ast.Phrase | ast.Compared, order: Sequence[str], name: 
     return node.replace(arguments=tuple((each, texts[each]) for each in order if each in texts))  # type: ignore[no-any-return]
 
 
-def valued(node: ast.Ast, port: str) -> Place:
+def find_place_of_value(node: ast.Ast, port: str) -> ValuePlace:
     """Return where a node has the value of a port, which in the tree may have another name. Raises Unplaced."""
     places = places_of(node)
     if port in places:

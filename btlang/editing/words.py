@@ -1,13 +1,13 @@
-"""The words that a text is read with, as plain data: they may be sent to another process."""
+"""The words that a text is read with, as plain data that may be sent to another process."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
 from btlang.api import Mission, parse_tree
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.robots.mission_vocabulary import mission_vocabulary, world_vocabulary
-from btlang.text.escaping import one_line
+from btlang.text.formatting import one_line
 from btlang.text.source import Source
 from btlang.vocabulary.lexicon import Lexicon
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from btlang.passes.compilation import Origins
 
 
-class Words:
+class RobotWords:
     """The words of a robot: keyword files, world and language. The world is a file, or the text of one.
 
     `file` is the path that texts belong to, if the user named one: what they name is looked for beside it.
@@ -33,9 +33,9 @@ class Words:
         self.keywords, self.language, self.file = keywords, language, file
         self.world = Source(world_text, "world", roots=()) if world_text else world
 
-    def in_world(self, name: str, text: str) -> Words:
+    def in_world(self, name: str, text: str) -> RobotWords:
         """Return these words with the places of a world in a text; `name` is what messages show."""
-        other = Words(self.keywords, language=self.language, file=self.file)
+        other = RobotWords(self.keywords, language=self.language, file=self.file)
         other.world = Source(text, one_line(name), roots=())
         return other
 

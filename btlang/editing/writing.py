@@ -1,4 +1,5 @@
-"""Changes of a syntax tree as changes of its text: only what is touched is rewritten, and all comments stay.
+"""Writing of changes: a changed syntax tree becomes a changed text. Only what is touched is rewritten, comments
+stay.
 
 Each way to write a change, from the smallest to that of a whole statement, is read again: the first one that has
 the tree that was meant is taken. So nothing here has to know how sentences are read.
@@ -12,16 +13,15 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain, pairwise
 
-from btlang.diagnostics.errors import MissionError
-from btlang.editing.changes import Change, changed
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.editing.changes import Change, apply_changes
 from btlang.editing.lines import Lines, comments_in, indented
-from btlang.editing.syntax import Step, Syntax, Unplaced, are_equal, joined
+from btlang.editing.syntax import ChangeStep, Syntax, Unplaced, are_equal, joined
 from btlang.frontends.mission.reader import read_mission
 from btlang.passes import lower_mission
-from btlang.printer.blocks import lines_of
-from btlang.printer.mission import printer_of
-from btlang.printer.pieces import MARK, Piece
-from btlang.printer.printer import LOOSE, WHOLE, Doc, Printer, bracketed
+from btlang.printer.fragments import MARK, Fragment
+from btlang.printer.mission import lines_of, printer_of
+from btlang.printer.printer import LOOSE, WHOLE, Doc, Printer, add_brackets
 from btlang.printer.sentence import CHAINS, statements
 from btlang.text.source import Source
 from btlang.text.words import split
@@ -59,7 +59,7 @@ class Writer:
 
     def written(
         self,
-        steps: Sequence[Step],
+        steps: Sequence[ChangeStep],
         wanted: ast.Program,
         near: ast.Ast | None = None,
         gone: Counter[str] = NO_COMMENTS,
@@ -76,7 +76,9 @@ class Writer:
         tried: set[Change] = set()
         wrong: list[MissionError] = []
         for change in chain(first, self._changes(steps, wanted, near, gone)):
-            if change not in tried and self._means(changed(self._source.text, [change]), tree, wanted, kept, wrong):
+            if change not in tried and self._means(
+                apply_changes(self._source.text, [change]), tree, wanted, kept, wrong
+            ):
                 return change
             tried.add(change)
         if len(wrong) == len(tried) > 0:
@@ -141,7 +143,7 @@ class Writer:
     # -- ways to write a step
 
     def _changes(
-        self, steps: Sequence[Step], wanted: ast.Program, near: ast.Ast | None, gone: Counter[str]
+        self, steps: Sequence[ChangeStep], wanted: ast.Program, near: ast.Ast | None, gone: Counter[str]
     ) -> Iterator[Change]:
         for step in steps:
             for way in _WAYS:
@@ -149,7 +151,7 @@ class Writer:
                 yield from self._as_lines(step, printer, near, gone)
                 yield from self._in_line(step, printer)
 
-    def _printer(self, step: Step, wanted: ast.Program, way: str) -> Printer:
+    def _printer(self, step: ChangeStep, wanted: ast.Program, way: str) -> Printer:
         """Say what stands in the text, and what is given, in the words that it has there."""
         printer = printer_of(wanted, self._syntax.vocabulary)
         for root in step.new:
@@ -182,9 +184,9 @@ class Writer:
         said = printer.say(node)
         is_block = len(lines) > 1 and not text
         if text:
-            said = said.replace(pieces=(Piece(text, MARK),), in_lines=False)
+            said = said.replace(fragments=(Fragment(text, MARK),), in_lines=False)
             if text.startswith("(") and text.endswith(")"):
-                said = Doc(said.pieces, WHOLE)
+                said = Doc(said.fragments, WHOLE)
             elif way == "in brackets" and ast.parts(node):
                 said = said.replace(level=LOOSE, reaches=True)
         elif not is_block:
@@ -212,7 +214,9 @@ class Writer:
             self._alone[id(node)] = same or values
         return self._alone[id(node)]
 
-    def _as_lines(self, step: Step, printer: Printer, near: ast.Ast | None, gone: Counter[str]) -> Iterator[Change]:
+    def _as_lines(
+        self, step: ChangeStep, printer: Printer, near: ast.Ast | None, gone: Counter[str]
+    ) -> Iterator[Change]:
         """Write statements that have lines of their own, as lines."""
         yield from self._in_their_places(step, printer)
         place = self._line_place(step, near, bool(gone))
@@ -235,7 +239,7 @@ class Writer:
         else:
             yield Change(start, end, text if ends else text.removesuffix("\n"))
 
-    def _between(self, step: Step) -> str:
+    def _between(self, step: ChangeStep) -> str:
         """Return the lines of definitions and the like between old statements, for in front of what takes their
         place.
         """
@@ -245,7 +249,7 @@ class Writer:
         said = (gap for gap in gaps if any(line in self._lines.blocks for line in gap))
         return "".join(self._source.text[start:end] for start, end in map(self._lines.offsets, said))
 
-    def _in_their_places(self, step: Step, printer: Printer) -> Iterator[Change]:
+    def _in_their_places(self, step: ChangeStep, printer: Printer) -> Iterator[Change]:
         """Write as many statements as there were, each in the lines of one of these: what stands between them stays."""
         owned = [self._lines.own(node, step.parent) for node in step.old]
         if len(owned) < 2 or len(owned) != len(step.new):
@@ -267,7 +271,7 @@ class Writer:
     def _is_kept(self, node: ast.Ast) -> bool:
         return id(node) in self._given or id(node) in self._copies or id(node) in self._syntax.slots
 
-    def _line_place(self, step: Step, near: ast.Ast | None, moved: bool) -> tuple[int, int, str] | None:
+    def _line_place(self, step: ChangeStep, near: ast.Ast | None, moved: bool) -> tuple[int, int, str] | None:
         """Return where the lines of a step begin and end in the text, and their margin."""
         lines, around = self._lines, step.parent
         if step.old:
@@ -294,7 +298,7 @@ class Writer:
         line = lines.with_comments(behind).start
         return *lines.offsets(range(line, line)), lines.margin(behind.start)
 
-    def _in_line(self, step: Step, printer: Printer) -> Iterator[Change]:
+    def _in_line(self, step: ChangeStep, printer: Printer) -> Iterator[Change]:
         """Write parts of a line, within it."""
         items = step.parent.items if isinstance(step.parent, ast.Chain) else ()
         if any(node.span.source is not self._source for node in (*step.old, *items)):
@@ -309,7 +313,7 @@ class Writer:
             return
         if not step.new or not (step.old or items):
             return
-        for said in self._said_in_line(step.new, step.operator, printer):
+        for said in self._is_said_in_line(step.new, step.operator, printer):
             if step.old:
                 yield Change(self._lines.place(step.old[0])[0], self._lines.place(step.old[-1])[1], said)
                 continue
@@ -322,13 +326,13 @@ class Writer:
                     start = places[step.at][0]
                     yield Change(start, start, said + joint)
 
-    def _said_in_line(self, nodes: Sequence[ast.Ast], operator: str, printer: Printer) -> Iterator[str]:
+    def _is_said_in_line(self, nodes: Sequence[ast.Ast], operator: str, printer: Printer) -> Iterator[str]:
         said = printer.say(joined(nodes, operator))
         if said.in_lines:
             return
-        yield printer.text(said.pieces)
+        yield printer.text(said.fragments)
         if said.level < WHOLE:
-            yield printer.text(bracketed(said).pieces)
+            yield printer.text(add_brackets(said).fragments)
 
     def _joints(self, places: Sequence[tuple[int, int]], operator: str, printer: Printer) -> Iterator[str]:
         """Return what stands between the items of a chain, the usual word last."""

@@ -1,1 +1,3 @@
-"""Runs a tree: statuses, clock, blackboard, leaves and compiled nodes. Knows no English and no ROS."""
+"""The engine, which runs trees: statuses, clock, blackboard, leaves and compiled nodes. It knows no English and no
+ROS.
+"""

@@ -1,4 +1,4 @@
-"""Values that leaves share within one mission."""
+"""The blackboard: values that leaves share within one mission."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Blackboard:
-    """One scope of named values; blackboard.cpp of BehaviorTree.CPP 4.10.
+    """A scope of named values, as blackboard.cpp of BehaviorTree.CPP 4.10 has it.
 
     A subtree has its own scope and sees of its parent's only the keys remapped to it. With `shares`, each key is also
     the parent's, except those that the scope has its own values for, and private ones, which begin with `_`.
@@ -63,46 +63,46 @@ class Blackboard:
                 return scope, key
 
     def get(self, key: str) -> Any:
-        """Raises KeyError where nothing was set."""
+        """Return the value of a key. Raises KeyError if nothing was set."""
         if key in self._values:  # most keys are, and this is the quickest way to them
             return self._values[key]
         scope, key = self._owner(key)
         return scope._values[key]
 
     def own_values(self) -> dict[str, Any]:
-        """A copy of the values in this scope itself."""
+        """Return a copy of the values in this scope itself."""
         return dict(self._values)
 
     def argument(self, key: str) -> Any:
-        """What a subtree was given for a key, None for a key of the outermost scope."""
+        """Return what a subtree was given for a key, None for a key of the outermost scope."""
         scope, key = self._owner(key)
         return scope._values.get(key) if scope is not self._outermost else None
 
     def set(self, key: str, value: Any) -> None:
-        """Sets the value in the scope that owns the key. Raises ActionFailed for a text longer than MOST_TEXT."""
+        """Set the value in the scope that owns the key. Raises ActionFailed for a text longer than MOST_TEXT."""
         if value.__class__ is str:
-            checked_length(value)
+            check_length(value)
         scope, key = self._owner(key)
         scope._values[key] = value
         if key in scope._writes:
             scope._writes[key] += 1
 
     def unset(self, key: str) -> None:
-        """Nothing is set any more in the scope that owns the key."""
+        """Remove the value from the scope that owns the key."""
         scope, key = self._owner(key)
         scope._values.pop(key, None)
 
     def writes(self, key: str) -> int:
-        """How often the key was set, to whatever value, since this was first asked of it."""
+        """Count how often the key was set, to whatever value, since this was first asked of it."""
         scope, key = self._owner(key)
         return scope._writes.setdefault(key, 0)
 
     def dump(self, keep: Callable[[Any], Any]) -> dict[str, Any]:
-        """The values of this scope itself, each made into JSON by `keep`, and how often its keys were set."""
+        """Return the values of this scope itself, each made into JSON by `keep`, and how often its keys were set."""
         return {"values": {key: keep(value) for key, value in self._values.items()}, "writes": dict(self._writes)}
 
     def load(self, saved: Mapping[str, Any], unkeep: Callable[[Any], Any]) -> None:
-        """The values of this scope are those that were saved."""
+        """Replace the values of this scope by those that `dump` returned."""
         self._values = {key: unkeep(value) for key, value in saved["values"].items()}
         self._writes = dict(saved["writes"])
 
@@ -111,7 +111,7 @@ class Blackboard:
         return key in scope._values
 
     def keys(self) -> list[str]:
-        """The keys that can be read here: own ones, then the parent's that have a value."""
+        """List the keys that can be read here: own ones, then the parent's that have a value."""
         found = dict.fromkeys(self._values)
         scope: Blackboard | None = self
         while scope is not None:  # a loop: subtrees that share their keys may be nested deeply
@@ -122,8 +122,8 @@ class Blackboard:
         return list(found)
 
 
-def checked_length(text: str) -> str:
-    """The text. Raises ActionFailed where it is longer than MOST_TEXT."""
+def check_length(text: str) -> str:
+    """Return the text. Raises ActionFailed if it is longer than MOST_TEXT."""
     if len(text) > MOST_TEXT:
         raise ActionFailed(f"a text of more than {MOST_TEXT:,} characters is too long for a value")
     return text

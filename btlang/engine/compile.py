@@ -1,43 +1,30 @@
-"""Tree to compiled nodes: subtrees are expanded, then each node is compiled by the function that its id names."""
+"""Compiles trees: expands the subtrees, compiles each node with the function of its id, and allows deep recursion."""
 
 from __future__ import annotations
 
+import sys
+from _thread import allocate_lock
 from collections.abc import Callable, Sequence
 
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.clock import Clock
-from btlang.engine.conditions import conditioned
-from btlang.engine.fused import fused
-from btlang.engine.instance import EngineError, EngineState, NodeInstance, halt_nothing
-from btlang.engine.leaves.binding import bound_leaf
-from btlang.engine.leaves.leaf import ActionFailed
-from btlang.engine.leaves.signature import LeafSignature
-from btlang.engine.nodes import (
-    blackboard_nodes,
-    branch,
-    constants,
-    constraints,
-    control,
-    decorators,
-    guards,
-    loops,
-    nav2,
-    reactive,
-    script_nodes,
-    timed,
-    updates,
-)
-from btlang.engine.nodes.subtree import child_scope, subtree
-from btlang.engine.nodes.switch import switch
-from btlang.engine.nodes.try_catch import try_catch
-from btlang.engine.nodes.whenever import whenever
-from btlang.engine.resume_path import resumable, resume_paths, resuming
-from btlang.engine.status_trace import NodeTrace, StatusTrace, repeats
+from btlang.engine.conditions import add_conditions
+from btlang.engine.fused import choose_compiler
+from btlang.engine.instance import EngineError, EngineState, NodeInstance, blackboard_key, halt_nothing
+from btlang.engine.leaves.binding import bind_leaf
+from btlang.engine.leaves.leaf import ActionFailed, LeafSignature
+from btlang.engine.nodes import branches, built_in_leaves, control, decorators, guards, nav2, rules, timed
+from btlang.engine.nodes.ports import TRUTHS
+from btlang.engine.resume_path import find_resume_paths, mark_resumable, resume_at_top
+from btlang.engine.script.values import literal
+from btlang.engine.status_trace import NodeTrace, StatusTrace, reports_each_round
 from btlang.tree.catalogue import CATALOGUE, MOST_NODES, SUBTREE, NodeKind
 from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from typing import Any
+
     from btlang.engine.instance import Compiled, Hooks
 
 
@@ -49,13 +36,13 @@ SEMANTICS: dict[str, Callable[[NodeInstance, Sequence[Compiled]], Compiled]] = {
     "SequenceWithMemory": control.sequence_with_memory,
     "Parallel": control.parallel,
     "ParallelAll": control.parallel_all,
-    "ReactiveSequence": reactive.reactive_sequence,
-    "ReactiveFallback": reactive.reactive_fallback,
-    "IfThenElse": branch.if_then_else,
-    "WhileDoElse": branch.while_do_else,
-    **{f"Switch{cases}": switch for cases in range(2, 7)},
-    "TryCatch": try_catch,
-    "Whenever": whenever,
+    "ReactiveSequence": control.reactive_sequence,
+    "ReactiveFallback": control.reactive_fallback,
+    "IfThenElse": branches.if_then_else,
+    "WhileDoElse": branches.while_do_else,
+    **{f"Switch{cases}": branches.switch for cases in range(2, 7)},
+    "TryCatch": branches.try_catch,
+    "Whenever": rules.whenever,
     "PipelineSequence": nav2.pipeline_sequence,
     "RecoveryNode": nav2.recovery_node,
     "RoundRobin": nav2.round_robin,
@@ -64,36 +51,39 @@ SEMANTICS: dict[str, Callable[[NodeInstance, Sequence[Compiled]], Compiled]] = {
     "ForceFailure": decorators.force_failure,
     "Repeat": decorators.repeat,
     "RetryUntilSuccessful": decorators.retry_until_successful,
-    "KeepOut": constraints.keep_out,
-    "KeepIn": constraints.keep_in,
+    "KeepOut": rules.keep_out,
+    "KeepIn": rules.keep_in,
     "Timeout": timed.timeout,
     "Delay": timed.delay,
     "RateController": nav2.rate_controller,
     "KeepRunningUntilFailure": guards.keep_running_until_failure,
     "RunOnce": guards.run_once,
     "Precondition": guards.precondition,
-    "LoopInt": loops.loop_int,
-    "LoopBool": loops.loop_bool,
-    "LoopDouble": loops.loop_double,
-    "LoopString": loops.loop_string,
-    "SkipUnlessUpdated": updates.skip_unless_updated,
-    "WaitValueUpdate": updates.wait_value_update,
-    "WasEntryUpdated": updates.was_entry_updated,
+    "LoopInt": decorators.loop_int,
+    "LoopBool": decorators.loop_bool,
+    "LoopDouble": decorators.loop_double,
+    "LoopString": decorators.loop_string,
+    "SkipUnlessUpdated": guards.skip_unless_updated,
+    "WaitValueUpdate": guards.wait_value_update,
+    "WasEntryUpdated": guards.was_entry_updated,
     "Sleep": timed.sleep,
     "WaitForTime": timed.wait_for_time,
-    "AlwaysSuccess": constants.always_success,
-    "AlwaysFailure": constants.always_failure,
-    "SetBlackboard": blackboard_nodes.set_blackboard,
-    "UnsetBlackboard": blackboard_nodes.unset_blackboard,
-    "Script": script_nodes.script,
-    "ScriptCondition": script_nodes.script_condition,
-    SUBTREE: subtree,
+    "AlwaysSuccess": built_in_leaves.always_success,
+    "AlwaysFailure": built_in_leaves.always_failure,
+    "SetBlackboard": built_in_leaves.set_blackboard,
+    "UnsetBlackboard": built_in_leaves.unset_blackboard,
+    "Script": built_in_leaves.script,
+    "ScriptCondition": built_in_leaves.script_condition,
+    SUBTREE: lambda instance, children: children[0],  # subtree_node.cpp
 }
 """What compiles each node of the catalogue."""
+_lock = allocate_lock()
+_asked: list[int] = []  # the frames that those ask for who run now
+_usual = 0  # the limit while nobody does
 
 
 def expand(tree: Tree, blackboard: Blackboard, state: EngineState) -> list[NodeInstance]:
-    """All nodes in preorder; a SubTree's only child is the root of its tree."""
+    """List all nodes in preorder; a SubTree's only child is the root of its tree."""
     subtrees = dict(tree.subtrees)
     instances: list[NodeInstance] = []
     within: set[str] = set()  # names of the subtrees around the present node
@@ -125,7 +115,7 @@ def expand(tree: Tree, blackboard: Blackboard, state: EngineState) -> list[NodeI
 
 
 def outline(tree: Tree) -> tuple[list[Node], list[int]]:
-    """All nodes in preorder, after expansion of subtrees, and the index of each one's parent, -1 for the root."""
+    """List all nodes in preorder, after expansion of subtrees, and the index of each one's parent, -1 for the root."""
     instances = expand(tree, Blackboard(), EngineState(lambda id: None, Clock(), {}, {}, None))
     return [instance.node for instance in instances], [
         -1 if instance.above is None else instance.above.index for instance in instances
@@ -143,10 +133,10 @@ def _root_of(node: Node, name: str, subtrees: dict[str, Node]) -> Node:
 def compile_instances(
     instances: Sequence[NodeInstance], trace: StatusTrace | None, hooks: Hooks | None = None
 ) -> Compiled:
-    """Compiles from the last node to the root, so that children are there before their parents."""
+    """Compile from the last node to the root, so that children are compiled before their parents."""
     waiting: list[Compiled] = []  # compiled nodes whose parents come later, so that the last ones are the next one's
     traces: list[NodeTrace] = []
-    around = resume_paths(instances, _waits)
+    around = find_resume_paths(instances, _waits)
     for instance in reversed(instances):
         node = instance.node
         count = 1 if node.id == SUBTREE else len(node.children)
@@ -157,7 +147,7 @@ def compile_instances(
         above, node_trace = instance.above, None
         if trace is not None:
             lower = traces[: -count - 1 : -1] if count else []
-            node_trace = NodeTrace(instance.index, above is not None and repeats(above.node), lower, trace)
+            node_trace = NodeTrace(instance.index, above is not None and reports_each_round(above.node), lower, trace)
             trace.nodes.append(node_trace)
             traces[len(traces) - count :] = [node_trace]
         instance.state.node_trace = node_trace if hooks is None else None  # a hook may change what a leaf would report
@@ -165,7 +155,7 @@ def compile_instances(
         lasts = compiled[1] is not halt_nothing
         path = around[instance.index]
         if path is not None and path.used and path.top == instance.index:
-            compiled = resuming(path, compiled)
+            compiled = resume_at_top(path, compiled)
         if hooks is not None:
             compiled = hooks.wrap(instance.index, compiled)
         if node_trace is not None:
@@ -173,7 +163,7 @@ def compile_instances(
         if path is None and above is not None and lasts:
             wider = around[above.index]
             if wider is not None and wider.top != above.index:  # else the way down is not longer
-                compiled = resumable(wider, compiled)
+                compiled = mark_resumable(wider, compiled)
         waiting.append(compiled)
     if trace is not None:
         trace.nodes.reverse()
@@ -192,7 +182,7 @@ def _waits(instance: NodeInstance) -> bool:
 
 
 def compile_node(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
-    """One node whose children are compiled. Raises EngineError."""
+    """Compile one node whose children are compiled. Raises EngineError."""
     node = instance.node
     kind = CATALOGUE.get(node.id)
     if kind is None:
@@ -202,7 +192,7 @@ def compile_node(instance: NodeInstance, children: Sequence[Compiled]) -> Compil
             has = f"{len(children)} child{'ren' * (len(children) != 1)}"
             raise instance.error(f"{node.id} has {has} instead of {_how_many(kind)}")
         compiled = _compile_built_in(instance, kind, children)
-    return conditioned(instance, compiled) if node.ports else compiled
+    return add_conditions(instance, compiled) if node.ports else compiled
 
 
 def _compile_built_in(instance: NodeInstance, kind: NodeKind, children: Sequence[Compiled]) -> Compiled:
@@ -213,10 +203,10 @@ def _compile_built_in(instance: NodeInstance, kind: NodeKind, children: Sequence
             from_blackboard = from_blackboard or "{" in text
         elif port[:1] != "_" and not kind.any_ports:
             raise instance.error(f"{kind.id} takes no port {port}")
-    compiled = fused(SEMANTICS[kind.id], instance, children)(instance, children)
+    compiled = choose_compiler(SEMANTICS[kind.id], instance, children)(instance, children)
     if kind.id != SUBTREE:  # which is its child
         instance.memory = (compiled[0],)
-    return _checked(instance, compiled) if from_blackboard and not kind.any_ports else compiled
+    return _check_ports(instance, compiled) if from_blackboard and not kind.any_ports else compiled
 
 
 def _compile_leaf(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
@@ -229,7 +219,7 @@ def _compile_leaf(instance: NodeInstance, children: Sequence[Compiled]) -> Compi
         signature = state.signatures[node_id] = LeafSignature(binding)
     if children:
         raise instance.error(f"{node_id} is a leaf, which takes no children")
-    compiled = bound_leaf(instance, signature)
+    compiled = bind_leaf(instance, signature)
     return compiled if state.stopwatch is None else state.stopwatch.wrap(instance.index, compiled)
 
 
@@ -239,8 +229,8 @@ def _how_many(kind: NodeKind) -> str:
     return str(kind.least) if kind.least == kind.most else f"{kind.least} or {kind.most}"
 
 
-def _checked(instance: NodeInstance, compiled: Compiled) -> Compiled:
-    """A node that reads a number from the blackboard and fails if there is none."""
+def _check_ports(instance: NodeInstance, compiled: Compiled) -> Compiled:
+    """Wrap a node that reads a number from the blackboard: it fails if there is no number."""
     tick, halt = compiled
 
     def checked() -> int:
@@ -251,3 +241,57 @@ def _checked(instance: NodeInstance, compiled: Compiled) -> Compiled:
             return instance.fail(str(failed))
 
     return checked, halt
+
+
+def child_scope(node: Node, scope: Blackboard) -> Blackboard:
+    """Make the blackboard of a SubTree node's tree.
+
+    A port `key="{other}"` makes `key` there a name for `other` here, any other text is a value set once, a number where
+    it is one, as in C++. With `_autoremap="true"` all keys but private ones (`_name`) are state that have no port.
+    """
+    shares = TRUTHS.get(text := node.port("_autoremap", "false"))
+    if shares is None:
+        raise EngineError(f"_autoremap must be true or false, not {text!r}", node)
+    remapped: dict[str, tuple[Blackboard, str]] = {}
+    values: dict[str, int | float | str] = {}
+    for port, text in node.ports:
+        if port == "ID" or port.startswith("_"):
+            continue
+        key = blackboard_key(port, text)
+        if key is None:
+            values[port] = literal(text)
+        else:
+            remapped[port] = (scope, key)
+    return Blackboard(remapped, scope, shares=shares, values=values)
+
+
+def allow_depth(frames: int, do: Callable[..., Any]) -> Callable[..., Any]:
+    """Wrap a function so that so many frames are allowed while it runs, in whatever thread.
+
+    The limit doesn't stay raised: what recurses in C, as Python's JSON does, would crash where it says now that
+    something is nested too deep.
+    """
+
+    def done(*args: Any) -> Any:
+        _raise(frames)
+        try:
+            return do(*args)
+        finally:
+            _lower(frames)
+
+    return done
+
+
+def _raise(frames: int) -> None:
+    global _usual
+    with _lock:
+        if not _asked:
+            _usual = sys.getrecursionlimit()
+        _asked.append(frames)
+        sys.setrecursionlimit(max([_usual, *_asked]))
+
+
+def _lower(frames: int) -> None:
+    with _lock:
+        _asked.remove(frames)
+        sys.setrecursionlimit(max([_usual, *_asked]))

@@ -1,4 +1,4 @@
-"""Pre- and post-conditions, scripts in ports that every node may have; tree_node.cpp of BehaviorTree.CPP 4.10.
+"""Pre- and post-conditions: scripts in ports that every node may have, as in tree_node.cpp of BehaviorTree.CPP 4.10.
 
 Before a node starts, in this order: `_failureIf` FAILURE, `_successIf` SUCCESS, `_skipIf` SKIPPED where it holds, and
 `_while` SKIPPED where it does not; the node is then not ticked. While it is RUNNING only `_while` is asked, and where
@@ -24,9 +24,8 @@ from collections.abc import Callable, Mapping
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.instance import Fault, NodeInstance
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.engine.nodes.constants import skipped
-from btlang.engine.nodes.script_nodes import read_script
-from btlang.engine.script.script import truth
+from btlang.engine.nodes.built_in_leaves import always_skipped, read_script
+from btlang.engine.script.values import truth
 from btlang.engine.status import FAILURE, IDLE, NAMES, RUNNING, SKIPPED, SUCCESS
 from btlang.text.spelling import distance
 from btlang.tree.catalogue import POST_CONDITIONS, PRE_CONDITIONS, SUBTREE
@@ -43,8 +42,8 @@ _DECIDES = {port: (answer, NAMES.index(status)) for port, (answer, status) in PR
 _NEAR = 2  # one letter, as `distance` counts
 
 
-def is_of_editors(port: str) -> bool:
-    """Whether an attribute does nothing: editors write such as `_uid` and `_collapsed` for themselves.
+def is_editor_attribute(port: str) -> bool:
+    """Whether an attribute does nothing: editors write some for themselves, such as `_uid` and `_collapsed`.
 
     A misspelt condition such as `_skipif` isn't one of these.
     """
@@ -54,28 +53,28 @@ def is_of_editors(port: str) -> bool:
     return not any(distance(written, each) <= _NEAR or each.startswith(written) for each in known)
 
 
-def conditioned(instance: NodeInstance, compiled: Compiled) -> Compiled:
-    """The node with its pre- and post-conditions; the node itself where it has none."""
+def add_conditions(instance: NodeInstance, compiled: Compiled) -> Compiled:
+    """Add its pre- and post-conditions to a node; without any it stays as it is."""
     texts: dict[str, str] = {}
     for port, text in instance.node.ports:
         if port[:1] != "_":
             continue
         if port in PRE_CONDITIONS or port in POST_CONDITIONS:
             texts[port] = text
-        elif not is_of_editors(port) and (port != "_autoremap" or instance.node.id != SUBTREE):
+        elif not is_editor_attribute(port) and (port != "_autoremap" or instance.node.id != SUBTREE):
             raise instance.error(f"{instance.node.id} takes no port {port}")
     if texts.get("_skipIf") == "false":
         del texts["_skipIf"]
     if not texts:
         return compiled
     if texts == {"_skipIf": "true"}:
-        return skipped(instance, ())
-    compiled = _watched_by_scripts(instance, compiled, texts)
+        return always_skipped(instance, ())
+    compiled = _wrap_in_scripts(instance, compiled, texts)
     instance.memory = (*instance.memory, compiled[0])
     return compiled
 
 
-def _watched_by_scripts(instance: NodeInstance, compiled: Compiled, texts: Mapping[str, str]) -> Compiled:
+def _wrap_in_scripts(instance: NodeInstance, compiled: Compiled, texts: Mapping[str, str]) -> Compiled:
     tick_node, halt_node = compiled
     scope = instance.scope
     scripts = {port: read_script(instance, port, text) for port, text in texts.items()}
@@ -89,7 +88,7 @@ def _watched_by_scripts(instance: NodeInstance, compiled: Compiled, texts: Mappi
     running = False
 
     def verdict() -> int:
-        """What the pre-conditions decide, IDLE where nothing; a FAILURE is recorded."""
+        """Return what the pre-conditions decide, IDLE if they decide nothing. A FAILURE is recorded."""
         try:
             if running:
                 return IDLE if goes_on is None or truth(goes_on(scope)) else SKIPPED

@@ -1,4 +1,4 @@
-"""A tree that can be ticked."""
+"""The engine: a tree that can be ticked, halted, suspended, saved and restored."""
 
 from __future__ import annotations
 
@@ -7,10 +7,9 @@ from collections.abc import Callable, Mapping, Sequence
 
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.clock import Clock
-from btlang.engine.compile import compile_instances, expand
+from btlang.engine.compile import allow_depth, compile_instances, expand
 from btlang.engine.instance import EngineError, EngineState, Fault, NodeInstance, blackboard_key
-from btlang.engine.leaves.leaf import REFUSED, ActionFailed, LeafBinding, reason_text, unheard
-from btlang.engine.recursion import allowing_depth
+from btlang.engine.leaves.leaf import REFUSED, ActionFailed, LeafBinding, ignore_progress, reason_text
 from btlang.engine.saving import restore_nodes, save_nodes
 from btlang.engine.script.values import as_text
 from btlang.engine.status import FAILURE, IDLE
@@ -26,9 +25,9 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+    from btlang.engine.clock import LeafTimer
     from btlang.engine.instance import Hooks
     from btlang.engine.status_trace import Listener
-    from btlang.engine.timing import Stopwatch
 
 # A node, its trace, its pre-conditions, and the check of ports from the blackboard; twice, because what starts at the
 # end of one branch may halt another one.
@@ -38,7 +37,7 @@ _FRAMES_ASSUMED = 2000  # which Python is taken to allow, or nearly
 
 
 class Failure(Record):
-    """Why a node failed: in words, with the exception where one was raised.
+    """A failure of a node: the reason in words, with the exception if one was raised.
 
     `span` is the sentence of the node, or of the nearest one around it that has one. `around` are the nodes around it
     that failed with it and add something, innermost first: that all attempts failed, say.
@@ -54,7 +53,7 @@ class Failure(Record):
 
 
 class Engine:
-    """A compiled tree. `bind` gives the Python side of a leaf id, `services` what leaves may ask for by name.
+    """A compiled tree. `bind` finds the Python side of a leaf id, `services` are what leaves may ask for by name.
 
     `enums` are names of numbers that scripts and the cases of Switch nodes may use. A `stopwatch` times the leaves.
     `proxies` are for services that are not safe beside the tick: by their names, what makes of the service, and of
@@ -76,7 +75,7 @@ class Engine:
         blackboard: Blackboard | None = None,
         listener: Listener | None = None,
         enums: Mapping[str, float] = {},
-        stopwatch: Stopwatch | None = None,
+        stopwatch: LeafTimer | None = None,
         on_warning: Callable[[Failure], object] | None = None,
         proxies: Mapping[str, Callable[..., Any]] = {},
         hooks: Hooks | None = None,
@@ -86,19 +85,19 @@ class Engine:
         self.on_wake: Callable[[], object] | None = None
         """What the service `wake` calls, in the thread of whoever asks for it: "tick again now"."""
         self._beside: set[object] = set()
-        own = {"wake": self._wake, "wake_at": clock.leaf_wake_at, "progress": unheard, "beside": self._beside}
+        own = {"wake": self._wake, "wake_at": clock.leaf_wake_at, "progress": ignore_progress, "beside": self._beside}
         self._state = EngineState(bind, clock, {**own, **services}, enums, stopwatch, proxies)
         self.raised: dict[int, BaseException] = {}
         """The latest exception of each leaf that raised one other than ActionFailed, by the number of its node."""
         self._on_warning = on_warning
-        self._state.on_warning = self._warned
+        self._state.on_warning = self._warn
         with gc_paused:
             self._instances = expand(tree, self.blackboard, self._state)
             self._trace = None if listener is None else StatusTrace(self._state, listener)
             self._tick, self._halt = compile_instances(self._instances, self._trace, hooks)
         frames = _depth(self._instances) * _FRAMES_PER_LEVEL + _FRAMES_FOR_LEAVES
         if frames > _FRAMES_ASSUMED:
-            self._tick, self._halt = allowing_depth(frames, self._tick), allowing_depth(frames, self._halt)
+            self._tick, self._halt = allow_depth(frames, self._tick), allow_depth(frames, self._halt)
         listened = self._instances if listener is not None else ()
         self._keyed = frozenset([s.index for s in listened if any("{" in text for _, text in s.node.ports)])
         self._busy = False
@@ -106,7 +105,7 @@ class Engine:
         self._fault: Fault | NodeInstance | None = None
 
     def tick(self) -> int:
-        """Ticks the tree once; returns its status.
+        """Tick the tree once; return its status.
 
         KeyboardInterrupt halts the tree and comes through; any other exception of a leaf is its failure.
         Raises RuntimeError where a leaf or another thread ticks, halts or suspends the tree during a tick.
@@ -137,7 +136,7 @@ class Engine:
         return self._state.unknowns
 
     def halt(self, emergency: bool = False) -> None:
-        """Halts every running leaf, children before parents, and resets all nodes; the next tick starts over.
+        """Halt every running leaf, children before parents, and reset all nodes; the next tick starts over.
 
         Only a SequenceWithMemory keeps its place, as in BehaviorTree.CPP. What `catch_on_halt` of a TryCatch starts
         to clean up does not run in an emergency.
@@ -149,18 +148,18 @@ class Engine:
             self._state.emergency = False
 
     def suspend(self) -> None:
-        """Halts every running leaf but keeps positions, counts and timers; the next tick restarts those leaves."""
+        """Halt every running leaf but keep positions, counts and timers; the next tick restarts those leaves."""
         self._stop(True)
 
     def save(self) -> dict[str, Any]:
-        """What it remembers between two ticks, as JSON. Leaves that run now will start again, as after `suspend`.
+        """Return what it remembers between two ticks, as JSON. Running leaves start again later, as after `suspend`.
 
         Raises SaveError for a value on the blackboard that JSON can't hold.
         """
         return {"now": self._state.clock.now, **save_nodes(self._instances, self._trace)}
 
     def restore(self, saved: Mapping[str, Any]) -> None:
-        """Before the first tick: it goes on where another engine of the same tree was saved, its clock too.
+        """Go on where another engine of the same tree was saved, its clock too. Call it before the first tick.
 
         Raises SaveError if that was another tree, or another version of btlang.
         """
@@ -169,7 +168,7 @@ class Engine:
         self.suspend()  # nodes work out again what follows from what they remember
 
     def take_halt_failures(self) -> list[Failure]:
-        """What leaves raised while they were halted since it was last asked, oldest first.
+        """Return what leaves raised while they were halted since the last call, oldest first.
 
         What a background leaf raises that ends after its halt is among them once it has ended.
         """
@@ -183,7 +182,7 @@ class Engine:
         return failures
 
     def close(self, patience: float = 0.0) -> list[Failure]:
-        """Ends what works for background leaves, after a halt; returns those that were halted and have not ended.
+        """End what works for background leaves, after a halt. Returns those that were halted and haven't ended.
 
         It waits for them at most `patience` seconds of real time. The engine can be ticked again.
         """
@@ -200,7 +199,7 @@ class Engine:
 
     @property
     def nodes(self) -> list[tuple[str, Node]]:
-        """Path and node of all nodes in preorder, after expansion of subtrees; made at each call."""
+        """The path and node of all nodes in preorder, after expansion of subtrees; made at each call."""
         paths: list[str] = []
         for instance in self._instances:
             above = paths[instance.above.index] if instance.above is not None and instance.above.index else ""
@@ -213,18 +212,18 @@ class Engine:
         return len(self._instances)
 
     def node(self, index: int) -> Node:
-        """The node with an index in preorder."""
+        """Return the node with an index in preorder."""
         return self._instances[index].node
 
     def filled(self, index: int) -> Node:
-        """As `node`, with the arguments of the subtrees around it in place of their `{names}`."""
+        """Return a node with the arguments of the subtrees around it in place of their `{names}`."""
         node, scope = self._instances[index].node, self._instances[index].scope
         keys = [(port, text, blackboard_key(port, text)) for port, text in node.ports]
         ports = tuple((port, text if key is None else _argument(scope, key, text)) for port, text, key in keys)
         return node if ports == node.ports else node.replace(ports=ports)
 
     def valued(self, changes: Changes) -> dict[int, Node]:
-        """Those of the changed nodes whose ports name keys, with the texts and numbers that are under them now.
+        """Return the changed nodes whose ports name keys, with the texts and numbers that are under them now.
 
         None in an engine without a listener.
         """
@@ -233,7 +232,9 @@ class Engine:
         return {index: self._with_values(self._instances[index]) for index in changes.indices if index in self._keyed}
 
     def path(self, index: int) -> str:
-        """Where a node is: `/` is the root, `/0/1` the second child of its first child; a SubTree's tree is child 0."""
+        """Return the path of a node: `/` is the root, `/0/1` the second child of its first child. A SubTree's tree is
+        child 0.
+        """
         steps: list[str] = []
         instance = self._instances[index]
         while instance.above is not None:
@@ -242,7 +243,7 @@ class Engine:
         return "/" + "/".join(reversed(steps))
 
     def flush(self) -> None:
-        """Hands the pending status changes to the listener; also from within a leaf.
+        """Hand the pending status changes to the listener. Leaves may call it.
 
         In another thread than that of the latest tick it does nothing: that tick may go on.
         """
@@ -250,7 +251,9 @@ class Engine:
             self._trace.flush()
 
     def values(self, index: int) -> dict[str, Any]:
-        """The values of the blackboard of a node, but for those that it shares with the one above. From any thread."""
+        """Return the blackboard values of a node, without those that it shares with the node above. Any thread may call
+        it.
+        """
         return self._instances[index].scope.own_values()
 
     def is_question(self, index: int) -> bool:
@@ -259,19 +262,19 @@ class Engine:
         return signature is None or signature.binding.condition
 
     def parent(self, index: int) -> int:
-        """The node above a node, -1 for the root."""
+        """Return the index of the node above a node, -1 for the root."""
         above = self._instances[index].above
         return -1 if above is None else above.index
 
     def span(self, index: int) -> Span | None:
-        """The sentence of a node, or of the nearest one around it that has one."""
+        """Return the sentence of a node, or of the nearest one around it that has one."""
         instance = self._instances[index]
         while instance.node.span is None and instance.above is not None:
             instance = instance.above
         return instance.node.span
 
     def reason(self, index: int, fault: Fault | NodeInstance | None = None) -> str:
-        """What a failure, by default the latest, or one that caused it, says about a node.
+        """Return what a failure, by default the latest, or one that caused it, says about a node.
 
         "" where only a node below it can say that.
         """
@@ -281,10 +284,10 @@ class Engine:
         return self._text(fault) if fault is not None and fault.index == index else ""
 
     def _with_values(self, instance: NodeInstance) -> Node:
-        ports = tuple((port, _valued(instance.scope, port, text)) for port, text in instance.node.ports)
+        ports = tuple((port, _fill_value(instance.scope, port, text)) for port, text in instance.node.ports)
         return instance.node.replace(ports=ports)  # type: ignore[no-any-return]
 
-    def _warned(self, fault: Fault | NodeInstance) -> None:
+    def _warn(self, fault: Fault | NodeInstance) -> None:
         failure = self._failure(fault)
         if failure.exception is not None and not isinstance(failure.exception, ActionFailed):
             self.raised[failure.index] = failure.exception
@@ -308,7 +311,7 @@ class Engine:
         raise RuntimeError("the tree is being ticked: neither a leaf nor another thread may tick or halt it now")
 
     def _halt_all(self, keep: bool, cut_short: bool = False) -> None:
-        """Also when a leaf is interrupted while it halts: it counts as halted then, and another attempt goes on.
+        """Halt all nodes. A leaf that is interrupted while it halts counts as halted, and another attempt goes on.
 
         Where a tick or a halt was cut short, nodes do not know which of their children run. So all is stopped before a
         TryCatch starts to clean up.
@@ -341,11 +344,11 @@ class Engine:
     def _failure(self, fault: Fault | NodeInstance) -> Failure:
         around: list[Failure] = []
         while fault.cause is not None:
-            around.append(self._described(fault))
+            around.append(self._describe(fault))
             fault = fault.cause
-        return self._described(fault, tuple(reversed(around)))
+        return self._describe(fault, tuple(reversed(around)))
 
-    def _described(self, fault: Fault | NodeInstance, around: tuple[Failure, ...] = ()) -> Failure:
+    def _describe(self, fault: Fault | NodeInstance, around: tuple[Failure, ...] = ()) -> Failure:
         index = fault.index
         return Failure(
             index, self.node(index), self.path(index), self._text(fault), fault.exception, self.span(index), around
@@ -357,7 +360,7 @@ def _argument(scope: Blackboard, key: str, text: str) -> str:
     return as_text(value) if isinstance(value, str | int | float) else text
 
 
-def _valued(scope: Blackboard, port: str, text: str) -> str:
+def _fill_value(scope: Blackboard, port: str, text: str) -> str:
     key = blackboard_key(port, text)
     value = scope.get(key) if key is not None and key in scope else text
     return as_text(value) if isinstance(value, str | int | float) else text

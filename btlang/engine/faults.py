@@ -1,4 +1,4 @@
-"""Everything that keeps a tree from being compiled, where compiling stops at the first fault."""
+"""All faults that keep a tree from being compiled. Compiling itself stops at the first one."""
 
 from __future__ import annotations
 
@@ -6,10 +6,9 @@ from collections.abc import Callable, Iterator, Mapping
 
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.clock import Clock
-from btlang.engine.compile import compile_node
+from btlang.engine.compile import child_scope, compile_node
 from btlang.engine.instance import EngineError, EngineState, NodeInstance, halt_nothing
 from btlang.engine.leaves.leaf import LeafBinding
-from btlang.engine.nodes.subtree import child_scope
 from btlang.engine.status import SUCCESS
 from btlang.tree.catalogue import CATALOGUE, SUBTREE
 from btlang.tree.node import Node, Tree
@@ -27,15 +26,17 @@ _ANY_VALUE = "{key}"
 
 
 class UnknownNode(EngineError):
-    """Neither a node of the engine nor bound to anything."""
+    """An error about a node that is neither built in nor bound to anything."""
 
 
 class UnknownSubTree(EngineError):
-    """A SubTree node names a tree that is not there."""
+    """An error about a SubTree node that names a tree that doesn't exist."""
 
 
-def faults(tree: Tree, bind: Callable[[str], LeafBinding | None], services: Mapping[str, Any]) -> list[EngineError]:
-    """One for each node that cannot be compiled, and for each SubTree that closes a circle, in the order of Tree.walk.
+def find_faults(
+    tree: Tree, bind: Callable[[str], LeafBinding | None], services: Mapping[str, Any]
+) -> list[EngineError]:
+    """List an error for each node that can't be compiled, and for each SubTree in a circle, in the order of Tree.walk.
 
     Trees that are not used are not looked at. `bind` and `services` are as for an Engine, which would refuse the tree
     where there is a fault; it refuses one of too many nodes, too.
@@ -48,13 +49,13 @@ def faults(tree: Tree, bind: Callable[[str], LeafBinding | None], services: Mapp
     used = dict(used_subtrees(tree))
     for name, root in (("", tree.root), *used.items()):
         for node in Tree(root).walk():
-            found += _wrong_with(node, used, state)
+            found += _find_node_faults(node, used, state)
             if node.id == SUBTREE and node.port("ID") in used:
                 uses.setdefault(name, []).append(node)
-    return found + [EngineError(f"the subtree {node.port('ID')} contains itself", node) for node in _circles(uses)]
+    return found + [EngineError(f"the subtree {node.port('ID')} contains itself", node) for node in _find_circles(uses)]
 
 
-def _wrong_with(node: Node, subtrees: dict[str, Node], state: EngineState) -> Iterator[EngineError]:
+def _find_node_faults(node: Node, subtrees: dict[str, Node], state: EngineState) -> Iterator[EngineError]:
     if node.id == SUBTREE:
         name = node.port("ID")
         if node.children:
@@ -83,12 +84,12 @@ def _wrong_with(node: Node, subtrees: dict[str, Node], state: EngineState) -> It
 
 
 def _refusals(node: Node, children: int, state: EngineState) -> list[str]:
-    """Why a node can't be compiled. Compiling stops at the first reason, so that is mended before it is tried again."""
+    """List why a node can't be compiled. Compiling stops at the first reason, so that is changed before another try."""
     found: list[str] = []
     message = _refusal(node, children, state)
     while message and message not in found:
         found.append(message)
-        tried = [(node, children, _refusal(node, children, state)) for node, children in _mended(node, children)]
+        tried = [(node, children, _refusal(node, children, state)) for node, children in _try_changes(node, children)]
         tried = [each for each in tried if each[2] not in found]
         if not tried:
             break
@@ -97,7 +98,7 @@ def _refusals(node: Node, children: int, state: EngineState) -> list[str]:
 
 
 def _refusal(node: Node, children: int, state: EngineState) -> str:
-    """The first reason why a node can't be compiled, "" if there is none."""
+    """Return the first reason why a node can't be compiled, "" if there is none."""
     standing_in: Compiled = (lambda: SUCCESS, halt_nothing)
     try:
         compile_node(NodeInstance(node, 0, None, 0, Blackboard(), state), [standing_in] * children)
@@ -106,8 +107,8 @@ def _refusal(node: Node, children: int, state: EngineState) -> str:
     return ""
 
 
-def _mended(node: Node, children: int) -> Iterator[tuple[Node, int]]:
-    """A built-in node with one change that may mend it: the number of children, or a port."""
+def _try_changes(node: Node, children: int) -> Iterator[tuple[Node, int]]:
+    """Yield a built-in node with one change that may correct it: the number of children, or a port."""
     kind = CATALOGUE.get(node.id)
     if kind is None:
         return
@@ -120,8 +121,8 @@ def _mended(node: Node, children: int) -> Iterator[tuple[Node, int]]:
         yield node.replace(ports=tuple(pair for pair in node.ports if pair[0] != port)), children
 
 
-def _circles(uses: dict[str, list[Node]]) -> list[Node]:
-    """The SubTree nodes that lead back to a tree around them."""
+def _find_circles(uses: dict[str, list[Node]]) -> list[Node]:
+    """List the SubTree nodes that lead back to a tree around them."""
     closing: list[Node] = []
     around: set[str] = set()
     done: set[str] = set()

@@ -1,4 +1,4 @@
-"""Faster variants of nodes that tick many children, with the same results. compile.py alone chooses them.
+"""Faster variants of nodes that tick many children, with the same results. Only compile.py chooses them.
 
 A wrapper around each function leaf would take as long as the function itself. So these nodes call the functions as they
 are, and normalize what is neither True nor False: another answer, or an exception. What a node does is written, simply,
@@ -11,9 +11,9 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 from btlang.engine.instance import NodeInstance
-from btlang.engine.leaves.callables import as_function, failed, status_of
+from btlang.engine.leaves.callables import fail_with, find_function, status_of
 from btlang.engine.nodes import control
-from btlang.engine.nodes.reactive import reactive_fallback, reactive_sequence
+from btlang.engine.nodes.control import reactive_fallback, reactive_sequence
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
 
 TYPE_CHECKING = False
@@ -27,30 +27,31 @@ if TYPE_CHECKING:
     Compile: TypeAlias = Callable[[NodeInstance, Sequence[Compiled]], Compiled]
 
 
-def fused(usual: Compile, instance: NodeInstance, children: Sequence[Compiled]) -> Compile:
-    """What compiles a node fastest: its `usual` function, or a variant of it."""
+def choose_compiler(usual: Compile, instance: NodeInstance, children: Sequence[Compiled]) -> Compile:
+    """Return the function that compiles a node fastest: its `usual` one, or a variant of it."""
     if usual is control.parallel:
         port = instance.node.port
-        return all_or_none if port("success_count", "-1") == "-1" and port("failure_count", "1") == "1" else usual
-    if usual in _VARIANTS and any(as_function(tick) for tick, _ in children):
+        return default_parallel if port("success_count", "-1") == "-1" and port("failure_count", "1") == "1" else usual
+    if usual in _VARIANTS and any(find_function(tick) for tick, _ in children):
         return _VARIANTS[usual]
     return usual
 
 
 def _calls(children: Sequence[Compiled]) -> Calls:
-    """What to call for a tick of each child, the halts, and the instances of function leaves, None for another child.
+    """Return what to call for a tick of each child, the halts, and the instances of function leaves, None for other
+    children.
 
     The caller of the ticks catches all but KeyboardInterrupt, and normalizes what it caught, every answer that is no
     status, and each FAILURE that makes it fail, so that the failure is that of the leaf.
     """
-    functions = [as_function(tick) for tick, _ in children]
+    functions = [find_function(tick) for tick, _ in children]
     ticks = [tick if leaf is None else leaf.call for (tick, _), leaf in zip(children, functions, strict=True)]
     instances = [None if leaf is None else leaf.instance for leaf in functions]
     return tuple(ticks), tuple([halt for _, halt in children]), tuple(instances)
 
 
 def normalize_status(instance: NodeInstance | None, answer: object) -> int:
-    """The status that an answer, or an exception that was raised instead, stands for; that of a node is its own."""
+    """Return the status of an answer, or of an exception that was raised instead. A node's answer is its status."""
     if instance is None:
         if isinstance(answer, BaseException):
             raise answer
@@ -58,11 +59,11 @@ def normalize_status(instance: NodeInstance | None, answer: object) -> int:
         return answer
     if answer is FAILURE:
         return instance.refuse()
-    return failed(instance, answer) if isinstance(answer, BaseException) else status_of(instance, answer)
+    return fail_with(instance, answer) if isinstance(answer, BaseException) else status_of(instance, answer)
 
 
 def in_order(instance: NodeInstance, children: Sequence[Compiled], passes: int) -> Compiled:
-    """Sequence and Fallback; see nodes/control.py."""
+    """Compile a Sequence or Fallback; see nodes/control.py."""
     ticks, halts, instances = _calls(children)
     nothing = None if passes is SUCCESS else passes  # what functions return is most often nothing
     index = skipped = 0
@@ -117,8 +118,8 @@ def in_order(instance: NodeInstance, children: Sequence[Compiled], passes: int) 
     return tick, halt
 
 
-def all_or_none(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
-    """Parallel with its default thresholds: it ends with the first failure, or when no child is RUNNING any more."""
+def default_parallel(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
+    """Compile a Parallel with its default thresholds: it ends with the first failure, or when no child is RUNNING."""
     ticks, halts, instances = _calls(children)
     everyone = tuple(enumerate(ticks))
     left = everyone  # those that have not completed
@@ -180,7 +181,7 @@ def all_or_none(instance: NodeInstance, children: Sequence[Compiled]) -> Compile
 
 
 def reactive(instance: NodeInstance, children: Sequence[Compiled], passes: int) -> Compiled:
-    """ReactiveSequence and ReactiveFallback; see nodes/reactive.py."""
+    """Compile a ReactiveSequence or ReactiveFallback; see nodes/control.py."""
     ticks, halts, instances = _calls(children)
     pairs, count = tuple(enumerate(ticks)), len(ticks)
     interrupts = instance.state.interrupts

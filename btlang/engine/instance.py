@@ -1,4 +1,4 @@
-"""What a node compiles to, and what its compiler may use.
+"""Instances of nodes: what a node compiles to, and what its compiler may use.
 
 A compiled node is a pair of closures:
 - `tick()` returns a status. A node that returns SUCCESS or FAILURE has reset itself. One that returns SKIPPED may keep
@@ -17,7 +17,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 
 from btlang.engine.blackboard import Blackboard
-from btlang.engine.clock import Clock
+from btlang.engine.clock import Clock, LeafTimer
 from btlang.engine.leaves.leaf import REFUSED, ActionFailed, LeafBinding, NotThere, Reason
 from btlang.engine.script.values import as_text
 from btlang.engine.status import FAILURE
@@ -29,14 +29,14 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, Protocol, TypeAlias
 
-    from btlang.engine.leaves.signature import LeafSignature
+    from btlang.engine.leaves.leaf import LeafSignature
 
     Tick: TypeAlias = Callable[[], int]
     Halt: TypeAlias = Callable[[bool], None]
     Compiled: TypeAlias = tuple[Tick, Halt]
 
     class LeafTrace(Protocol):
-        """How a leaf that takes time reports its own status; see NodeTrace in status_trace.py."""
+        """The trace by which a leaf that takes time reports its own status; see NodeTrace in status_trace.py."""
 
         index: int
         reported_by_leaf: bool
@@ -47,18 +47,13 @@ if TYPE_CHECKING:
 
         def flush(self) -> None: ...
 
-    class LeafTimer(Protocol):
-        """See Stopwatch in timing.py."""
-
-        def wrap(self, index: int, compiled: Compiled) -> Compiled: ...
-
     class Hooks(Protocol):
-        """What steps in before and behind the ticks of nodes; see Breakpoints in btlang/monitor/breakpoints.py."""
+        """Calls before and behind the ticks of nodes; see Breakpoints in btlang/monitor/breakpoints.py."""
 
         def wrap(self, index: int, compiled: Compiled) -> Compiled: ...
 
     class BackgroundWork(Protocol):
-        """See Background in leaves/background.py."""
+        """The interface of Background in leaves/background.py."""
 
         @property
         def is_working(self) -> bool: ...
@@ -69,7 +64,7 @@ if TYPE_CHECKING:
 
 
 class EngineError(Exception):
-    """The tree can't be compiled; `node` is the node at fault."""
+    """An error that keeps the tree from being compiled; `node` is the node at fault."""
 
     def __init__(self, message: str, node: Node) -> None:
         super().__init__(message)
@@ -78,7 +73,7 @@ class EngineError(Exception):
 
 
 class Fault(Record):
-    """A failure as it is recorded during a tick: index of the node, reason for people (see REFUSED).
+    """A failure that was recorded during a tick: index of the node, reason for people (see REFUSED).
 
     `cause` is the failure below it that made it fail, if it has something to add.
     """
@@ -90,7 +85,7 @@ class Fault(Record):
 
 
 class EngineState:
-    """What all nodes of one engine share."""
+    """The state that all nodes of one engine share."""
 
     __slots__ = (
         "background",
@@ -145,7 +140,7 @@ class EngineState:
 
 
 class NodeInstance:
-    """One use of a node, after expansion of subtrees: what its compiler may use, and what identifies it later.
+    """A use of a node, after expansion of subtrees: what its compiler may use, and what identifies it later.
 
     `above` is the instance of its parent, None for the root, and `position` its place among the children there;
     `index` is its number in preorder; `scope` is its blackboard. It also represents a failure of its node
@@ -177,12 +172,12 @@ class NodeInstance:
         return kind is not None and kind.keeps_completed
 
     def refuse(self) -> int:
-        """Records that this leaf has returned False; returns FAILURE."""
+        """Record that this leaf has returned False; return FAILURE."""
         self.state.fault = self
         return FAILURE
 
     def fail(self, reason: Reason, exception: BaseException | None = None) -> int:
-        """Records that this node failed; returns FAILURE. Cheapest with the same text as the last time."""
+        """Record that this node failed; return FAILURE. Cheapest with the same text as the last time."""
         fault = self._usual
         if fault is None or fault.reason is not reason or exception is not None:
             fault = Fault(self.index, reason, exception)
@@ -192,7 +187,7 @@ class NodeInstance:
         return FAILURE
 
     def cannot_know(self, reason: Reason, exception: BaseException | None = None) -> int:
-        """Records that this node failed without an answer: its failure doesn't mean no. Returns FAILURE."""
+        """Record that this node failed without an answer: its failure doesn't mean no. Returns FAILURE."""
         self.fail(reason, exception)
         state = self.state
         state.unknown = state.fault
@@ -219,22 +214,22 @@ class NodeInstance:
         return fault is not None and isinstance(fault.reason, NotThere)
 
     def pass_on(self, reason: Reason) -> int:
-        """Adds this node's reason to the failure below it, which stays the cause; returns FAILURE."""
+        """Add this node's reason to the failure below it, which stays the cause; return FAILURE."""
         cause = self.state.fault
         below = cause is not None and cause.index > self.index
         self.state.fault = Fault(self.index, reason, None, cause if below else None)
         return FAILURE
 
     def service(self, name: str) -> Any:
-        """A service for a leaf by name; the blackboard is that of its scope unless the engine got one."""
+        """Return a service for a leaf by name; the blackboard is that of its scope unless the engine got one."""
         return self.state.services.get(name, self.scope)
 
     def error(self, message: str) -> EngineError:
-        """An error to raise that blames this node."""
+        """Make an error that blames this node."""
         return EngineError(message, self.node)
 
     def number(self, port: str, least: int = 0, most: int = 0) -> Callable[[], int]:
-        """A function that gives the whole number in a port; for a `{key}` it may raise ActionFailed.
+        """Make a function that returns the whole number in a port; for a `{key}` it may raise ActionFailed.
 
         `least` and `most` are the limits if the catalogue has none. Raises EngineError if the port is missing without a
         default, or if its number isn't from `least` to `most`.
@@ -258,7 +253,7 @@ class NodeInstance:
     def arguments(
         self, ports: Mapping[str, str], converters: Mapping[str, Callable[[str], Any]]
     ) -> tuple[dict[str, Any], Callable[[], dict[str, Any]] | None]:
-        """Values of leaf ports by name: constants, and a function that reads the others if there are any.
+        """Return the values of leaf ports by name: constants, and a function that reads the others if there are any.
 
         That function raises ActionFailed if a `{key}` has no value. Constants are converted here, once; raises
         EngineError if that fails.
@@ -280,7 +275,7 @@ class NodeInstance:
 
 
 def blackboard_key(port: str, text: str) -> str | None:
-    """The key that a text `{key}` refers to, None for any other text; `{=}` is the key named as the port.
+    """Return the key in a text `{key}`, None for any other text; `{=}` is the key named as the port.
 
     Spaces around it do not count (TreeNode::isBlackboardPointer).
     """
@@ -292,7 +287,7 @@ def blackboard_key(port: str, text: str) -> str | None:
 
 
 def value_of(scope: Blackboard, key: str) -> Any:
-    """The value of a `{key}`; raises ActionFailed if there is none."""
+    """Return the value of a `{key}`. Raises ActionFailed if there is none."""
     try:
         return scope.get(key)
     except KeyError:
@@ -300,11 +295,11 @@ def value_of(scope: Blackboard, key: str) -> Any:
 
 
 def halt_nothing(keep: bool) -> None:
-    """The `halt` of a leaf that never runs for longer than its tick."""
+    """Do nothing: the `halt` of a leaf that never runs for longer than its tick."""
 
 
-def apart(children: Sequence[Compiled]) -> tuple[tuple[Tick, ...], tuple[Halt, ...]]:
-    """The ticks and the halts of compiled children."""
+def split_children(children: Sequence[Compiled]) -> tuple[tuple[Tick, ...], tuple[Halt, ...]]:
+    """Split compiled children into their ticks and their halts."""
     return tuple([tick for tick, _ in children]), tuple([halt for _, halt in children])
 
 
@@ -324,7 +319,9 @@ def _convert(scope: Blackboard, port: str, key: str, convert: Callable[[str], An
 
 
 def _whole(value: Any, port: str, least: int, most: int) -> int:
-    """Raises ActionFailed for anything but a whole number within the limits. The text `1.0` isn't one, as in C++."""
+    """Convert a value to a whole number. Raises ActionFailed unless it is one within the limits; `1.0` isn't, as in
+    C++.
+    """
     try:
         number = int(value)
     except (TypeError, ValueError, OverflowError):

@@ -1,4 +1,4 @@
-"""Resumes what is RUNNING without asking all that is above it.
+"""Resume paths: shortcuts to what is RUNNING, without asking all nodes above it.
 
 A node that waits, such as a Sequence, does nothing while its child is RUNNING but ask that child. Such nodes below each
 other form a path: the node at its top asks the child that was RUNNING below the lowest of them, and only when that
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class ResumePath:
-    """`top` is the number of the highest node, `resumed` the tick of the child that is RUNNING."""
+    """A path of nodes that only wait. `top` is the number of the highest, `resumed` the tick of the RUNNING child."""
 
     __slots__ = ("answer", "answers", "resumed", "state", "top", "used")
 
@@ -30,8 +30,10 @@ class ResumePath:
         self.answers = True  # whether that is an answer, see NodeInstance.cannot_know
 
 
-def resume_paths(instances: Sequence[NodeInstance], waits: Callable[[NodeInstance], bool]) -> list[ResumePath | None]:
-    """For each node the path that it is a part of, None for a node that does more than wait."""
+def find_resume_paths(
+    instances: Sequence[NodeInstance], waits: Callable[[NodeInstance], bool]
+) -> list[ResumePath | None]:
+    """Return for each node the path that it is a part of, None for a node that does more than wait."""
     found: list[ResumePath | None] = []
     for instance in instances:
         if not waits(instance):
@@ -42,8 +44,8 @@ def resume_paths(instances: Sequence[NodeInstance], waits: Callable[[NodeInstanc
     return found
 
 
-def resumable(path: ResumePath, compiled: Compiled) -> Compiled:
-    """A node below the path that may be RUNNING for more than a tick."""
+def mark_resumable(path: ResumePath, compiled: Compiled) -> Compiled:
+    """Wrap a node below the path that may be RUNNING for more than a tick."""
     tick, halt = compiled
     path.used = True
 
@@ -64,8 +66,8 @@ def resumable(path: ResumePath, compiled: Compiled) -> Compiled:
     return tick_resumable, halt_resumable
 
 
-def resuming(path: ResumePath, compiled: Compiled) -> Compiled:
-    """The highest node of the path."""
+def resume_at_top(path: ResumePath, compiled: Compiled) -> Compiled:
+    """Wrap the highest node of the path."""
     tick, halt = compiled
     state = path.state
 

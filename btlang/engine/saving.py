@@ -1,4 +1,4 @@
-"""What an engine remembers between two ticks, as JSON, and back: positions, counts, timers, statuses and values.
+"""Saving and restoring what an engine remembers between two ticks: positions, counts, timers, statuses and values.
 
 The memory of a node is what the cells of its `tick` hold: numbers, truths, texts, lists of these, failures, and objects
 with `saved` and `restore`, such as a Stopwatch. (Its `halt` may be that of its child.) Leaves have none: one that was
@@ -29,17 +29,17 @@ _PLAIN = (bool, int, float, str, type(None))
 
 
 class SaveError(Exception):
-    """What is remembered can't be saved, or what was saved isn't that of this tree."""
+    """An error because memory can't be saved, or because what was saved belongs to another tree."""
 
 
 def save_nodes(instances: Sequence[NodeInstance], trace: StatusTrace | None) -> dict[str, Any]:
-    """Between two ticks. Raises SaveError for a value on the blackboard that isn't text, number, truth or list."""
+    """Save all nodes between two ticks. Raises SaveError for a value on the blackboard that JSON can't hold."""
     nodes = {}
     for instance in instances:
         layers = [_read(tick) for tick in instance.memory]
         if any(layers):
             nodes[str(instance.index)] = layers
-    scopes = [scope.dump(_kept) for scope in _scopes(instances)]
+    scopes = [scope.dump(_to_json) for scope in _scopes(instances)]
     statuses = {}
     if trace is not None:
         last = [IDLE if node.last == RUNNING else node.last for node in trace.nodes]
@@ -48,7 +48,7 @@ def save_nodes(instances: Sequence[NodeInstance], trace: StatusTrace | None) -> 
 
 
 def restore_nodes(saved: Mapping[str, Any], instances: Sequence[NodeInstance], trace: StatusTrace | None) -> None:
-    """Into nodes that haven't been ticked. Raises SaveError if they aren't those of the tree that was saved."""
+    """Restore nodes that haven't been ticked. Raises SaveError if they aren't those of the tree that was saved."""
     scopes = list(_scopes(instances))
     try:
         if (saved["format"], saved["size"], len(saved["scopes"])) != (FORMAT, len(instances), len(scopes)):
@@ -58,7 +58,7 @@ def restore_nodes(saved: Mapping[str, Any], instances: Sequence[NodeInstance], t
             for tick, layer in zip(instance.memory, layers, strict=True):
                 _write(tick, layer, instances)
         for scope, values in zip(scopes, saved["scopes"], strict=True):
-            scope.load(values, _unkept)
+            scope.load(values, _from_json)
         if trace is not None:
             trace.restore({int(index): status for index, status in saved["statuses"].items()})
     except (KeyError, IndexError, TypeError, ValueError, AttributeError) as error:
@@ -81,9 +81,9 @@ def _read(tick: Callable[..., Any]) -> dict[str, Any]:
         if isinstance(value, _PLAIN):
             memory[name] = value
         elif isinstance(value, list | deque):
-            memory[name] = {"list": [_kept(each) for each in value]}
+            memory[name] = {"list": [_to_json(each) for each in value]}
         elif isinstance(value, Fault | NodeInstance):
-            memory[name] = {"fault": _fault(value)}
+            memory[name] = {"fault": _fault_to_json(value)}
         elif hasattr(value, "saved"):
             memory[name] = {"object": value.saved()}
     return memory
@@ -100,13 +100,13 @@ def _write(tick: Callable[..., Any], memory: Mapping[str, Any], instances: Seque
         elif "list" in value:
             values = cell.cell_contents  # itself, since others hold it too
             values.clear()
-            values.extend(map(_unkept, value["list"]))
+            values.extend(map(_from_json, value["list"]))
         else:
-            cell.cell_contents = _unfault(value["fault"], instances)
+            cell.cell_contents = _fault_from_json(value["fault"], instances)
 
 
-def _fault(fault: Fault | NodeInstance) -> list[Any]:
-    """Those that caused one another, the outermost first. What refuses without a reason has its own text again."""
+def _fault_to_json(fault: Fault | NodeInstance) -> list[Any]:
+    """List a failure and its causes, the outermost first. A refusal without a reason gets its text again later."""
     found: list[Any] = []
     while True:
         found.append([fault.index, None if fault.reason is REFUSED else reason_text(fault.reason)])
@@ -115,7 +115,7 @@ def _fault(fault: Fault | NodeInstance) -> list[Any]:
         fault = fault.cause
 
 
-def _unfault(chain: Sequence[Any], instances: Sequence[NodeInstance]) -> Fault | NodeInstance | None:
+def _fault_from_json(chain: Sequence[Any], instances: Sequence[NodeInstance]) -> Fault | NodeInstance | None:
     fault: Fault | NodeInstance | None = None
     for index, reason in reversed(chain):
         alone = reason is None and fault is None
@@ -123,19 +123,19 @@ def _unfault(chain: Sequence[Any], instances: Sequence[NodeInstance]) -> Fault |
     return fault
 
 
-def _kept(value: Any, depth: int = 0) -> Any:
-    """Raises SaveError for what JSON can't hold."""
+def _to_json(value: Any, depth: int = 0) -> Any:
+    """Convert a value to JSON. Raises SaveError if that can't hold it."""
     if depth > _DEEPEST:
         raise SaveError("a value that is nested too deep can't be saved")
     if isinstance(value, _PLAIN):
         return value
     if isinstance(value, list | tuple | deque):
-        return {type(value).__name__: [_kept(each, depth + 1) for each in value]}
+        return {type(value).__name__: [_to_json(each, depth + 1) for each in value]}
     raise SaveError(f"a value of the kind {type(value).__name__} can't be saved")
 
 
-def _unkept(value: Any) -> Any:
+def _from_json(value: Any) -> Any:
     if not isinstance(value, dict):
         return value
     [(kind, values)] = value.items()
-    return {"list": list, "tuple": tuple, "deque": deque}[kind](map(_unkept, values))
+    return {"list": list, "tuple": tuple, "deque": deque}[kind](map(_from_json, values))

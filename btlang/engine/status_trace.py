@@ -1,11 +1,11 @@
-"""Reports status changes. Compiled in only where somebody listens."""
+"""Traces of statuses, which report changes. They are compiled in only if somebody listens."""
 
 from __future__ import annotations
 
 from _thread import get_ident  # `threading` takes longer to import
 from collections.abc import Callable, Iterator, Mapping
 
-from btlang.engine.leaves.callables import FunctionLeaf, as_function, failed, status_of
+from btlang.engine.leaves.callables import FunctionLeaf, fail_with, find_function, status_of
 from btlang.engine.status import FAILURE, IDLE, NAMES, RUNNING, SUCCESS
 from btlang.tree.catalogue import CATALOGUE, ON_SUCCESS
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     Listener: TypeAlias = Callable[["Changes"], object]
 
 
-def repeats(node: Node) -> bool:
+def reports_each_round(node: Node) -> bool:
     """Whether each completion of the node's children is reported: it runs them again after a success, or so many times.
 
     What it runs until it succeeds, without a limit, is a condition that is waited for.
@@ -33,7 +33,7 @@ _SUCCESS = tuple(before << 3 | SUCCESS for before in range(len(NAMES)))  # the c
 
 
 class Changes:
-    """Changes of statuses, oldest first. Iterating gives for each the index of the node in preorder, its new status,
+    """Changes of statuses, oldest first. Iterating yields for each the index of the node in preorder, its new status,
     the one before (IDLE in a new run of its parent), and for a FAILURE what had failed latest then: this node or one
     below.
 
@@ -50,7 +50,7 @@ class Changes:
         self.faults: dict[int, Fault | NodeInstance | None] = {}  # by the position of the change
 
     def add(self, index: int, before: int, status: int, fault: Fault | NodeInstance | None = None) -> None:
-        """One more. `fault` counts where it is a FAILURE."""
+        """Add one change. `fault` counts if it is a FAILURE."""
         if status is FAILURE:
             self.faults[len(self.codes)] = fault
         self.indices.append(index)
@@ -65,7 +65,7 @@ class Changes:
 
 
 class StatusTrace:
-    """What the traces of all nodes of one engine share: the number of the tick, and the pending status changes.
+    """The trace that all nodes of one engine share: the number of the tick, and the pending status changes.
 
     The listener gets them together, which costs far less: after each tick, halt and suspension, before a leaf that
     takes time starts and when it has ended, and whenever `flush` is called.
@@ -82,21 +82,21 @@ class StatusTrace:
         self.nodes: list[NodeTrace] = []  # in preorder
 
     def restore(self, statuses: Mapping[int, int]) -> None:
-        """Nodes have had these statuses before the first tick, which is reported like any change."""
+        """Set the statuses that nodes had before the first tick, and report them like any change."""
         for index in sorted(statuses, reverse=True):
             self.nodes[index].last = statuses[index]
             self.pending.add(index, IDLE, statuses[index])
         self.flush()
 
     def flush(self) -> None:
-        """Hands the pending changes to the listener, oldest first."""
+        """Hand the pending changes to the listener, oldest first."""
         if self.pending.codes:
             changes, self.pending = self.pending, Changes()
             self.listener(changes)
 
 
 class NodeTrace:
-    """Records each new status of a node; the same status again is no change.
+    """The trace of one node, which records each new status; the same status again is no change.
 
     A completion is a change again after a new run: when a parent that was RUNNING ends, the statuses below it are
     forgotten. So a condition that is polled at every tick is recorded once, and an action in a loop each time. With
@@ -117,7 +117,7 @@ class NodeTrace:
         self.reported_by_leaf = False  # so that a leaf needs no wrapper while it is RUNNING
 
     def change(self, status: int) -> None:
-        """The node has this status now."""
+        """Record the status that the node has now."""
         if status != RUNNING and (self.every or self.last == RUNNING):
             self._forget_below()
         elif status == RUNNING and self.last not in (IDLE, RUNNING):
@@ -130,30 +130,30 @@ class NodeTrace:
                 self.trace.flush()
 
     def flush(self) -> None:
-        """Hands the pending changes of the whole engine to the listener."""
+        """Hand the pending changes of the whole engine to the listener."""
         self.trace.flush()
 
     def ended(self, status: int) -> int:
-        """Called by a leaf that reports its own completions; returns the status."""
+        """Record the completion of a leaf that reports its own; return the status."""
         if self.reported_by_leaf:
             self.reached = self.trace.tick
             self.change(status)
         return status
 
     def _record(self, before: int = IDLE) -> None:
-        """Adds its status to the pending changes; `before` is the one before."""
+        """Add its status to the pending changes; `before` is the one before."""
         trace = self.trace
         self.recorded = trace.tick
         trace.pending.add(self.index, before, self.last, trace.state.fault)
 
     def wrap(self, compiled: Compiled) -> Compiled:
-        """The same node, traced. The root counts the ticks."""
+        """Return the same node, traced. The root counts the ticks."""
         tick, halt = compiled
-        leaf = as_function(tick)
+        leaf = find_function(tick)
         if leaf is not None and self.index and not self.every:
-            return self._traced_function(leaf), self._traced_halt(halt)
+            return self._trace_function(leaf), self._trace_halt(halt)
         if self.reported_by_leaf:
-            return tick, self._traced_halt(halt)
+            return tick, self._trace_halt(halt)
         trace = self.trace
 
         def traced_tick() -> int:
@@ -168,10 +168,10 @@ class NodeTrace:
             trace.thread = get_ident()
             return traced_tick()
 
-        return (traced_tick if self.index else root_tick), self._traced_halt(halt)
+        return (traced_tick if self.index else root_tick), self._trace_halt(halt)
 
-    def _traced_function(self, leaf: FunctionLeaf) -> Tick:
-        """A wrapper around the function itself, which does what FunctionLeaf.tick does: the two calls become one."""
+    def _trace_function(self, leaf: FunctionLeaf) -> Tick:
+        """Wrap the function itself, and do what FunctionLeaf.tick does: the two calls become one."""
 
         # defaults and not cells, as in control.py: there are many of them
         def traced_tick(
@@ -185,7 +185,7 @@ class NodeTrace:
             except KeyboardInterrupt:
                 raise
             except BaseException as problem:
-                status = failed(leaf.instance, problem)
+                status = fail_with(leaf.instance, problem)
             else:
                 if status is None:
                     status = SUCCESS
@@ -205,7 +205,7 @@ class NodeTrace:
 
         return traced_tick
 
-    def _traced_halt(self, halt: Halt) -> Halt:
+    def _trace_halt(self, halt: Halt) -> Halt:
         def traced_halt(keep: bool) -> None:
             halt(keep)
             if self.last == RUNNING:
@@ -222,7 +222,7 @@ class NodeTrace:
             stack += [child for child in node.below if child.last != IDLE]
 
     def _record_below(self) -> None:
-        """Records the completions of this tick that are not recorded, children before parents, and forgets others."""
+        """Record the completions of this tick that aren't recorded, children before parents, and forget others."""
         now = self.trace.tick
         unrecorded: list[NodeTrace] = []
         stack = [child for child in self.below if child.last != IDLE]

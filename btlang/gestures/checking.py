@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.files import read_source
 from btlang.robots.bodies.body import Body
 from btlang.robots.bodies.gesture import Gesture
 from btlang.robots.bodies.gesture_file import GestureError, load_gestures
 from btlang.robots.files import as_mission_error, locate_problems
 from btlang.robots.simulation.rehearsal import Rehearsal, rehearse
 from btlang.text.source import Source, Span
-from btlang.text.toml_positions import positions
+from btlang.text.toml import find_positions
 from btlang.text.toml_table import Problem
 
 _SLOWED = 1.02  # times as long
@@ -41,7 +41,7 @@ def check_gesture(gesture: Gesture, body: Body, source: Source) -> Iterator[Diag
         for error in locate_problems([Problem(says, "frame", index, "at")], source, source.name, GestureError):
             yield from as_mission_error(error).diagnostics
         return
-    found = positions(source.text)
+    found = find_positions(source.text)
     start = found.get(("frame", index, "at"), 0)
     end = start + len(source.text[start:].partition("\n")[0])
     slower = f"{rehearsal.slower:.2g}"

@@ -8,10 +8,10 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 
-from btlang.backends.files import write_file
 from btlang.devices.device_set import DeviceSet
 from btlang.devices.driver import SIMULATED, Device, DeviceError
 from btlang.devices.kinds import JointState, JointTarget
+from btlang.diagnostics.files import write_file
 from btlang.robots.bodies.body import Body
 from btlang.robots.bodies.body_file import unusable_robot
 from btlang.robots.bodies.gesture_file import GestureError, load_gestures
@@ -20,7 +20,7 @@ from btlang.robots.robot import joint_of
 from btlang.support.interrupts import interrupts_later
 from btlang.text.output import show
 from btlang.text.source import Source
-from btlang.text.toml_writing import toml_key, toml_value
+from btlang.text.toml import toml_key, toml_value
 
 _EACH = 0.1  # seconds between two commands that keep servos loose
 _WAITS = 2.0  # seconds until servos must have let go, or hold again

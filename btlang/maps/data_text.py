@@ -5,14 +5,13 @@ from __future__ import annotations
 import json
 from math import atan2, degrees
 
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.robots.files import DataFileError
 from btlang.robots.geometry import wrap
 from btlang.robots.worlds.world import World
 from btlang.robots.worlds.world_file import world_from
 from btlang.robots.worlds.world_writing import as_data
-from btlang.text.enumeration import joined
+from btlang.text.formatting import joined
 from btlang.text.json_text import NestedTooDeep, load_json
 from btlang.text.source import NOWHERE, Source
 from btlang.text.toml_table import Problem, is_coordinate

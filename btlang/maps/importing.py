@@ -6,9 +6,8 @@ import os
 from collections.abc import Iterable, Iterator, Sequence
 from math import cos, pi, sin
 
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.diagnostics.files import read_source
 from btlang.maps.data_text import ForeignFileError, is_world, read_data, read_world_data
 from btlang.maps.occupancy import is_map, read_map, walls_of
 from btlang.maps.way_points import way_points

@@ -11,7 +11,7 @@ from math import cos, radians, sin
 
 import numpy as np
 
-from btlang.diagnostics.reading import is_below, real_path, reason_of
+from btlang.diagnostics.files import is_below, os_error_reason, real_path
 from btlang.maps.data_text import missing_package, number, numbers, shown
 from btlang.robots.geometry import Point, Pose
 from btlang.support.record import Record
@@ -155,7 +155,7 @@ def _image(name: Any, folder: str) -> MapImage:
     try:
         return read_image(path)
     except OSError as error:
-        raise Problem(f"I can't read the image {shown(name)}: {reason_of(error)}") from None
+        raise Problem(f"I can't read the image {shown(name)}: {os_error_reason(error)}") from None
 
 
 def _find_occupied(image: MapImage, mode: str, negate: bool, above: float) -> npt.NDArray[np.bool_]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btlang.robots.worlds.world import SLOW, Person, World, WorldObject, Zone
-from btlang.text.escaping import one_line
+from btlang.text.formatting import one_line
 
 
 def summarize(world: World) -> Iterator[str]:

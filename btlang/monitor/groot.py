@@ -11,8 +11,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import partial
 
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.engine.status import IDLE, RUNNING
 from btlang.monitor import groot_protocol as protocol
 from btlang.monitor.breakpoints import Breakpoints

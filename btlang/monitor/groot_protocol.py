@@ -7,7 +7,7 @@ import struct
 from collections.abc import Callable, Iterable, Iterator
 
 from btlang.backends.btcpp.markup import Markers
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.frontends.btcpp.spelling import MAIN_TREE, is_xml_name
 from btlang.run.events import Event, StatusesChanged

@@ -1,15 +1,14 @@
-"""What the passes share: a text on its way to a tree that is checked."""
+"""Compilations, which the passes share: a text on its way to a checked tree."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic
-from btlang.passes.order import used_first
 from btlang.support.record import Record
 from btlang.tree.ast import Ast, Definition, Program, parents_first
 from btlang.tree.node import Node, Tree
-from btlang.tree.visit import children_first
+from btlang.tree.visit import children_first, in_order_of_use, subtree_names
 from btlang.vocabulary.lexicon import Lexicon
 
 TYPE_CHECKING = False
@@ -59,19 +58,19 @@ class Compilation:
 
     @property
     def mission(self) -> Program:
-        """The syntax tree; only for passes that need one."""
+        """The syntax tree, only for passes that need one."""
         assert self._mission is not None
         return self._mission
 
     def syntax(self, root: Ast) -> list[Ast]:
-        """The nodes of a body in the syntax tree, parents before their parts, in the order of the text."""
+        """Return the nodes of a body in the syntax tree, parents before their parts, in the order of the text."""
         if id(root) not in self._syntax:
             self._syntax[id(root)] = parents_first(root)
         return self._syntax[id(root)]
 
     @property
     def tree(self) -> Tree:
-        """The tree; only behind lowering."""
+        """The tree, only after lowering."""
         assert self._tree is not None
         return self._tree
 
@@ -87,7 +86,7 @@ class Compilation:
         Children come before their parents, from left to right.
         """
         if not self._nodes:
-            self._nodes = [(name, children_first(root)) for name, root in used_first(self.tree)]
+            self._nodes = [(name, children_first(root)) for name, root in sort_by_use(self.tree)]
         return self._nodes
 
     @property
@@ -98,7 +97,7 @@ class Compilation:
         return self._ids
 
     def fold(self, combine: Callable[[Node, Sequence[Result], dict[str, Result]], Result]) -> None:
-        """Combines each node with the results of its children; the third argument are those of the names so far."""
+        """Combine each node with the results of its children; the third argument are those of the names so far."""
         named: dict[str, Result] = {}
         for name, nodes in self.nodes:
             results: list[Result] = []
@@ -114,7 +113,7 @@ class Compilation:
 
 
 class Pass(Record):
-    """One step. `run` fills in the compilation and gives what it finds.
+    """A step of compiling. `run` fills in the compilation and returns what it finds.
 
     `needs_text`: it is left out for trees from XML and JSON. `goes_on`: it runs after errors of earlier passes too, so
     that all are reported at once.
@@ -124,3 +123,13 @@ class Pass(Record):
     run: Callable[[Compilation], Iterable[Diagnostic]]
     needs_text: bool = False
     goes_on: bool = False
+
+
+def sort_by_use(tree: Tree) -> list[tuple[str, Node]]:
+    """List the subtrees by name, then the main tree under "", so that each comes behind those that it uses.
+
+    A mission has them in this order, an XML file in any. What uses itself, or is not there, is left to others.
+    """
+    roots = dict(tree.subtrees)
+    ordered, _ = in_order_of_use({name: reversed(subtree_names(root)) for name, root in roots.items()})
+    return [*((name, roots[name]) for name in ordered), ("", tree.root)]

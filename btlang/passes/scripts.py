@@ -1,4 +1,4 @@
-"""Texts that refer to values of the mission, as ports and as Script nodes that compute what ports cannot say.
+"""Scripts in trees: texts that refer to values of the mission, as ports and as Script nodes that compute them.
 
 A port that is one reference stays one (`{level}`). A text with references in it is put together by a Script just before
 the node that needs it, as a BehaviorTree.CPP port holds either a text or one reference.
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from btlang.passes.scope import Scope
+from btlang.passes.scope import LoweringScope
 from btlang.tree.catalogue import SEQUENCE
 from btlang.tree.node import Node
 from btlang.vocabulary.references import Choice, Reference, choice_of, pieces
@@ -18,32 +18,32 @@ OPERATORS = {"below": "<", "above": ">", "at_least": ">=", "at_most": "<=", "equ
 Ports = tuple[tuple[str, str], ...]
 
 
-def script(code: str) -> Node:
-    """A Script without a sentence, so that no log reports it as a command."""
+def make_script(code: str) -> Node:
+    """Make a Script without a sentence, so that no log reports it as a command."""
     return Node("Script", (), (("code", code),))
 
 
-def chosen(choice: Choice, key: str) -> Node:
-    """What chooses a name for a key, without a sentence."""
+def make_choice(choice: Choice, key: str) -> Node:
+    """Make the node that chooses a name for a key, without a sentence."""
     return Node("Choose", (), (("type", choice.type), ("how", choice.how), ("output", f"{{{key}}}"), *choice.parts))
 
 
-def behind(scripts: Sequence[Node], node: Node) -> Node:
-    """The node after what computes its ports."""
+def run_before(scripts: Sequence[Node], node: Node) -> Node:
+    """Return the node after the scripts that compute its ports."""
     return Node(SEQUENCE, (*scripts, node), span=node.span) if scripts else node
 
 
 def is_prepared(node: Node) -> bool:
-    """Whether `behind` made a node: all its children but the last only compute values for that one."""
+    """Whether `run_before` made a node: all its children but the last only compute values for that one."""
     *scripts, last = node.children or (node,)
     unsaid = all(child.span is None for child in scripts)
     return bool(scripts) and unsaid and node.id == SEQUENCE and node.span is not None and node.span is last.span
 
 
-def prepared(
-    arguments: Iterable[tuple[str, str]], scope: Scope, kinds: Mapping[str, str] = {}
+def prepare_ports(
+    arguments: Iterable[tuple[str, str]], scope: LoweringScope, kinds: Mapping[str, str] = {}
 ) -> tuple[list[Node], Ports]:
-    """The ports of a node, and what has to be computed before it. `kinds` are the types of those of a SubTree."""
+    """Return the ports of a node, and the scripts before it. `kinds` are the types of those of a SubTree."""
     scripts: list[Node] = []
     ports: list[tuple[str, str]] = []
     for name, text in arguments:
@@ -69,10 +69,10 @@ def _would_change(text: str) -> bool:
         return False
 
 
-def _port(text: str, scope: Scope) -> tuple[list[Node], str]:
+def _port(text: str, scope: LoweringScope) -> tuple[list[Node], str]:
     choice = choice_of(text)
     if choice is not None:
-        return [chosen(choice, choice.key)], f"{{{choice.key}}}"
+        return [make_choice(choice, choice.key)], f"{{{choice.key}}}"
     parts = pieces(text)
     if len(parts) == 1:
         [part] = parts
@@ -83,16 +83,16 @@ def _port(text: str, scope: Scope) -> tuple[list[Node], str]:
     return _own_key(text, scope)
 
 
-def _own_key(text: str, scope: Scope) -> tuple[list[Node], str]:
-    scripts, value = concatenated(text, scope)
+def _own_key(text: str, scope: LoweringScope) -> tuple[list[Node], str]:
+    scripts, value = concatenate(text, scope)
     key = scope.new_key()
-    return [*scripts, script(f"{key} := {value}")], f"{{{key}}}"
+    return [*scripts, make_script(f"{key} := {value}")], f"{{{key}}}"
 
 
-def assignment(key: str, operation: str, text: str, kind: str, scope: Scope) -> tuple[list[Node], str]:
-    """The code that sets, increases or decreases the value of a key, and what it needs before it."""
+def compile_assignment(key: str, operation: str, text: str, kind: str, scope: LoweringScope) -> tuple[list[Node], str]:
+    """Compile the code that sets, increases or decreases the value of a key, and what it needs before it."""
     if not scope.is_number(kind):
-        scripts, value = concatenated(text, scope)
+        scripts, value = concatenate(text, scope)
         return scripts, f"{key} := {value}"
     value = _plain_or_key(text)
     if operation == "set":
@@ -101,25 +101,27 @@ def assignment(key: str, operation: str, text: str, kind: str, scope: Scope) -> 
     return [], f"{key} {sign} {value}"
 
 
-def comparison(key: str, arguments: Iterable[tuple[str, str]], kind: str, scope: Scope) -> tuple[list[Node], str]:
-    """The code of a condition on a key, and what it needs before it."""
+def compile_comparison(
+    key: str, arguments: Iterable[tuple[str, str]], kind: str, scope: LoweringScope
+) -> tuple[list[Node], str]:
+    """Compile the code of a condition on a key, and what it needs before it."""
     scripts: list[Node] = []
     values: list[tuple[str, str]] = []
     for way, text in arguments:
-        needed, value = ([], _plain_or_key(text)) if scope.is_number(kind) else concatenated(text, scope)
+        needed, value = ([], _plain_or_key(text)) if scope.is_number(kind) else concatenate(text, scope)
         scripts += needed
         values.append((way, value))
     return scripts, " && ".join(f"{key} {OPERATORS[way]} {value}" for way, value in values)
 
 
 def _plain_or_key(text: str) -> str:
-    """The number that a port text is, or the key that it refers to."""
+    """Return the number that a port text is, or the key that it refers to."""
     [piece] = pieces(text)
     return piece.key if isinstance(piece, Reference) else piece
 
 
-def concatenated(text: str, scope: Scope) -> tuple[list[Node], str]:
-    """The expression of a text, and what it needs before it: a string of a script holds no single quote."""
+def concatenate(text: str, scope: LoweringScope) -> tuple[list[Node], str]:
+    """Compile the expression of a text, and what it needs before it: a string of a script holds no single quote."""
     scripts: list[Node] = []
     quote = ""
     terms: list[str] = []

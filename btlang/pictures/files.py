@@ -5,10 +5,9 @@ from __future__ import annotations
 import os
 from importlib.util import find_spec
 
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import unwritable
-from btlang.text.enumeration import joined
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.diagnostics.files import unwritable
+from btlang.text.formatting import joined
 from btlang.text.source import Source, Span
 
 STILL = (".svg", ".png")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from btlang.backends.files import write_file
+from btlang.diagnostics.files import write_file
 from btlang.engine.status import FAILURE
 from btlang.pictures import letters
 from btlang.pictures.drawing import open_drawing

@@ -14,7 +14,7 @@ from rich.cells import cell_len
 from btlang.robots.geometry import Point
 from btlang.robots.worlds.world import World
 from btlang.run.robot_state import RobotState
-from btlang.text.escaping import one_line
+from btlang.text.formatting import one_line
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from math import sqrt
 
-from btlang.backends.files import write_file
+from btlang.diagnostics.files import write_file
 from btlang.pictures import letters
 from btlang.pictures.drawing import open_drawing
 from btlang.pictures.files import STILL, picture_ending

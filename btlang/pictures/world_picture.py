@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from btlang.backends.files import write_file
+from btlang.diagnostics.files import write_file
 from btlang.pictures import letters
 from btlang.pictures.drawing import open_drawing
 from btlang.pictures.files import STILL, picture_ending

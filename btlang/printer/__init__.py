@@ -1,1 +1,1 @@
-"""Trees back to English."""
+"""The printer, which writes syntax trees and leaves as English."""

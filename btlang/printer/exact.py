@@ -9,7 +9,7 @@ import re
 from bisect import bisect_left
 from collections.abc import Iterator, Mapping
 
-from btlang.printer.pieces import COLON, LEAF, Piece, Pieces, mark
+from btlang.printer.fragments import COLON, LEAF, Fragment, Fragments, mark
 from btlang.printer.printer import WHOLE, Doc, Printer
 from btlang.text.source import Source
 from btlang.text.words import split
@@ -29,37 +29,37 @@ _PIECE = re.compile(r'(?P<plain>[^"“”„«»\x00-\x1f\x7f\ufeff]+)|(?P<marks
 
 
 def exact(node: ast.Exact, _parts: list[Doc], printer: Printer) -> Doc:
-    """A node without children is a command; one with children needs lines."""
+    """Print a node said by its id. Without children it is a command; with children it needs lines."""
     head = mark(node_head(node, printer))
     if not node.items:
         return Doc((head,), WHOLE)
     return Doc((head, mark(COLON)), WHOLE, in_lines=True)
 
 
-def exact_block(node: ast.Exact, printer: Printer) -> Iterator[tuple[Pieces, Iterator[tuple[ast.Ast, str]]]]:
-    """Its words, and its children as the lines below it."""
+def exact_block(node: ast.Exact, printer: Printer) -> Iterator[tuple[Fragments, Iterator[tuple[ast.Ast, str]]]]:
+    """Yield its words, and its children as the lines below it."""
     if node.items:
         yield (mark(node_head(node, printer)),), ((item, "children") for item in node.items)
 
 
 def node_head(node: ast.Exact, printer: Printer) -> str:
-    """The node with its name and its ports, without its children."""
+    """Print the node with its name and its ports, without its children."""
     ports = dict(node.ports)
     return _head(node, ports, printer) + _details(node, ports, printer)
 
 
 def phrase(node: ast.Phrase, _parts: list[Doc], printer: Printer) -> Doc:
-    """Words of a keyword entry, and behind them what they don't say of the node."""
-    words = Piece(printer.phrase(node.entry.id, node.arguments) or node.span.text, LEAF)
+    """Print words of a keyword entry, and behind them what they don't say of the node."""
+    words = Fragment(printer.phrase(node.entry.id, node.arguments) or node.span.text, LEAF)
     details = _details(node, dict(node.ports), printer)
     return Doc((words, mark(details.lstrip())) if details else (words,), WHOLE)
 
 
 def _details(node: ast.Exact | ast.Phrase, ports: dict[str, str], printer: Printer) -> str:
-    """` called "first" with width 0.05 giving {path}`, "" where nothing of that is to be said."""
+    """Print ` called "first" with width 0.05 giving {path}`, "" if nothing of that is to be said."""
     vocabulary, head = printer.vocabulary, ""
     if node.name:
-        head += f" {vocabulary.word('called')} {quoted(node.name, vocabulary)}"
+        head += f" {vocabulary.word('called')} {quote(node.name, vocabulary)}"
     gives = {key: ports.pop(key) for key in node.outputs if _KEY.fullmatch(ports.get(key, ""))}
     head += _ports("with", ports, printer)
     if [f"{{{key}}}" for key in gives] == [*gives.values()] and len(gives) == 1:
@@ -68,7 +68,7 @@ def _details(node: ast.Exact | ast.Phrase, ports: dict[str, str], printer: Print
 
 
 def _head(node: ast.Exact, ports: dict[str, str], printer: Printer) -> str:
-    """`do` and what names the node; the port that names a subtree is taken out of its ports."""
+    """Print `do` and what names the node; the port that names a subtree is taken out of its ports."""
     vocabulary, subtrees = printer.vocabulary, printer.subtrees
     role = "test" if node.is_condition else "do"
     word, words = vocabulary.word(role), vocabulary.nodes.get(node.id)
@@ -76,20 +76,20 @@ def _head(node: ast.Exact, ports: dict[str, str], printer: Printer) -> str:
         name = ports.pop("ID")
         said = _in_words(id_of_name(name), name, role, printer)
         if name in subtrees:
-            return f"{word} {said or quoted(name, vocabulary)}"
-        return f"{word} {words} {quoted(name, vocabulary)}"
+            return f"{word} {said or quote(name, vocabulary)}"
+        return f"{word} {words} {quote(name, vocabulary)}"
     if words is not None and node.id != SUBTREE:
         return f"{word} {words}"
     said = _in_words(node.id, "", role, printer)
     if said:
         return f"{word} {said}"
     if not node.is_condition and node.id in subtrees:
-        return f"{word} {vocabulary.word('node')} {quoted(node.id, vocabulary)}"
-    return f"{word} {quoted(node.id, vocabulary)}"
+        return f"{word} {vocabulary.word('node')} {quote(node.id, vocabulary)}"
+    return f"{word} {quote(node.id, vocabulary)}"
 
 
 def _in_words(node_id: str, subtree: str, role: str, printer: Printer) -> str:
-    """The words of an id, "" where they are read as anything else than it, or than this subtree."""
+    """Return the words of an id, "" if they are read as anything else than it, or than this subtree."""
     said = said_id(node_id, role, printer.vocabulary)
     if not said or (role == "do" and subtree_named(node_id, printer.subtrees, in_words=True) != subtree):
         return ""
@@ -102,12 +102,12 @@ def _in_words(node_id: str, subtree: str, role: str, printer: Printer) -> str:
 
 
 def _ports(role: str, ports: Mapping[str, str], printer: Printer) -> str:
-    """`with width 0.05, speed 2`; the word again where a name behind a comma would be read as a command."""
+    """Print `with width 0.05, speed 2`; the word again if a name behind a comma would be read as a command."""
     vocabulary, said = printer.vocabulary, ""
     for name, text in ports.items():
         key = _key(name, vocabulary)
-        is_bare = _BARE.fullmatch(text) and text[1:-1] not in _claiming(vocabulary)
-        value = text if is_bare else quoted(text, vocabulary)
+        is_bare = _BARE.fullmatch(text) and text[1:-1] not in _claiming_words(vocabulary)
+        value = text if is_bare else quote(text, vocabulary)
         is_free = said and _is_free(key, value, printer)
         said += f", {key} {value}" if is_free else f" {vocabulary.word(role)} {key} {value}"
     return said
@@ -120,14 +120,14 @@ def _is_free(key: str, value: str, printer: Printer) -> bool:
 
 
 def _key(name: str, vocabulary: Lexicon) -> str:
-    """The name of a port, as words if they are read back as it."""
+    """Print the name of a port, as words if they are read back as it."""
     if _is_words(name, vocabulary):
         return name.replace("_", " ")
-    return name if _IDENTIFIER.fullmatch(name) else quoted(name, vocabulary)
+    return name if _IDENTIFIER.fullmatch(name) else quote(name, vocabulary)
 
 
-def quoted(text: str, vocabulary: Lexicon) -> str:
-    """A text as pieces in quotes, `newline` and `character 9`."""
+def quote(text: str, vocabulary: Lexicon) -> str:
+    """Print a text as pieces in quotes, `newline` and `character 9`."""
     return " ".join(_pieces(text, vocabulary)) or '""'
 
 
@@ -156,10 +156,10 @@ def _is_words(name: str, vocabulary: Lexicon) -> bool:
     if any(first == phrase.split()[0] for phrase in vocabulary.roles["with"]):
         return False
     others = {phrase.split()[0] for role in ("newline", "character") for phrase in vocabulary.roles[role]}
-    others |= {*vocabulary.articles, *_claiming(vocabulary)}
+    others |= {*vocabulary.articles, *_claiming_words(vocabulary)}
     return others.isdisjoint((first, *rest))
 
 
-def _claiming(vocabulary: Lexicon) -> set[str]:
-    """The words that make names or values of the words beside them."""
+def _claiming_words(vocabulary: Lexicon) -> set[str]:
+    """Return the words that make names or values of the words beside them."""
     return {word for role in (*DEFINING, *CHANGING) for word in vocabulary.roles[role]}

@@ -27,7 +27,7 @@ _MARGIN = re.compile(rf"{_BLANK}*")
 
 
 class _Row(Record):
-    """A line of the text: what stands on it without its margin, the column where that starts, its words if any.
+    """A line of the text: its content without the margin, the column where that starts, its words if any.
 
     One that `goes_on` has the words of the line before it.
     """
@@ -38,8 +38,9 @@ class _Row(Record):
     goes_on: bool = False
 
 
-def laid_out(source: Source, orthography: Orthography) -> str:
-    """The text in its canonical layout, the same for a text that is laid out. It must be a mission without errors.
+def format_layout(source: Source, orthography: Orthography) -> str:
+    """Return the text in its canonical layout, which doesn't change when it is formatted again. It must have no
+    errors.
 
     Its words are the same ones, so it has the same tree.
     """
@@ -55,7 +56,7 @@ def laid_out(source: Source, orthography: Orthography) -> str:
 
 
 def _rows(source: Source, words: Words) -> Iterator[_Row]:
-    """Each line with its content laid out."""
+    """Yield each line with its content in the canonical layout."""
     quotes = [
         (start, end)
         for word, start, end in zip(words.words, words.starts, words.ends, strict=True)
@@ -76,7 +77,7 @@ def _rows(source: Source, words: Words) -> Iterator[_Row]:
 
 
 def _content(line: str, quotes: list[tuple[int, int]]) -> str:
-    """A line without its margin: its words with one space between them, and its comment."""
+    """Return a line without its margin: its words with one space between them, and its comment."""
     parts: list[str] = []
     tight = True  # no space follows the begin or a bracket that opens
     for kind, text in _pieces(line, quotes):
@@ -104,7 +105,7 @@ def _pieces(line: str, quotes: list[tuple[int, int]]) -> Iterator[tuple[str, str
 
 
 def _levels(rows: list[_Row]) -> list[int]:
-    """The block level of each line. A line without words goes with the lines around it, by its column."""
+    """Return the block level of each line. A line without words goes with the lines around it, by its column."""
     levels = [0] * len(rows)
     columns: list[int] = []  # of the blocks that are open, the outermost first
     waiting: list[int] = []  # lines without words, until the next words come
@@ -129,7 +130,7 @@ def _levels(rows: list[_Row]) -> list[int]:
 
 
 def _settle(waiting: list[int], rows: list[_Row], levels: list[int], columns: list[int], one: int, other: int) -> None:
-    """Lines without words between lines of two levels."""
+    """Set the levels of lines without words between lines of two levels."""
     lowest, highest = min(one, max(other, 0)), max(one, other)
     for i in waiting:
         fitting = [level for level, column in enumerate(columns) if column <= rows[i].column]

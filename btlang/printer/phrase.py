@@ -1,4 +1,4 @@
-"""A leaf as its phrase, in the first words that its keyword entry offers and that read back as the same leaf."""
+"""Phrases of leaves, in the first words that a keyword entry offers and that are read back as the same leaf."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from btlang.text.source import PythonSource, Source, Span
 from btlang.text.words import split
 from btlang.tree.catalogue import SUBTREE
-from btlang.tree.dump import described
+from btlang.tree.dump import describe_node
 from btlang.tree.node import Node
 from btlang.vocabulary.entry import MEASURED, POINT, Entry
 from btlang.vocabulary.lexicon import DEFINING, Lexicon
@@ -21,12 +21,12 @@ MARKUP = ("<", '"')  # what XML and JSON begin with, and no sentence
 
 
 def phrase_of(node: Node, vocabulary: Lexicon) -> str:
-    """The English of a node: `move forward 2 m`, `wait 5 s`, the name of a subtree; else `Id port=value`.
+    """Return the English of a node: `move forward 2 m`, `wait 5 s`, the name of a subtree; else `Id port=value`.
 
     What works with values of the mission is shown as it was written.
     """
     if node.id == SUBTREE:
-        return _filled_name(node)
+        return _fill_name(node)
     if node.span is not None and is_written(node) and is_sentence(node.span):
         return node.span.text
     if node.id in ("Choose", "ChooseAll"):
@@ -37,7 +37,7 @@ def phrase_of(node: Node, vocabulary: Lexicon) -> str:
         return f"{vocabulary.word('wait_time')} {node.port('time')}"
     if node.id in ("AlwaysSuccess", "AlwaysFailure"):
         return vocabulary.word("nothing" if node.id == "AlwaysSuccess" else "fail")
-    return leaf_words(node.id, dict(node.ports), vocabulary) or described(node)
+    return leaf_words(node.id, dict(node.ports), vocabulary) or describe_node(node)
 
 
 def is_sentence(span: Span) -> bool:
@@ -51,15 +51,15 @@ def is_written(node: Node) -> bool:
     return computed or bool(node.port(MEASURED))
 
 
-def _filled_name(node: Node) -> str:
-    """The name of a subtree with its arguments in place of its parameters."""
+def _fill_name(node: Node) -> str:
+    """Return the name of a subtree with its arguments in place of its parameters."""
     ports = dict(node.ports)
     parts = name_form(node.port("ID"))
     return " ".join(ports.get(part.name, f"{{{part.name}}}") if isinstance(part, Slot) else part for part in parts)
 
 
 def seconds(msec: str) -> str:
-    """Milliseconds of a port as seconds."""
+    """Return milliseconds of a port as seconds."""
     return f"{int(msec) / 1000:g} s" if msec.isdigit() else msec
 
 
@@ -71,7 +71,7 @@ def leaf_words(
     *,
     exactly: bool = False,
 ) -> str:
-    """The phrase of a leaf with these ports, "" where no phrase of it has just these slots.
+    """Return the phrase of a leaf with these ports, "" if no phrase of it has just these slots.
 
     Preferred is one that is read back as the leaf where `names` are defined; with `exactly` no other will do. A port
     may hold its default.
@@ -90,7 +90,7 @@ def leaf_words(
         said = {name: _read_back_value(text, types[name], vocabulary) for name, text in spoken.items()}
         if exactly and not all(said.values()):
             continue  # nor is it read back in any phrase
-        for form, values in _fitting(entry, spoken):
+        for form, values in _find_forms(entry, spoken):
             for name, text in values.items():
                 said[name] = said.get(name) or value_of(text, types[name], vocabulary)
             words = " ".join(said[part.name] if isinstance(part, Slot) else part for part in form)
@@ -101,7 +101,7 @@ def leaf_words(
 
 
 def _with_point(entry: Entry, spoken: dict[str, str], vocabulary: Lexicon) -> dict[str, str]:
-    """The ports of a point as one value in the slot of a place."""
+    """Return the ports of a point as one value in the slot of a place."""
     place = next((slot.name for slot in entry.slots if slot.type == PLACE), None)
     if place is None or not entry.point_ports or not spoken.keys() >= {"x", "y"} or place in spoken:
         return spoken
@@ -113,8 +113,10 @@ def _default(entry: Entry, slot: str) -> str | None:
     return next((known.default for known in entry.slots if known.name == slot), None)
 
 
-def _fitting(entry: Entry, spoken: Mapping[str, str]) -> Iterator[tuple[Form, Mapping[str, str]]]:
-    """The forms that say the values, the shortest of each phrase first; those that say a default too come last."""
+def _find_forms(entry: Entry, spoken: Mapping[str, str]) -> Iterator[tuple[Form, Mapping[str, str]]]:
+    """Yield the forms that say the values, the shortest of each phrase first; those that say a default too come
+    last.
+    """
     defaults = {slot.name: slot.default for slot in entry.slots if slot.default is not None}
     wordy: list[tuple[Form, Mapping[str, str]]] = []
     for phrase in entry.phrases:
@@ -143,7 +145,7 @@ def _reads_back(
 
 
 def value_of(text: str, kind: ValueType, vocabulary: Lexicon) -> str:
-    """A port text as a user would say it: `2 m`, `20%`, `hello`, `"two words"`.
+    """Return a port text as a user would say it: `2 m`, `20%`, `hello`, `"two words"`.
 
     A text that could be taken for something else is quoted.
     """
@@ -151,7 +153,7 @@ def value_of(text: str, kind: ValueType, vocabulary: Lexicon) -> str:
 
 
 def _read_back_value(text: str, kind: ValueType, vocabulary: Lexicon) -> str:
-    """The first way to say a text that is read back as it, "" where none is."""
+    """Return the first way to say a text that is read back as it, "" if there is none."""
     ways = _ways(text, kind, vocabulary)
     if len(ways) == 1:
         return ways[0]
@@ -161,7 +163,7 @@ def _read_back_value(text: str, kind: ValueType, vocabulary: Lexicon) -> str:
 
 
 def _ways(text: str, kind: ValueType, vocabulary: Lexicon) -> list[str]:
-    """The ways to say a text, the most natural first."""
+    """List the ways to say a text, the most natural first."""
     if text.startswith("{") and kind.kind != "text":
         choice = choice_of(text)
         return [vocabulary.values.choice_words(choice) if choice is not None else text]

@@ -1,11 +1,23 @@
-"""Says syntax trees: words of the vocabulary, values and brackets, which every form needs."""
+"""The printer of syntax trees: words of the vocabulary, values and brackets, which every form needs."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Set
 
+from btlang.printer.fragments import (
+    CLOSE,
+    LEAF,
+    OPEN,
+    WORD,
+    Fragment,
+    Fragments,
+    flatten,
+    join_fragments,
+    last_fragment,
+    mark,
+    reads_on,
+)
 from btlang.printer.phrase import holds_definer, leaf_words, value_of
-from btlang.printer.pieces import CLOSE, LEAF, OPEN, WORD, Piece, Pieces, flat, last_of, mark, reads_on, text_of
 from btlang.support.record import Record
 from btlang.tree import ast
 from btlang.tree.conjunctions import Conjunctions
@@ -26,16 +38,16 @@ LOOSE, THEN, OR, AND, FORM, WHOLE = range(6)
 
 
 class Doc(Record):
-    """What is said of a node, and what may not stand around it without brackets.
+    """The English of a node, and what may not stand around it without brackets.
 
     `reaches`: what follows it would become part of it. `takes_otherwise`: an `otherwise` right behind it would.
     `counts`: a count in it would close a `try` or `retry` before it. `behind`: it is a form behind its body.
     `in_lines`: it holds a standing rule, which no bracket can, so that it is said in lines and blocks only (see
-    blocks.py). `joins` and `chooses`: it holds `then` or `and`, `or` or `otherwise` between commands.
+    mission.py). `joins` and `chooses`: it holds `then` or `and`, `or` or `otherwise` between commands.
     `can_skip`: it may end SKIPPED.
     """
 
-    pieces: Pieces
+    fragments: Fragments
     level: int
     reaches: bool = False
     takes_otherwise: bool = False
@@ -53,7 +65,8 @@ class Doc(Record):
 
 
 class Printer:
-    """Says nodes in the words of a vocabulary, where `names` are defined; `printers` say each kind of node.
+    """A printer of nodes in the words of a vocabulary, where `names` are defined; `printers` print each kind of
+    node.
 
     With `brackets` "all" each chain and form inside another one is bracketed, with "needed" only those whose reading
     needs it (see the table in docs/language/grouping.md): what binds less tightly than what is around it,
@@ -83,7 +96,7 @@ class Printer:
         self._said: dict[int, tuple[ast.Ast, Doc]] = {}  # with its node, so that no other one gets its id
         self._forms: dict[str, Form] = {}
         self._leaves: dict[tuple[str, tuple[tuple[str, str], ...]], str] = {}
-        self._reads_on: dict[tuple[Piece, Piece], bool] = {}
+        self._reads_on: dict[tuple[Fragment, Fragment], bool] = {}
         self._parameters: dict[str, dict[str, str]] = {}
         self._comments: dict[int, tuple[ast.Ast, tuple[str, ...]]] = {}  # with its node, too
         self._kept: dict[int, tuple[ast.Ast, tuple[str, ...]]] = {}
@@ -102,7 +115,7 @@ class Printer:
                 add(self.names, name_form(name), types, Meaning("name"))
 
     def say(self, node: ast.Ast) -> Doc:
-        """What is said of a node (any but a Mission)."""
+        """Print a node (any but a Mission)."""
         if id(node) in self._said:
             return self._said[id(node)][1]
 
@@ -120,7 +133,8 @@ class Printer:
         return fold(node, ast.parts, combine)
 
     def keep(self, node: ast.Ast, said: Doc, lines: tuple[str, ...] = ()) -> None:
-        """Says a node in these words from now on, such as those of a text; as a statement in `lines`, if there are any.
+        """Say a node in these words from now on, such as those of a text; as a statement in `lines`, if there are
+        any.
 
         Nothing of what holds it may have been said before.
         """
@@ -128,39 +142,39 @@ class Printer:
         self._kept[id(node)] = node, lines
 
     def kept_lines(self, node: ast.Ast) -> tuple[str, ...]:
-        """See `keep`."""
+        """Return the lines that `keep` got."""
         return self._kept.get(id(node), (node, ()))[1]
 
     def statement(self, node: ast.Ast, joined: str = "") -> str:
-        """A line of its own, or one of several that make a chain of the operator `joined`."""
+        """Print a separate line, or one of several that make a chain of the operator `joined`."""
         return self.line(node, self.say(node), joined)
 
     def line(self, node: ast.Ast, said: Doc, joined: str) -> str:
-        """As `statement`, of what is said of the node."""
+        """Print a statement as `statement` does, of what is said of the node."""
         if isinstance(node, ast.Chain) and node.operator == joined:
-            said = bracketed(said)
-        text = self.text(said.pieces)
-        if not isinstance(node, ast.Definition) and self._would_define(flat(said.pieces)):
+            said = add_brackets(said)
+        text = self.text(said.fragments)
+        if not isinstance(node, ast.Definition) and self._would_define(flatten(said.fragments)):
             return f"{self.vocabulary.word('then')} {text}"  # a line that begins so defines nothing
         return text
 
-    def _would_define(self, pieces: Iterable[Piece]) -> bool:
+    def _would_define(self, fragments: Iterable[Fragment]) -> bool:
         """Whether a word that defines stands in a command or name; in a condition it compares."""
-        return any(piece.kind == LEAF and holds_definer(piece.text, self.vocabulary) for piece in pieces)
+        return any(fragment.kind == LEAF and holds_definer(fragment.text, self.vocabulary) for fragment in fragments)
 
-    def text(self, pieces: Pieces) -> str:
-        """The pieces as text."""
-        return text_of(pieces, self.vocabulary, self.names)
+    def text(self, fragments: Fragments) -> str:
+        """Join fragments to a text."""
+        return join_fragments(fragments, self.vocabulary, self.names)
 
     # -- comments
 
     def note(self, node: ast.Ast, lines: tuple[str, ...]) -> None:
-        """Puts lines of comment before the statement in which a node is said."""
+        """Put lines of comment before the statement in which a node is said."""
         before = self._comments.get(id(node), (node, ()))[1]
         self._comments[id(node)] = node, (*lines, *before)
 
     def comments(self, node: ast.Ast, *, whole: bool) -> list[str]:
-        """The comments of a statement; of a block, which is not `whole`, without those of the lines below."""
+        """Return the comments of a statement; of a block, which isn't `whole`, without those of the lines below."""
         if not self._comments:
             return []
         found: list[str] = []
@@ -176,33 +190,33 @@ class Printer:
 
     # -- words
 
-    def word(self, role: str, **values: str) -> Piece:
-        """The word of a role, with the value of its slot: `then`, `within 5 s`."""
+    def word(self, role: str, **values: str) -> Fragment:
+        """Return the word of a role, with the value of its slot: `then`, `within 5 s`."""
         if role not in self._forms:
             self._forms[role] = forms(self.vocabulary.first(role))[-1]
         words = (values[part.name] if isinstance(part, Slot) else part for part in self._forms[role])
-        return Piece(" ".join(words), WORD)
+        return Fragment(" ".join(words), WORD)
 
     def phrase(self, node_id: str, arguments: tuple[tuple[str, str], ...]) -> str:
-        """The phrase of a leaf, "" if there is none."""
+        """Return the phrase of a leaf, "" if there is none."""
         key = node_id, arguments
         if key not in self._leaves:
             self._leaves[key] = leaf_words(node_id, dict(arguments), self.vocabulary, self.names)
         return self._leaves[key]
 
     def value(self, text: str, kind: str) -> str:
-        """A port text of a type as it is written."""
+        """Return a port text of a type as it is written."""
         return value_of(text, self.vocabulary.types[kind], self.vocabulary)
 
     def plain_value(self, text: str, kind: str) -> str:
-        """As `value` if no slot gives the type: a text is in quotes, as a bare word may be a name or a number."""
+        """Print a value if no slot gives the type: a text is in quotes, as a bare word may be a name or a number."""
         value = self.value(text, kind)
         if kind != "text" or value != text or value.startswith("{"):
             return value
         return f'"{value}"'
 
     def name(self, node: ast.Name) -> str:
-        """A defined name with its arguments."""
+        """Return a defined name with its arguments."""
         types, arguments = self._parameters.get(node.name, {}), dict(node.arguments)
         parts = name_form(node.name)
         return " ".join(
@@ -210,27 +224,27 @@ class Printer:
             for part in parts
         )
 
-    def duration(self, role: str, seconds: str) -> Piece:
-        """The word of a role that has a duration."""
+    def duration(self, role: str, seconds: str) -> Fragment:
+        """Return the word of a role that has a duration."""
         return self.word(role, duration=self.value(seconds, "duration"))
 
-    def time_of_day(self, role: str, time: str) -> Piece:
-        """The word of a role that has a time of day."""
+    def time_of_day(self, role: str, time: str) -> Fragment:
+        """Return the word of a role that has a time of day."""
         return self.word(role, time_of_day=self.value(time, "time_of_day"))
 
-    def rounds(self, number: str) -> Piece:
-        """`3 times`; one word for once and for a number without end."""
+    def rounds(self, number: str) -> Fragment:
+        """Print `3 times`; one word for once and for a number without end."""
         single = [word for word, rounds in self.vocabulary.counts.items() if str(rounds) == number]
         if single and number in ("-1", "1"):
-            return Piece(single[0], WORD)
+            return Fragment(single[0], WORD)
         return self.word("once") if number == "1" else self.word("count", count=number)
 
     # -- brackets
 
     def inside(self, said: Doc, needs_brackets: bool) -> Doc:
-        """What is said inside another chain or form."""
+        """Print something inside another chain or form."""
         if said.level < WHOLE and (needs_brackets or self.all_brackets):
-            return bracketed(said)
+            return add_brackets(said)
         return said
 
     def joined_by_and(self, node: ast.Chain) -> bool:
@@ -239,34 +253,34 @@ class Printer:
         return not means_otherwise and self._conjunctions.are_simultaneous(node.items)
 
     def condition(self, said: Doc) -> Doc:
-        """The condition of a form: no reading needs brackets round it."""
-        return bracketed(said) if self.all_brackets and said.level < FORM else said
+        """Print the condition of a form: no reading needs brackets round it."""
+        return add_brackets(said) if self.all_brackets and said.level < FORM else said
 
-    def reads_on(self, said: Doc, piece: Piece) -> bool:
+    def reads_on(self, said: Doc, fragment: Fragment) -> bool:
         """Whether the end of what is said and a connective behind it would be read as one."""
-        key = last_of(said.pieces), piece
+        key = last_fragment(said.fragments), fragment
         if key not in self._reads_on:
             self._reads_on[key] = reads_on(*key, self.vocabulary, self.names)
         return self._reads_on[key]
 
-    def behind(self, body: Doc, word: Piece, *rest: Pieces, counts: bool = False) -> Doc:
-        """A form that stands behind its body."""
+    def behind(self, body: Doc, word: Fragment, *rest: Fragments, counts: bool = False) -> Doc:
+        """Print a form that stands behind its body."""
         body = self.inside(body, body.level < FORM or body.reaches or self.reads_on(body, word))
-        return Doc((body.pieces, word, *rest), FORM, counts=counts or body.counts, behind=True)
+        return Doc((body.fragments, word, *rest), FORM, counts=counts or body.counts, behind=True)
 
-    def before(self, head: Pieces, body: Doc, otherwise: Doc | None = None) -> Doc:
-        """A form that stands before its body, and reaches to the right; its `otherwise` is as it is to be said."""
+    def before(self, head: Fragments, body: Doc, otherwise: Doc | None = None) -> Doc:
+        """Print a form that stands before its body, and reaches to the right; its `otherwise` is said as it is."""
         if otherwise is None:
             body = self.inside(body, False)
-            return Doc((*head, body.pieces), FORM, True, body.takes_otherwise, body.counts)
+            return Doc((*head, body.fragments), FORM, True, body.takes_otherwise, body.counts)
         word = self.word("otherwise")
         body = self.inside(body, body.reaches or body.takes_otherwise or self.reads_on(body, word))
-        pieces = (*head, body.pieces, word, otherwise.pieces)
-        return Doc(pieces, FORM, True, otherwise.takes_otherwise, body.counts or otherwise.counts)
+        fragments = (*head, body.fragments, word, otherwise.fragments)
+        return Doc(fragments, FORM, True, otherwise.takes_otherwise, body.counts or otherwise.counts)
 
 
 def _with_flags(node: ast.Ast, said: Doc, parts: list[Doc]) -> Doc:
-    """What it holds, with what its parts hold."""
+    """Return the document with the flags of its parts."""
     operator = node.operator if isinstance(node, ast.Chain) else ""
     joins = operator in ("sequence", "parallel") or any(part.joins for part in parts)
     branches = getattr(node, "otherwise", None) is not None
@@ -276,6 +290,6 @@ def _with_flags(node: ast.Ast, said: Doc, parts: list[Doc]) -> Doc:
     return flagged
 
 
-def bracketed(said: Doc) -> Doc:
-    """The same in brackets."""
-    return Doc((mark(OPEN), said.pieces, mark(CLOSE)), WHOLE)
+def add_brackets(said: Doc) -> Doc:
+    """Return the same in brackets."""
+    return Doc((mark(OPEN), said.fragments, mark(CLOSE)), WHOLE)

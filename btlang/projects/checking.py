@@ -5,9 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 
-from btlang.backends.checking import anything, bound, misnamed, tree_problems
-from btlang.diagnostics.diagnostic import Diagnostic
-from btlang.diagnostics.errors import in_order
+from btlang.backends.checking import accept_anything, bind_placeholder, find_misnamed, tree_problems
+from btlang.diagnostics.diagnostic import Diagnostic, sort_diagnostics
 from btlang.engine.leaves.leaf import LeafBinding
 from btlang.frontends.btcpp.models import nav2_models
 from btlang.frontends.btcpp.project import XmlProject
@@ -28,8 +27,7 @@ from btlang.projects.ports import (
 from btlang.projects.unused import keys_read, unknown_nodes, unread_subtree_ports, unread_values, unused_trees
 from btlang.text.source import NOWHERE, Span
 from btlang.tree.catalogue import BEHAVIOR_TREE_CPP, CATALOGUE, SEQUENCE, SUBTREE
-from btlang.tree.model import NodeModel, PortModel
-from btlang.tree.node import Node, Tree
+from btlang.tree.node import Node, NodeModel, PortModel, Tree
 from btlang.tree.visit import fold
 from btlang.vocabulary.lexicon import Lexicon
 
@@ -48,7 +46,9 @@ def project_problems(project: XmlProject, vocabulary: Lexicon, sources: CppSourc
     for problem in found:
         if problem.is_error and problem.code != "BT132":
             wrong.setdefault(_place(problem.span), set()).add(problem.code)
-    return in_order(not_allowed(each for each in found if not _follows(each, wrong.get(_place(each.span), set()))))
+    return sort_diagnostics(
+        not_allowed(each for each in found if not _follows(each, wrong.get(_place(each.span), set())))
+    )
 
 
 def _follows(problem: Diagnostic, wrong: set[str]) -> bool:
@@ -209,7 +209,7 @@ class _Check:
                 problem = problem.replace(arguments=(("id", node.id), ("reason", reason)))
             yield problem
         if self._vocabulary.entries:
-            yield from misnamed(self._whole(self._project.trees), self._vocabulary)
+            yield from find_misnamed(self._whole(self._project.trees), self._vocabulary)
 
     def _is_older(self, span: Span, node_id: str) -> bool:
         """Return whether a node of version 3 only has the name of one that format 4 brought."""
@@ -230,7 +230,7 @@ class _Check:
         return own.replace(id=SEQUENCE, ports=ports)  # type: ignore[no-any-return]
 
     def _bind(self, node_id: str) -> LeafBinding:
-        return bound(self._vocabulary, node_id) or LeafBinding(anything)
+        return bind_placeholder(self._vocabulary, node_id) or LeafBinding(accept_anything)
 
     def _whole(self, trees: Mapping[str, Node]) -> Tree:
         """Return one tree that uses them all."""

@@ -9,10 +9,10 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 
-from btlang.diagnostics.reading import read_bytes
+from btlang.diagnostics.files import read_bytes
 from btlang.projects.files import find_files_below
 from btlang.text.source import Source, Span
-from btlang.tree.model import NodeModel, PortModel
+from btlang.tree.node import NodeModel, PortModel
 
 _ENDINGS = (".hpp", ".h", ".hh", ".hxx", ".cpp", ".cc", ".cxx")
 _TELLING = (b"Ports(", b"getInput", b"registerNodeType", b"registerBuilder", b"registerSimple", b"registerBehavior",

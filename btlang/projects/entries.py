@@ -7,16 +7,14 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.engine.instance import blackboard_key
-from btlang.engine.script.names import READS, SETS, uses_in_script
-from btlang.engine.script.tokens import ScriptError
+from btlang.engine.script.tokens import READS, SETS, ScriptError, find_script_names
 from btlang.frontends.btcpp.spelling import AUTOREMAP, TRUE
 from btlang.projects.ports import attribute_value, place_of
 from btlang.support.record import Record
 from btlang.text.source import Span
 from btlang.text.spelling import misspelt
-from btlang.tree.catalogue import CATALOGUE, SCRIPT, SUBTREE, held
-from btlang.tree.model import PortModel
-from btlang.tree.node import Node, Tree
+from btlang.tree.catalogue import CATALOGUE, SCRIPT, SUBTREE, port_content
+from btlang.tree.node import Node, PortModel, Tree
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -47,7 +45,7 @@ class EntryUse(Record):
     def may_be_enum(self) -> bool:
         """Return whether a script reads what may be the name of an enum, such as RED."""
         may_be = self.key.isupper() and not self.sets and _ENUM.fullmatch(self.key) is not None
-        return may_be and held(self.node.id, self.port) == SCRIPT
+        return may_be and port_content(self.node.id, self.port) == SCRIPT
 
 
 class TreeEntries(Record):
@@ -83,7 +81,7 @@ def entries_of(root: Node, ports_of: PortsOf, is_older: bool) -> TreeEntries:
             may_hold = is_built_in or port[:1] == "_"
             if not (may_hold or is_older or "{" in text):
                 continue
-            holds = held(node.id, port) if may_hold else ""
+            holds = port_content(node.id, port) if may_hold else ""
             if holds == SCRIPT:
                 uses += _script_uses(node, port, text)
             elif "{" in text:
@@ -103,7 +101,7 @@ def _script_uses(node: Node, port: str, code: str) -> list[EntryUse]:
     Nothing of what is no script, which is reported elsewhere, or is in an entry itself.
     """
     try:
-        uses = {} if blackboard_key(port, code) is not None else uses_in_script(code)
+        uses = {} if blackboard_key(port, code) is not None else find_script_names(code)
     except ScriptError:
         return []
     return [EntryUse(node, port, name, READS in how, SETS in how) for name, how in uses.items() if name[:1] != "@"]
@@ -184,7 +182,7 @@ def conflicting_types(entries: Mapping[str, TreeEntries]) -> Iterator[Diagnostic
             continue
         first: dict[str, EntryUse] = {}
         for use in each.uses:
-            if use.key in outside.get(name, ()) or held(use.node.id, use.port) == SCRIPT:
+            if use.key in outside.get(name, ()) or port_content(use.node.id, use.port) == SCRIPT:
                 continue
             before = first.setdefault(use.key, use)
             if _differ(before.type, use.type):

@@ -6,9 +6,8 @@ import os
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import read_source, real_path
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.diagnostics.files import read_source, real_path
 from btlang.frontends.table import XML_ENDINGS
 from btlang.text.source import Source, Span
 

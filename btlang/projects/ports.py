@@ -12,8 +12,7 @@ from btlang.support.record import Record
 from btlang.text.source import NOWHERE, Span
 from btlang.text.spelling import is_misspelling, nearest
 from btlang.tree.catalogue import CATALOGUE, SUBTREE
-from btlang.tree.model import NodeModel, PortModel
-from btlang.tree.node import Node
+from btlang.tree.node import Node, NodeModel, PortModel
 
 _ATTRIBUTE = re.compile(r"""([^\s"'=<>/]+)\s*=\s*("[^"]*"|'[^']*')""")
 

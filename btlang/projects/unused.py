@@ -7,13 +7,13 @@ from collections.abc import Callable, Collection, Container, Iterable, Iterator,
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.engine.instance import blackboard_key
-from btlang.engine.script.names import READS, SETS, uses_of_names
+from btlang.engine.script.tokens import READS, SETS, find_name_uses
 from btlang.frontends.btcpp.dialect import ONLY_IN_3
 from btlang.frontends.btcpp.project import XmlProject
 from btlang.frontends.btcpp.spelling import AUTOREMAP, TRUE
 from btlang.projects.ports import attribute_value, id_place, suggest_name
 from btlang.text.spelling import misspelt
-from btlang.tree.catalogue import KEY, SCRIPT, SUBTREE, held
+from btlang.tree.catalogue import KEY, SCRIPT, SUBTREE, port_content
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import subtree_names, used_subtrees
 
@@ -35,9 +35,9 @@ def keys_read(nodes: Iterable[Node], outputs_of: OutputsOf) -> frozenset[str]:
     for node in nodes:
         outputs = outputs_of(node)
         for name, text in node.ports:
-            if held(node.id, name) == SCRIPT:
-                read.update(name.lstrip("@") for name, uses in uses_of_names(text).items() if READS in uses)
-            elif name not in outputs and held(node.id, name) != KEY:
+            if port_content(node.id, name) == SCRIPT:
+                read.update(name.lstrip("@") for name, uses in find_name_uses(text).items() if READS in uses)
+            elif name not in outputs and port_content(node.id, name) != KEY:
                 key = blackboard_key(name, text)
                 read.update((key.lstrip("@"),) if key is not None else _WORD.findall(text))
             if node.id == SUBTREE:
@@ -56,9 +56,9 @@ def unread_values(nodes: Iterable[Node], outputs_of: OutputsOf, read: frozenset[
 
 
 def _keys_set(node_id: str, port: str, text: str, outputs: Container[str]) -> Iterable[str]:
-    holds = held(node_id, port)
+    holds = port_content(node_id, port)
     if holds == SCRIPT:
-        return [name for name, uses in uses_of_names(text).items() if SETS in uses]
+        return [name for name, uses in find_name_uses(text).items() if SETS in uses]
     key = blackboard_key(port, text) if port in outputs or holds == KEY else None
     return (key,) if key is not None else (text,) if holds == KEY and _WORD.fullmatch(text) else ()
 

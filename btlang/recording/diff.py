@@ -9,8 +9,8 @@ from difflib import SequenceMatcher
 from itertools import zip_longest
 
 from btlang.api import Mission, parse_file
-from btlang.backends.tree_diff import differences
-from btlang.diagnostics.errors import MissionError
+from btlang.backends.tree_diff import find_differences
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.engine.status import NAMES
 from btlang.recording.reader import is_recording, open_recording
 from btlang.recording.story import Story
@@ -114,7 +114,7 @@ def _of_trees(options: argparse.Namespace) -> Iterator[str]:
 
 def mission_differences(old: Mission, new: Mission) -> Iterator[str]:
     """Return a line for each difference of their trees."""
-    return differences(old.tree, new.tree, words_of(old), words_of(new))
+    return find_differences(old.tree, new.tree, words_of(old), words_of(new))
 
 
 def words_of(mission: Mission) -> Callable[[Node], str]:

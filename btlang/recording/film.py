@@ -6,8 +6,7 @@ from collections.abc import Iterable
 from contextlib import ExitStack
 
 from btlang.api import Mission
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.engine.compile import outline
 from btlang.engine.status import NAMES
 from btlang.passes.scripts import is_prepared

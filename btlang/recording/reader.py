@@ -9,9 +9,8 @@ from contextlib import contextmanager
 from functools import cached_property
 
 from btlang.api import Mission
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import reason_of
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.diagnostics.files import os_error_reason
 from btlang.engine.compile import outline
 from btlang.engine.status import NAMES
 from btlang.engine.status_trace import Changes
@@ -143,7 +142,7 @@ def read_recording(path: str) -> Recording:
             except (McapError, struct.error, EOFError, ValueError, KeyError, IndexError, OverflowError):
                 pass  # it ends here: the process was killed, or the disk was full
     except OSError as error:
-        raise MissionError([diagnostic("BT001", NOWHERE, file=path, reason=reason_of(error))]) from None
+        raise MissionError([diagnostic("BT001", NOWHERE, file=path, reason=os_error_reason(error))]) from None
     if not about:
         raise MissionError([diagnostic("BT084", NOWHERE, file=path)])
     return Recording(about, files, tuple(entries))

@@ -10,8 +10,8 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 
 from btlang.api import Mission
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import unwritable
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.files import unwritable
 from btlang.recording.bundle import files_of
 from btlang.recording.channels import RecordingChannel, messages
 from btlang.run.bus import BLOCK

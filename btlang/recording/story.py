@@ -12,7 +12,7 @@ from btlang.recording.reader import RecordedNodes
 from btlang.run.events import Chosen, Ended, Event, FaultInjected, InTheWorld, Notice, PartChanged, StatusesChanged
 from btlang.run.failure_history import FailureHistory, failure_report
 from btlang.run.logs import is_asked_wait
-from btlang.text.escaping import one_line
+from btlang.text.formatting import one_line
 from btlang.tree.node import Node
 
 _ENDINGS = {FAILURE: "failed", IDLE: "was halted", SKIPPED: "was skipped"}

@@ -7,8 +7,8 @@ import sys
 from collections.abc import Callable
 from shutil import get_terminal_size
 
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import read_source, unwritable
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.files import read_source, unwritable
 from btlang.frontends.mission.symbols.definitions import find_definitions
 from btlang.frontends.mission.symbols.phrases import Phrases
 from btlang.repl.draft import DraftEntry, MissionDraft
@@ -16,9 +16,9 @@ from btlang.repl.store import DraftStore
 from btlang.robots.robot import Robot, RobotError
 from btlang.robots.worlds.world import said
 from btlang.support.record import Record
+from btlang.text.formatting import TextTable
 from btlang.text.output import can_draw, listing_width
 from btlang.text.source import Source
-from btlang.text.table import Table
 from btlang.text.words import split
 from btlang.vocabulary.listing import help_on, listing, overview
 from btlang.vocabulary.trie import longest
@@ -165,12 +165,12 @@ class ReplCommands:
         if not rest:
             self._write(_FIRST)
             rows = ((topic, ", ".join(c.name for c in COMMANDS if c.topic == topic)) for topic in _TOPICS)
-            self._write(Table(tuple(rows), indent=2))
+            self._write(TextTable(tuple(rows), indent=2))
             self._write(_MORE)
         elif rest == "keys":
-            self._write(Table(_KEYS, indent=2))
+            self._write(TextTable(_KEYS, indent=2))
         elif rest in _TOPICS:
-            self._write(Table(tuple((_usage(c), c.help) for c in COMMANDS if c.topic == rest), indent=2))
+            self._write(TextTable(tuple((_usage(c), c.help) for c in COMMANDS if c.topic == rest), indent=2))
         elif rest in _NAMES:
             self._write(f"{_usage(_NAMES[rest])}: {_NAMES[rest].help}")
         else:
@@ -294,7 +294,7 @@ class ReplCommands:
         names = draft.session.world.names
         kinds = (("places", names.places), ("people", names.people), ("objects", names.objects))
         known = ((kind, ", ".join(those)) for kind, those in kinds if those)
-        self._write(Table((("world", draft.world or "the one that ships"), *known), widths=(7,), gap=1))
+        self._write(TextTable((("world", draft.world or "the one that ships"), *known), widths=(7,), gap=1))
         self._write(robot_line(draft))
 
     def show_map(self) -> None:

@@ -8,8 +8,7 @@ from collections.abc import Mapping, Sequence
 from textwrap import indent
 
 from btlang.api import Mission
-from btlang.diagnostics.diagnostic import Diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError
 from btlang.engine.blackboard import Blackboard
 from btlang.frontends.mission.reader import DEFAULT_PARSER, lexed, read_mission
 from btlang.frontends.mission.tokens.lexer import Lexer

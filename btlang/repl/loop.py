@@ -8,8 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import closing, contextmanager, nullcontext
 
 from btlang.api import Mission
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.render import render
+from btlang.diagnostics.diagnostic import MissionError, render
 from btlang.frontends.mission.reader import DEFAULT_PARSER
 from btlang.repl.commands import Leave, ReplCommands, command_of
 from btlang.repl.draft import MissionDraft

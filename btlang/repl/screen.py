@@ -37,8 +37,7 @@ from btlang.repl.draft import MissionDraft
 from btlang.repl.keys import key_bindings
 from btlang.repl.preview import Offers, Preview, continuations, preview
 from btlang.repl.store import DraftStore
-from btlang.text.drawing import lines
-from btlang.text.output import has_colour
+from btlang.text.output import draw_lines, has_colour
 
 PROMPT, CONTINUED = "> ", "  "
 _MENU_ROWS = 8
@@ -229,7 +228,7 @@ class ReplScreen:
         room = max(3, self._rows() - self.buffer.text.count("\n") - 4 - menu)
         more = seen.tree.height - room
         tree = Styled(seen.tree, _UNFINISHED if seen.errors else "")
-        drawn = lines(tree, self._columns() - len(CONTINUED), has_colour(sys.stdout), fold=False)
+        drawn = draw_lines(tree, self._columns() - len(CONTINUED), has_colour(sys.stdout), fold=False)
         for line in islice(drawn, room - (more > 0)):
             yield CONTINUED + line
         if more > 0:
@@ -246,7 +245,7 @@ class ReplScreen:
         return Text(CONTINUED + text, _UNFINISHED)
 
     def _ansi(self, drawing: RenderableType, fold: bool = True) -> ANSI:
-        return ANSI("\n".join(lines(drawing, self._columns(), has_colour(sys.stdout), fold)))
+        return ANSI("\n".join(draw_lines(drawing, self._columns(), has_colour(sys.stdout), fold)))
 
     def fix(self) -> tuple[int, int, str] | None:
         """Return the first correction that is proposed: characters from and to, and what to write there."""

@@ -7,7 +7,7 @@ import os
 import time
 from pathlib import Path
 
-from btlang.diagnostics.reading import reason_of
+from btlang.diagnostics.files import os_error_reason
 from btlang.support.record import Record
 from btlang.support.user_dirs import user_dir
 
@@ -55,7 +55,7 @@ class DraftStore:
             self._held = _lock(self._own)
             self.save([], "")
         except OSError as error:
-            self.problem = f"{self._folder}: {reason_of(error)}"
+            self.problem = f"{self._folder}: {os_error_reason(error)}"
 
     def __del__(self) -> None:
         if self._held is not None:
@@ -77,7 +77,7 @@ class DraftStore:
             new.write_text(json.dumps(state), encoding="ascii")
             os.replace(new, self._own)
         except OSError as error:
-            self.problem = f"{self._own}: {reason_of(error)}"
+            self.problem = f"{self._own}: {os_error_reason(error)}"
 
     def forget(self) -> None:
         """Delete this session's files: all of it has been saved elsewhere, or there is nothing in it."""

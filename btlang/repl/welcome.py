@@ -6,7 +6,7 @@ import sys
 from collections.abc import Iterator
 from itertools import islice, pairwise
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.frontends.mission.explanations.unknown import example_commands
 from btlang.repl.draft import MissionDraft
 from btlang.run.robot_state import read_robot

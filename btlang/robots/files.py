@@ -12,9 +12,8 @@ from importlib import import_module
 from importlib.machinery import PathFinder
 from importlib.util import module_from_spec
 
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import read_bytes
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.diagnostics.files import read_bytes
 from btlang.text.source import NOWHERE, Source
 from btlang.text.toml import line_of, parse_toml
 from btlang.text.toml_table import Problem, Table
@@ -89,17 +88,17 @@ def locate_problems(
     problems: Iterable[Problem], source: Source, path: str, error: type[DataFileError]
 ) -> Iterator[DataFileError]:
     """Return problems as errors at their lines."""
-    from btlang.text.toml_positions import nearest, positions
+    from btlang.text.toml import find_positions, nearest_position
 
-    found = positions(source.text)
+    found = find_positions(source.text)
     for problem in problems:
-        at = nearest(found, problem.path)
+        at = nearest_position(found, problem.path)
         yield error(problem.message, path, None if at is None else source.position(at)[0], source)
 
 
 def as_mission_error(error: DataFileError) -> MissionError:
     """Return all errors of a file at their lines as a MissionError with their code."""
-    from btlang.diagnostics.errors import MissionError
+    from btlang.diagnostics.diagnostic import MissionError
 
     return MissionError([_diagnostic(each) for each in (error, *error.more)])
 

@@ -7,8 +7,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
-from btlang.diagnostics.diagnostic import Diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError
 from btlang.frontends.table import XML_ENDINGS
 from btlang.text.source import Source, Span
 from btlang.text.words import split
@@ -43,7 +42,7 @@ def mission_vocabulary(
     first = _FIRST_LINE.match(source.text)
     if first is None or _QUOTES.isdisjoint(first[1]):
         return world_vocabulary(keywords, world, language), world
-    from btlang.diagnostics.reading import OUTSIDE, included_path, is_below
+    from btlang.diagnostics.files import OUTSIDE, included_path, is_below
     from btlang.frontends.mission.symbols.needs import WORDS, find_needs, unusable
 
     vocabulary = load_vocabulary([word for word in keywords if not _is_xml(word)], None, language)

@@ -5,8 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterator, Sequence
 
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.robots.bodies.body import Body
 from btlang.robots.bodies.gesture import BEARING
 from btlang.robots.bodies.gesture_file import ARTICLES, phrase_forms

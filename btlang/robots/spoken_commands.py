@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterator
 
 from btlang.backends.engine import bind_leaf
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.frontends.table import read_text
 from btlang.passes import errors_of, run_passes
 from btlang.passes.compilation import Compilation

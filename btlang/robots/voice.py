@@ -6,8 +6,8 @@ import wave
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import unwritable
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.files import unwritable
 from btlang.robots.bodies.body import Body
 from btlang.robots.bodies.body import VoiceSpec as VoiceSettings
 from btlang.robots.bodies.body_file import unusable_robot

@@ -16,7 +16,7 @@ from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.signals import SignalHandlerOptions
 
-from btlang.engine.leaves.leaf import described
+from btlang.engine.leaves.leaf import describe_exception
 from btlang.ros.available import unusable
 from btlang.ros.clocks import AWAKE, HEARTBEAT, wait_until
 
@@ -57,7 +57,7 @@ class ExecutorThread:
             try:
                 work()
             except Exception as problem:  # it would end the thread that spins
-                self.problems.append(described(problem))
+                self.problems.append(describe_exception(problem))
             self._posted.popleft()  # only now, so that it counts as left until it is done
 
 

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 
-from btlang.diagnostics.render import underlined
+from btlang.diagnostics.diagnostic import underline
 from btlang.engine.engine import Failure
-from btlang.engine.leaves.leaf import raised_in
+from btlang.engine.leaves.leaf import find_raising_line
 from btlang.engine.nodes.decorators import WAS_TRUE
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SUCCESS
 from btlang.run.bus import INLINE
 from btlang.run.events import StatusesChanged
 from btlang.support.record import Record
-from btlang.text.escaping import printable
+from btlang.text.formatting import printable
 from btlang.tree.catalogue import CATALOGUE, ON_FAILURE, SUBTREE, NodeKind
 from btlang.tree.node import Node
 
@@ -191,12 +191,12 @@ class _Report:
         yield f"The mission failed after {story.ended:.1f} s."
         yield f"{failure.path if failure.span is None else failure.span.place}: {self._words(failure.index)}"
         if failure.span is not None:
-            yield from underlined(failure.span, colour)
+            yield from underline(failure.span, colour)
         denied, reason = story.engine.node(named), failure.reason
         if reason == WAS_TRUE and not denied.children:
             reason = f"'{self._words(named)}' was true"
         yield f"  {denied.id}: {reason}"
-        if place := raised_in(failure.exception):
+        if place := find_raising_line(failure.exception):
             yield f"  raised in {place}"
         for index, seconds in last.stopped if last is not None else ():
             yield f"  It stopped '{self._words(index)}' after {seconds:.1f} s."

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from btlang.engine.status import FAILURE, IDLE, NAMES, RUNNING, SKIPPED
 from btlang.run.events import LOGGED, Event, Overrun, StatusChanged, StatusesChanged
 from btlang.support.field_types import field_type
-from btlang.text.escaping import one_line
+from btlang.text.formatting import one_line
 from btlang.text.json_text import shallow
 from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.node import Node

@@ -6,7 +6,7 @@ import argparse
 import sys
 from collections.abc import Sequence
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.run.terminal import run_mission
 from btlang.text.output import show
 

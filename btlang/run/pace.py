@@ -6,8 +6,8 @@ import math
 import time
 from time import perf_counter
 
+from btlang.engine.clock import LeafTimer
 from btlang.engine.engine import Engine
-from btlang.engine.timing import Stopwatch
 from btlang.run.bus import Bus
 from btlang.run.controls import Controls
 from btlang.run.events import Overrun
@@ -105,7 +105,7 @@ class Overruns:
     and its seconds.
     """
 
-    def __init__(self, engine: Engine, stopwatch: Stopwatch, period: float, bus: Bus) -> None:
+    def __init__(self, engine: Engine, stopwatch: LeafTimer, period: float, bus: Bus) -> None:
         self._engine = engine
         self._stopwatch = stopwatch
         self._period = period

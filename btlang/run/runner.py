@@ -10,7 +10,7 @@ from threading import Event
 
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.engine import Engine, Failure
-from btlang.engine.leaves.leaf import LeafBinding, raised_in
+from btlang.engine.leaves.leaf import LeafBinding, find_raising_line
 from btlang.engine.status import IDLE, NAMES, RUNNING
 from btlang.run.bus import Bus
 from btlang.run.controls import Controls, disable
@@ -25,9 +25,9 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, Protocol
 
+    from btlang.engine.clock import LeafTimer
     from btlang.engine.instance import Hooks
     from btlang.engine.status_trace import Changes
-    from btlang.engine.timing import Stopwatch
     from btlang.run.events import Robot
 
     class Ticked(Protocol):
@@ -65,7 +65,7 @@ def trace_engine(
     bus: Bus,
     services: Mapping[str, Any] = {},
     blackboard: Blackboard | None = None,
-    stopwatch: Stopwatch | None = None,
+    stopwatch: LeafTimer | None = None,
     proxies: Mapping[str, Callable[..., Any]] = {},
     hooks: Hooks | None = None,
 ) -> Engine:
@@ -85,7 +85,7 @@ def trace_engine(
 
     def warned(failure: Failure) -> None:
         what = "is not known" if engine.is_question(failure.index) else "failed"
-        place = raised_in(failure.exception)
+        place = find_raising_line(failure.exception)
         text = f"'{failure.node.source_text}' {what}: {failure.reason}" + (f" (raised in {place})" if place else "")
         bus.emit(Warned, text, failure.path, _place(failure))
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from threading import Lock
 
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
-from btlang.engine.status_trace import repeats
+from btlang.engine.status_trace import reports_each_round
 from btlang.run.bus import INLINE
 from btlang.run.events import Arrived, Ended, Heard, NavigationStarted, PeriodPassed, Said, StatusesChanged, Stopped
 from btlang.run.robot_state import RobotState
@@ -188,7 +188,7 @@ class RunState:
         self.ended[index] = t
         if status == FAILURE:
             self.reasons[index] = reason
-        if before == RUNNING or (index and repeats(self._nodes[self.shape.parents[index]])):
+        if before == RUNNING or (index and reports_each_round(self._nodes[self.shape.parents[index]])):
             self._end_run(index)
 
     def _halt(self, index: int, t: float) -> None:

@@ -8,9 +8,8 @@ import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext, suppress
 
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import unwritable
-from btlang.diagnostics.render import render
+from btlang.diagnostics.diagnostic import MissionError, render
+from btlang.diagnostics.files import unwritable
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.status import FAILURE
 from btlang.run.controls import PATIENCE, Controls, emergency_signal

@@ -12,10 +12,9 @@ from importlib.util import find_spec
 
 import btlang
 from btlang.api import Mission, parse_tree
-from btlang.diagnostics.data import as_data
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.errors import MissionError, in_order
-from btlang.diagnostics.reading import MOST_BYTES
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic, sort_diagnostics
+from btlang.diagnostics.files import MOST_BYTES
+from btlang.diagnostics.formats import to_data
 from btlang.editing.partial import partial_reading
 from btlang.recording.film import simulate
 from btlang.robots.mission_vocabulary import world_vocabulary
@@ -145,4 +144,4 @@ class Tools:
 
 
 def _messages(problems: Sequence[Diagnostic]) -> list[dict[str, Any]]:
-    return [as_data(problem) for problem in in_order(list(problems))]
+    return [to_data(problem) for problem in sort_diagnostics(list(problems))]

@@ -10,9 +10,8 @@ from collections.abc import Callable, Mapping
 from functools import partial
 
 from btlang.api import Mission
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.diagnostics.files import read_source
 from btlang.robots.files import DataFileError, as_mission_error, load_data
 from btlang.robots.preflight import check_mission, needs_of_tree
 from btlang.robots.registry import runs_on

@@ -7,8 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.support.field_types import field_type
 from btlang.support.record import Record
 from btlang.task.store.records import LibraryKind, Missed, Overlap, Restart, is_storable

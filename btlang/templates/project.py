@@ -10,8 +10,8 @@ from collections.abc import Iterator, Mapping
 from importlib.util import find_spec
 
 from btlang.api import parse_tree
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import unwritable
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.files import unwritable
 from btlang.robots.bodies.body_file import shipped_bodies
 from btlang.robots.platforms import ROBOTS
 

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from btlang.api import Mission
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.frontends.mission.reader import lexed, read_mission
 from btlang.passes import compile_mission
 from btlang.testing.statements import ScriptStatement

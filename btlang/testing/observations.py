@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from btlang.api import Mission
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.passes.lint import endings
-from btlang.passes.lint.endings import Ends, ends_of
+from btlang.passes.lint.endings import Ends, find_ends
 from btlang.run.bus import INLINE
 from btlang.run.events import (
     Arrived,
@@ -190,7 +190,7 @@ def _possible(tree: Tree) -> dict[int, Ends]:
     named: dict[str, Ends] = {}
 
     def ends(node: Node, children: list[Ends]) -> Ends:
-        found[id(node)] = ends_of(node, children, named)
+        found[id(node)] = find_ends(node, children, named)
         return found[id(node)]
 
     for name, root in tree.subtrees:

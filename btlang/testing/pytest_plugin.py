@@ -55,8 +55,8 @@ class MissionTestFile(pytest.File):
 
     def collect(self) -> Iterator[MissionTestItem]:
         """Yield its tests, in their order."""
-        from btlang.diagnostics.errors import MissionError
-        from btlang.diagnostics.reading import read_source
+        from btlang.diagnostics.diagnostic import MissionError
+        from btlang.diagnostics.files import read_source
         from btlang.testing.test_file import read_tests
 
         try:

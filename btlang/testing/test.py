@@ -8,8 +8,7 @@ from functools import partial, wraps
 from btlang.api import Mission
 from btlang.backends.engine import bind_leaf
 from btlang.engine.clock import Clock
-from btlang.engine.leaves.leaf import Failed, LeafBinding
-from btlang.engine.leaves.signature import LeafSignature
+from btlang.engine.leaves.leaf import Failed, LeafBinding, LeafSignature
 from btlang.support.record import Record
 from btlang.text.source import Source, Span
 from btlang.text.words import split

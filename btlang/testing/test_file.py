@@ -15,11 +15,10 @@ from collections.abc import Iterator
 
 from btlang.api import Mission, parse_tree
 from btlang.components.words import words_of
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import OUTSIDE, included_path, is_below, read_source
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
+from btlang.diagnostics.files import OUTSIDE, included_path, is_below, read_source
 from btlang.frontends.mission.symbols.needs import WORDS as NEEDED_WORDS
-from btlang.printer.layout import laid_out
+from btlang.printer.layout import format_layout
 from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.robots.registry import body_of
 from btlang.support.record import Record
@@ -73,7 +72,7 @@ def check_tests(source: Source) -> list[Diagnostic]:
 def format_tests(source: Source) -> str:
     """Return the text in the canonical layout of missions. Raises MissionError where its tests can't be read."""
     read_tests(source)
-    return laid_out(source, load_vocabulary().orthography)
+    return format_layout(source, load_vocabulary().orthography)
 
 
 class _Block(Record):

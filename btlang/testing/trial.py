@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from threading import Event, Timer
 
 from btlang.api import Mission
-from btlang.diagnostics.errors import MissionError
-from btlang.editing.messages import offsets
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.editing.document import offsets
 from btlang.recording.film import Film, check_words
 from btlang.run.controls import Controls
 from btlang.testing.runner import Result, run_test

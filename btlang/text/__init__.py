@@ -1,1 +1,1 @@
-"""Source text, places in it, words, and spelling suggestions."""
+"""Texts: sources and places in them, words, spelling suggestions, TOML, and output to terminals."""

@@ -1,4 +1,4 @@
-"""JSON of unknown depth: Python's own recurses in C, and would crash where an engine has raised its limit."""
+"""JSON of unknown depth. Python's own parser recurses in C, and would crash where an engine has raised the limit."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ _MARKS = re.compile(r'"(?:[^"\\]|\\.)*+"?|[\[{]|[\]}]', re.DOTALL)  # a text tha
 
 
 class NestedTooDeep(ValueError):
-    """A document, or a value, with more than DEEPEST brackets in each other."""
+    """An error about a document, or a value, with more than DEEPEST brackets in each other."""
 
 
 def load_json(text: str | bytes, object_hook: Callable[[dict[str, Any]], Any] | None = None) -> Any:
-    """As `json.loads`. Raises ValueError for what isn't JSON, NestedTooDeep among these."""
+    """Load a text as `json.loads` does. Raises ValueError for what isn't JSON, NestedTooDeep among these."""
     import json
 
     if isinstance(text, bytes):
@@ -35,7 +35,7 @@ def load_json(text: str | bytes, object_hook: Callable[[dict[str, Any]], Any] | 
 
 
 def dump_json(value: Any, default: Callable[[Any], Any] | None = None, **options: Any) -> str:
-    """As `json.dumps`. Raises NestedTooDeep for what `load_json` wouldn't read."""
+    """Dump a value as `json.dumps` does. Raises NestedTooDeep for what `load_json` wouldn't read."""
     import json
 
     if is_deep(value):

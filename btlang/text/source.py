@@ -1,16 +1,20 @@
-"""A text with a name, and places in it."""
+"""Source texts and places in them: spans, lines of Python that call btlang, and UTF-16 units as pages count them."""
 
 from __future__ import annotations
 
 import os
-from bisect import bisect_right
+import sys
+from bisect import bisect_left, bisect_right
 from itertools import accumulate
 
 from btlang.support.record import Record
 
+_sources: dict[str, tuple[list[str], PythonSource]] = {}  # by file names, with the lines that linecache gave
+_LAST = "\uffff"  # of the characters that have one unit
+
 
 class Source:
-    """One text to compile. `name` is what messages show: a path, `-` or `<text>`.
+    """A text to compile. `name` is what messages show: a path, `-` or `<text>`.
 
     What the text includes is looked for in `folder`, by default that of the path. It has to lie below one of the
     folders `roots`, by default `folder`; with () nothing can be included. Messages show nothing of a `hidden` text but
@@ -41,25 +45,25 @@ class Source:
         self._starts: list[int] | None = None
 
     def with_text(self, text: str) -> Source:
-        """Another text in its place."""
+        """Return a source with another text in its place."""
         return Source(
             text, self.name, self.folder, self.roots,
             hidden=self.hidden, hides_includes=self.hides_includes, may_load=self.may_load,
         )  # fmt: skip
 
     def position(self, offset: int) -> tuple[int, int]:
-        """Line and column of a character offset, both from 1, as editors count them."""
+        """Return line and column of a character offset, both from 1, as editors count them."""
         starts = self._line_starts()
         line = bisect_right(starts, offset)
         return line, offset - starts[line - 1] + 1
 
     def offset(self, line: int, column: int = 1) -> int:
-        """The character at a line and column (both from 1), at most the end of the text."""
+        """Return the character at a line and column (both from 1), at most the end of the text."""
         starts = self._line_starts()
         return min(starts[min(line, len(starts)) - 1] + column - 1, len(self.text))
 
     def line(self, number: int) -> str:
-        """The text of a line (from 1) without its end."""
+        """Return the text of a line (from 1) without its end."""
         starts = self._line_starts()
         end = starts[number] if number < len(starts) else len(self.text)
         return self.text[starts[number - 1] : end].rstrip("\r\n")
@@ -78,7 +82,7 @@ class PythonSource(Source):
 
 
 class Span(Record, uncompared=("source",)):
-    """Characters `start` to `end` (exclusive) of a source."""
+    """The characters `start` to `end` (exclusive) of a source."""
 
     source: Source
     start: int
@@ -98,3 +102,48 @@ class Span(Record, uncompared=("source",)):
 
 NOWHERE = Span(Source(""), 0, 0)
 """Where a message points that is about no text."""
+
+
+def find_calling_line() -> Span | None:
+    """Return the line, outside this package, of the innermost call into it. None if the text of its file isn't
+    known.
+
+    Of a call of several lines it is the first.
+    """
+    from linecache import getlines
+
+    frame = sys._getframe(1)
+    while frame.f_globals.get("__name__", "").startswith("btlang."):
+        if frame.f_back is None:
+            return None
+        frame = frame.f_back
+    file, number = frame.f_code.co_filename, frame.f_lineno
+    lines = getlines(file)
+    if not 0 < number <= len(lines):
+        return None
+    known = _sources.get(file)
+    if known is None or known[0] is not lines:  # linecache has read a newer text
+        known = _sources[file] = lines, PythonSource("".join(lines), file)
+    source = known[1]
+    words = lines[number - 1].strip()
+    start = source.offset(number, 1 + lines[number - 1].find(words))
+    return Span(source, start, start + len(words))
+
+
+class Utf16Units:
+    """The UTF-16 units of one text. A character beyond the first 65,536 is two."""
+
+    def __init__(self, text: str) -> None:
+        is_wide = not text.isascii() and max(text) > _LAST
+        self.wide = [at for at, character in enumerate(text) if character > _LAST] if is_wide else []
+        """The characters that have two units."""
+        self._before = [at + number for number, at in enumerate(self.wide)]
+        self.length = len(text) + len(self.wide)
+
+    def unit(self, at: int) -> int:
+        """Return the unit where a character begins."""
+        return at + bisect_left(self.wide, at)
+
+    def character(self, unit: int) -> int:
+        """Return the character that a unit is part of."""
+        return unit - bisect_left(self._before, unit)

@@ -1,4 +1,4 @@
-"""The nearest known words to what was written."""
+"""Spelling: the known words that are nearest to a written one."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _SHORT, _LONG = 5, 8  # letters of a word in which two, and three, may be wrong
 
 
 def nearest(written: str, known: Iterable[str], limit: int = 3) -> list[str]:
-    """Up to `limit` of the known texts that a misspelling could have meant, the likeliest first."""
+    """Return up to `limit` of the known texts that a misspelling could have meant, the likeliest first."""
     from rapidfuzz import fuzz  # only on the way to an error message
 
     scored = {name: fuzz.ratio(written, name.lower()) + fuzz.partial_ratio(written, name.lower()) / 4 for name in known}
@@ -22,7 +22,8 @@ def nearest(written: str, known: Iterable[str], limit: int = 3) -> list[str]:
 
 
 def nearest_start(written: Sequence[str], known: Mapping[str, Sequence[str]]) -> list[str]:
-    """Keys of the phrases whose words are near to as many first words of what was written, the likeliest first.
+    """Return keys of the phrases whose words are near to as many first words of what was written, the likeliest
+    first.
 
     Of about equally near phrases the longer one is likelier.
     """
@@ -40,12 +41,13 @@ def nearest_start(written: Sequence[str], known: Mapping[str, Sequence[str]]) ->
 
 
 def _most_slips(written: str) -> int:
-    """How many slips of a letter a word of that length may have."""
+    """Return how many slips of a letter a word of that length may have."""
     return 1 if len(written) < _SHORT else 2 if len(written) < _LONG else 3
 
 
 def distance(written: str, meant: str) -> int:
-    """Two for each letter that was left out, added or mistaken for another, or that changed places with the next one.
+    """Count two for each letter that was left out, added or mistaken for another, or that changed places with the next
+    one.
 
     One less where all letters are there, or one of them only is doubled or isn't: these are the likeliest slips.
     """
@@ -56,7 +58,7 @@ def distance(written: str, meant: str) -> int:
 
 
 def _once(word: str) -> str:
-    """A word with each double letter once."""
+    """Return a word with each double letter once."""
     return "".join(letter for letter, _ in groupby(word))
 
 
@@ -69,14 +71,14 @@ def is_misspelling(written: str, meant: str, others: Iterable[str]) -> bool:
 
 
 def misspelt(written: str, known: Iterable[str]) -> list[str]:
-    """Up to three of the known words of which few slips make what was written, the likeliest first."""
+    """Return up to three of the known words of which few slips make what was written, the likeliest first."""
     most = _most_slips(written)
     names = [name for name in known if abs(len(name) - len(written)) <= most]
     return [name for name in nearest(written.lower(), names) if is_misspelling(written, name, ())]
 
 
 def fewest_slips(written: str, known: Iterable[str]) -> int:
-    """How many slips away the nearest of the known words is; as many as a word may have where none is nearer."""
+    """Return how many slips away the nearest of the known words is; as many as a word may have if none is nearer."""
     from rapidfuzz import process
     from rapidfuzz.distance import OSA
 
@@ -86,7 +88,8 @@ def fewest_slips(written: str, known: Iterable[str]) -> int:
 
 
 def respellings(written: str, known: Iterable[str], limit: int = 8) -> list[str]:
-    """Known words that a slip of a few letters turns into what was written, the likeliest first; then two run together.
+    """Return known words that a slip of a few letters turns into what was written, the likeliest first; then two run
+    together.
 
     Of equally small slips two letters that changed places are likeliest, then one that is not at the start or end.
     """

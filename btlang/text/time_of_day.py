@@ -1,4 +1,4 @@
-"""Times of day: texts such as "18:30" in seconds since midnight, and back."""
+"""Times of day: texts such as "18:30" to seconds since midnight, and back."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _TIME = re.compile(r"([01]?\d|2[0-3]):([0-5]\d)", re.ASCII)
 
 
 def seconds_of(text: str) -> float:
-    """Seconds since midnight of "18:30". Raises ValueError for anything else."""
+    """Return the seconds since midnight of "18:30". Raises ValueError for anything else."""
     found = _TIME.fullmatch(text)
     if found is None:
         raise ValueError(f"must be a time of day such as 18:30, not {text!r}")
@@ -25,18 +25,18 @@ def seconds_of(text: str) -> float:
 
 
 def weekday_after(first: int, seconds: float) -> int:
-    """The number of the weekday so many seconds after the midnight at which another one began."""
+    """Return the number of the weekday so many seconds after the midnight at which another one began."""
     return (first + int(seconds // DAY)) % len(WEEKDAYS)
 
 
 def shown(seconds: float) -> str:
-    """Hours and minutes, with seconds where there are some: "18:30", "18:30:05"."""
+    """Format hours and minutes, and seconds if there are some: "18:30", "18:30:05"."""
     whole = int(round(seconds, 3) % DAY)
     text = f"{whole // 3600:02}:{whole // 60 % 60:02}"
     return f"{text}:{whole % 60:02}" if whole % 60 else text
 
 
 def local(moment: float) -> float:
-    """Seconds since midnight, in the time zone of this computer, of a moment in seconds since 1970."""
+    """Return the seconds since midnight, in the time zone of this computer, of a moment in seconds since 1970."""
     there = time.localtime(moment)
     return there.tm_hour * 3600.0 + there.tm_min * 60.0 + there.tm_sec + moment % 1.0

@@ -1,4 +1,4 @@
-"""Typed reading of TOML tables: what is missing, unknown or of another type becomes a Problem with its position."""
+"""Typed reading of TOML tables. A missing, unknown or mistyped key becomes a Problem with its position."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from typing import Any, TypeVar
 
-    from btlang.text.toml_positions import Path
+    from btlang.text.toml import Path
 
     T = TypeVar("T")
 
@@ -24,7 +24,7 @@ def is_coordinate(value: object) -> bool:
 
 
 class Problem(Exception):
-    """What is wrong at a path of the file. `more` are others of the same file."""
+    """A problem at a path of the file. `more` are others of the same file."""
 
     def __init__(self, message: str, *path: str | int) -> None:
         super().__init__(message)
@@ -34,13 +34,13 @@ class Problem(Exception):
 
 
 class Problems:
-    """Gathers what is wrong with a file, so that all of it can be reported at once."""
+    """The problems of a file, gathered so that all can be reported at once."""
 
     def __init__(self) -> None:
         self.found: list[Problem] = []
 
     def part(self, make: Callable[[], T], usual: T) -> T:
-        """What `make` gives; the usual value where it raises a Problem, which is kept."""
+        """Return what `make` returns; the usual value if it raises a Problem, which is kept."""
         try:
             return make()
         except Problem as problem:
@@ -48,12 +48,12 @@ class Problems:
             return usual
 
     def rows(self, top: Table, key: str, make: Callable[[Table], T]) -> list[T | None]:
-        """What `make` makes of each table of a list, None for those that are wrong; until there are too many."""
+        """Return what `make` makes of each table of a list, None for wrong ones; until there are too many."""
         tables: list[Table] = self.part(lambda: top.tables(key), [])
         return [self.part(partial(make, table), None) for table in tables if len(self.found) < _MOST_PROBLEMS]
 
     def end(self) -> None:
-        """Raises the first Problem with the others, at most a hundred in all, if there is one."""
+        """Raise the first Problem with the others, at most a hundred in all, if there is one."""
         if self.found:
             first, *more = self.found[:_MOST_PROBLEMS]
             first.more = tuple(more)
@@ -61,7 +61,7 @@ class Problems:
 
 
 class Table:
-    """One table of the file, called `name` in messages; `finish` reports keys that nobody asked for."""
+    """A table of the file, called `name` in messages; `finish` reports keys that nobody asked for."""
 
     __slots__ = ("_name", "_path", "_read", "_values")
 
@@ -77,7 +77,7 @@ class Table:
         return self._path
 
     def keys(self) -> list[str]:
-        """All keys, for a table whose keys are names that the file gives."""
+        """List all keys, for a table whose keys are names that the file gives."""
         return list(self._values)
 
     def is_list(self, key: str) -> bool:
@@ -96,10 +96,10 @@ class Table:
     def number(
         self, key: str, default: float | None = None, low: float | None = None, high: float | None = None
     ) -> float:
-        """A finite number within the bounds, which are a million where there are none. Raises Problem."""
+        """Return a finite number within the bounds, by default a million. Raises Problem."""
         if not self.has(key) and default is not None:
             return default
-        value = self._required(key, "a number")
+        value = self._require(key, "a number")
         if type(value) not in (int, float) or value != value:
             raise self.problem(key, f'"{key}" must be a number; write {key} = 1.5')
         if not is_coordinate(value):
@@ -110,38 +110,38 @@ class Table:
         return float(value)
 
     def text(self, key: str) -> str:
-        """Text that is not blank. Raises Problem."""
-        value = self._required(key, "a text")
+        """Return a text that isn't blank. Raises Problem."""
+        value = self._require(key, "a text")
         if not isinstance(value, str) or not value.strip():
             raise self.problem(key, f'"{key}" must be text in quotes; write {key} = "kitchen"')
         return " ".join(value.split())
 
     def flag(self, key: str, default: bool = False) -> bool:
-        """True or false. Raises Problem."""
+        """Return true or false. Raises Problem."""
         value = self._values[key] if self.has(key) else default
         if not isinstance(value, bool):
             raise self.problem(key, f'"{key}" must be true or false')
         return value
 
     def choice(self, key: str, values: tuple[str, ...], default: str | None = None) -> str:
-        """One of the values. Raises Problem."""
+        """Return one of the values. Raises Problem."""
         if not self.has(key) and default is not None:
             return default
-        value = self._required(key, "a text")
+        value = self._require(key, "a text")
         if value not in values:
             listed = ", ".join(f'"{known}"' for known in values) or "nothing, because there is none"
             raise self.problem(key, f'"{key}" must be one of {listed}')
         return str(value)
 
     def texts(self, key: str) -> tuple[str, ...]:
-        """A list of texts that are not blank, empty where it is missing. Raises Problem."""
+        """Return a list of texts that aren't blank, empty if it is missing. Raises Problem."""
         for index, item in enumerate(self.items(key)):
             if not isinstance(item, str) or not item.strip():
                 raise Problem(f'"{key}" must be a list of texts; write {key} = ["voice"]', *self._path, key, index)
         return tuple(self.items(key))
 
     def values(self, key: str) -> dict[str, Any]:
-        """A table of numbers, texts, flags and lists of them by names that others know, empty where it is missing.
+        """Return a table of numbers, texts, flags and lists of them by any names, empty if it is missing.
 
         Raises Problem.
         """
@@ -155,21 +155,21 @@ class Table:
         return dict(value)
 
     def table(self, key: str) -> Table:
-        """The table under the key. Raises Problem."""
-        value = self._required(key, "a table")
+        """Return the table under the key. Raises Problem."""
+        value = self._require(key, "a table")
         if not isinstance(value, dict):
             raise self.problem(key, f'"{key}" must be a table; write {key} = {{ x = 1, y = 1 }}')
         return Table(key, value, (*self._path, key))
 
     def items(self, key: str) -> list[Any]:
-        """The list under the key, empty where it is missing. Raises Problem."""
+        """Return the list under the key, empty if it is missing. Raises Problem."""
         value = self._values[key] if self.has(key) else []
         if not isinstance(value, list):
             raise self.problem(key, f'"{key}" must be a list; write {key} = [ ... ]')
         return value
 
     def tables(self, key: str) -> list[Table]:
-        """The list of tables under the key, empty where it is missing. Raises Problem."""
+        """Return the list of tables under the key, empty if it is missing. Raises Problem."""
         items = self.items(key)
         for index, item in enumerate(items):
             if not isinstance(item, dict):
@@ -177,7 +177,7 @@ class Table:
         return [Table(key, item, (*self._path, key, index)) for index, item in enumerate(items)]
 
     def finish(self, result: T) -> T:
-        """Returns the result when every key was asked for. Raises Problem for an unknown one."""
+        """Return the result when every key was asked for. Raises Problem for an unknown one."""
         for key in self._values:
             if key not in self._read:
                 known = ", ".join(dict.fromkeys(self._read))
@@ -185,10 +185,10 @@ class Table:
         return result
 
     def problem(self, key: str, message: str) -> Problem:
-        """A Problem at this key."""
+        """Make a Problem at this key."""
         return Problem(message, *self._path, key)
 
-    def _required(self, key: str, kind: str) -> Any:
+    def _require(self, key: str, kind: str) -> Any:
         if not self.has(key):
             raise self.problem(key, f'{self._name} needs {kind} "{key}"')
         return self._values[key]

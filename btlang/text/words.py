@@ -1,4 +1,4 @@
-"""Text to words: one pass of one regular expression over the whole text.
+"""Words of a text, found in one pass of one regular expression.
 
 A word is kept in lower case; quoted text keeps its case behind a leading `"`; a unit is a word of its own
 ("2m" is `2`, `m`), and so is each punctuation mark but the colon of a time of day (`18:30`). Articles leave no word,
@@ -46,7 +46,7 @@ END_OF_TEXT = "\n"  # also the word that ends each line
 
 
 class Orthography(Record):
-    """How a language is written: its articles, and whether `1,5` is a number.
+    """The way a language is written: its articles, and whether `1,5` is a number.
 
     `spellings` are words that are read as another one: contractions (Spanish `al` as `a`), and words that are written
     without their accents, where no other word is written so. `contracted` are words with an apostrophe that may be
@@ -62,14 +62,14 @@ class Orthography(Record):
     titles: frozenset[str] = frozenset()
 
     def with_words(self, words: Iterable[str]) -> Orthography:
-        """The same, where these words may be written without their accents."""
+        """Return the same orthography, in which these words may be written without their accents."""
         known = {*self.articles, *words}
         plain = {without_accents(word): word for word in known if not word.isascii()}
         new = {bare: word for bare, word in plain.items() if bare not in known}
         return self.replace(spellings={**self.spellings, **new}) if new else self
 
     def with_contractions(self, words: Iterable[str]) -> Orthography:
-        """The same, where these words with an apostrophe may be written as two."""
+        """Return the same orthography, in which these words with an apostrophe may be written as two."""
         made: dict[str, dict[str, str]] = {}
         for word in words:
             front, _, tail = word.partition("'")
@@ -80,7 +80,7 @@ class Orthography(Record):
         return self.replace(contracted=made)  # type: ignore[no-any-return]
 
     def word(self, written: str) -> str:
-        """A word in lower case, with its accents as they are known."""
+        """Return a word in lower case, with its accents as they are known."""
         word = written.lower()
         if not word.isascii():
             from unicodedata import normalize
@@ -89,19 +89,19 @@ class Orthography(Record):
         return self.spellings.get(word, word)
 
     def words(self, text: str) -> list[str]:
-        """The words of a name, without articles."""
+        """Return the words of a name, without articles."""
         return [word for word in map(self.word, text.split()) if word not in self.articles]
 
 
 def without_accents(word: str) -> str:
-    """`rápido` as `rapido`."""
+    """Return `rapido` for `rápido`."""
     from unicodedata import combining, normalize
 
     return "".join(character for character in normalize("NFD", word) if not combining(character))
 
 
 class Line(Record):
-    """Words `first` to `last` (exclusive) of one line that is not blank; `indent` counts columns, a tab up to 4.
+    """A line that isn't blank: words `first` to `last` (exclusive). `indent` counts columns, a tab up to 4.
 
     `is_item`: the mark of a list item stands before them.
     """
@@ -113,7 +113,7 @@ class Line(Record):
 
 
 class Words:
-    """The words of a source as parallel lists, with a `\\n` word at the end of each line that is not blank."""
+    """The words of a source as parallel lists, with a `\\n` word at the end of each line that isn't blank."""
 
     __slots__ = (
         "_distinct",
@@ -159,7 +159,7 @@ class Words:
         return self._distinct
 
     def with_word(self, at: int, word: str) -> Words:
-        """The same text with another word in one place."""
+        """Return the same text with another word in one place."""
         made = Words(self.source)
         made.words = [*self.words[:at], word, *self.words[at + 1 :]]
         made.starts, made.ends, made.lines, made.articles = self.starts, self.ends, self.lines, self.articles
@@ -167,7 +167,9 @@ class Words:
         return made
 
     def earlier(self, at: int) -> tuple[Words, int, int]:
-        """Where what stands before a word in its statement is: the text, its first word, and the word behind it."""
+        """Return where what stands before a word in its statement is: the text, its first word, and the word behind
+        it.
+        """
         if self.picked is not None and at < len(self.picked[1]):
             text, places = self.picked
             return text.earlier(places[at])
@@ -177,18 +179,18 @@ class Words:
         return self, first, at
 
     def begin(self, at: int) -> int:
-        """The character at which a word begins, or the article before it."""
+        """Return the character at which a word begins, or the article before it."""
         return self.articles[at][0] if at in self.articles else self.starts[at]
 
     def span(self, first: int, last: int) -> Span:
-        """The characters of words `first` to `last` (exclusive); never empty where there is a word."""
+        """Return the characters of words `first` to `last` (exclusive); never empty if there is a word."""
         if first >= last:
             return Span(self.source, self.starts[first], self.ends[first])
         return Span(self.source, self.starts[first], self.ends[last - 1])
 
 
 def split(source: Source, orthography: Orthography) -> Words:
-    """The words of a text. Never raises: unterminated quotes and unreadable characters are listed in the result."""
+    """Split a text into words. Never raises: unterminated quotes and unreadable characters are listed in the result."""
     result = Words(source)
     words, starts, ends = result.words, result.starts, result.ends
     text = source.text.translate(_TYPOGRAPHIC)
@@ -278,20 +280,20 @@ def split(source: Source, orthography: Orthography) -> Words:
     starts.append(len(text))
     ends.append(len(text))
     if any(line.is_item for line in result.lines):
-        result.lines = list(_indented_items(words, result.lines))
+        result.lines = list(_indent_items(words, result.lines))
     return result
 
 
 def _indent(margin: str) -> tuple[int, bool]:
-    """The columns of the blanks at the start of a line, and whether the mark of a list item follows them."""
+    """Return the columns of the blanks at the start of a line, and whether the mark of a list item follows them."""
     if not margin:
         return 0, False
     blank = margin.rstrip("-*\u2022\u2013\u2014.)0123456789")
     return len(blank.replace("\r", "").expandtabs(4)), len(blank) < len(margin)
 
 
-def _indented_items(words: Sequence[str], lines: Iterable[Line]) -> Iterator[Line]:
-    """The items of a list that a line with a colon begins are a block, also where they are not indented."""
+def _indent_items(words: Sequence[str], lines: Iterable[Line]) -> Iterator[Line]:
+    """Yield lines in which the items of a list behind a line with a colon are a block, even if they aren't indented."""
     before: Line | None = None
     margin: int | None = None  # of a list that is not indented
     for line in lines:
@@ -305,7 +307,7 @@ def _indented_items(words: Sequence[str], lines: Iterable[Line]) -> Iterator[Lin
 
 
 def statements(text: Words, holding: Set[str]) -> Iterator[tuple[int, int, int]]:
-    """(indent, first word, last word) of what stands between line ends, `;` and full stops.
+    """Yield (indent, first word, last word) of what is between line ends, `;` and full stops.
 
     Only of the lines that hold one of some words.
     """

@@ -1,1 +1,1 @@
-"""The waist: the AST of English, the typed tree that every back end reads, and tools for both."""
+"""Trees: the syntax tree of English, the typed tree that every back end reads, and tools for both."""

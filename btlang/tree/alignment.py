@@ -1,4 +1,4 @@
-"""Which nodes of old trees have become which of new ones, as a careful reader would pair them."""
+"""Alignment of trees: which nodes of old trees have become which of new ones, as a careful reader would pair them."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterable, Sequence
 from difflib import SequenceMatcher
 
 from btlang.tree.node import Node, Tree
-from btlang.tree.subtree_numbers import SubtreeNumbers
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -19,8 +18,40 @@ if TYPE_CHECKING:
 _MOST = 40_000  # comparisons of two lists of nodes; of longer ones only equal nodes are paired
 
 
+class SubtreeNumbers:
+    """The numbers of nodes; those of equal subtrees are the same. Nodes are keyed by identity.
+
+    `features` gives what counts in a node beside its id, its name and its children.
+    """
+
+    def __init__(self, features: Callable[[Node], Iterable[tuple[str, str]]]) -> None:
+        self._features = features
+        self._kinds: dict[object, int] = {}
+        self._numbers: dict[int, int] = {}
+        self._kept: list[Node] = []  # so that no identity is given to another node
+
+    def add(self, nodes: Iterable[Node]) -> None:
+        """Give numbers to nodes, each behind its children."""
+        for node in nodes:
+            below = tuple([self._numbers[id(child)] for child in node.children])
+            key = node.id, node.name, tuple(self._features(node)), below
+            self._numbers[id(node)] = self._kinds.setdefault(key, len(self._kinds))
+            self._kept.append(node)
+
+    def of(self, nodes: Iterable[Node]) -> list[int]:
+        """Return the numbers of nodes."""
+        return [self._numbers[id(node)] for node in nodes]
+
+    def __getitem__(self, node: Node) -> int:
+        return self._numbers[id(node)]
+
+    def are_equal(self, one: Node, other: Node) -> bool:
+        """Whether two nodes and all that is below them are equal."""
+        return self[one] == self[other]
+
+
 class Alignment:
-    """Pairs new nodes with old ones. Nodes are keyed by identity, and none is in two places.
+    """Pairs of new and old nodes. Nodes are keyed by identity, and none is in two places.
 
     Top down, then equal subtrees wherever they are, then what stands in or around something new: the phases of GumTree
     (Falleri et al., Fine-grained and accurate source code differencing, 2014), with children in their order.
@@ -33,8 +64,8 @@ class Alignment:
         come: Iterable[Node],
         features: Callable[[Node], Iterable[tuple[str, str]]],
     ) -> None:
-        """`pairs` are old and new trees that belong together, `gone` and `come` other old and new ones. `features`
-        gives what counts in a node beside its id, its name and its children.
+        """Pair trees. `pairs` are old and new trees that belong together, `gone` and `come` other old and new ones.
+        `features` returns what counts in a node beside its id, its name and its children.
         """
         self._features = features
         self._numbers = SubtreeNumbers(lambda node: sorted(features(node)))
@@ -44,27 +75,27 @@ class Alignment:
         self._new: dict[int, Node] = {}
         self._gaps: deque[tuple[Nodes, Nodes]] = deque()
         roots, lost, found = list(pairs), list(gone), list(come)
-        before = [node for root in (*(old for old, _ in roots), *lost) for node in self._counted(root)]
-        after = [node for root in (*(new for _, new in roots), *found) for node in self._counted(root)]
+        before = [node for root in (*(old for old, _ in roots), *lost) for node in self._count(root)]
+        after = [node for root in (*(new for _, new in roots), *found) for node in self._count(root)]
         self._pair_lists([([old], [new]) for old, new in roots])
         self._pair_equal(before, after)
         while self._gaps:
             self._pair_around(*self._gaps.popleft())
 
     def old(self, new: Node) -> Node | None:
-        """What a new node was; None where it was not there."""
+        """Return what a new node was; None if it didn't exist."""
         return self._old.get(id(new))
 
     def new(self, old: Node) -> Node | None:
-        """What an old node has become; None where it is gone."""
+        """Return what an old node has become; None if it is gone."""
         return self._new.get(id(old))
 
     def is_equal(self, old: Node, new: Node) -> bool:
         """Whether two nodes and all that is below them are equal."""
         return self._numbers.are_equal(old, new)
 
-    def _counted(self, root: Node) -> list[Node]:
-        """The nodes of a tree, parents first, which get their numbers and positions."""
+    def _count(self, root: Node) -> list[Node]:
+        """List the nodes of a tree, parents first, which get their numbers and positions."""
         nodes = list(Tree(root).walk())
         start = len(self._ranges)
         sizes: dict[int, int] = {}
@@ -77,7 +108,7 @@ class Alignment:
         return nodes
 
     def _pair_lists(self, waiting: list[tuple[Nodes, Nodes]]) -> None:
-        """Pairs what are children of the same, and then what is below them."""
+        """Pair what are children of the same, and then what is below them."""
         while waiting:
             old, new = waiting.pop()
             old, new = self._free(old, self._new), self._free(new, self._old)  # some have gone elsewhere
@@ -104,7 +135,7 @@ class Alignment:
                 self._pair(one, other)
 
     def _alike(self, old: Nodes, new: Nodes) -> list[tuple[Node, Node]]:
-        """Of two lists the pairs, in their order, that have most in common together."""
+        """Return the pairs of two lists, in their order, that have most in common together."""
         if not old or not new or len(old) * len(new) > _MOST:
             return []
         best = [[0.0] * (len(new) + 1) for _ in range(len(old) + 1)]
@@ -126,20 +157,20 @@ class Alignment:
         return found
 
     def _likeness(self, old: Node, new: Node) -> float:
-        """How much two nodes have in common; 0 where one has not become the other."""
+        """Return how much two nodes have in common; 0 if one hasn't become the other."""
         if self._holds(new, old) or self._holds(old, new):
             return 0.0  # something has come around it, or is gone from there
-        shared = self._shared(old, new)
+        shared = self._share(old, new)
         if old.id != new.id:
             return shared if old.children and new.children and shared >= 0.5 else 0.0
         for one, other in ((old, new), (new, old)):
             [*inner] = other.children
-            if len(inner) == 1 and inner[0].id == one.id and self._shared(one, inner[0]) > shared:
+            if len(inner) == 1 and inner[0].id == one.id and self._share(one, inner[0]) > shared:
                 return 0.0
         return 1 + shared + _overlap(self._features(old), self._features(new)) + (old.name == new.name != "")
 
-    def _shared(self, one: Node, other: Node) -> float:
-        """The share of their children that both have."""
+    def _share(self, one: Node, other: Node) -> float:
+        """Return the share of their children that both have."""
         return _overlap(self._numbers.of(one.children), self._numbers.of(other.children))
 
     def _holds(self, node: Node, inner: Node) -> bool:
@@ -150,7 +181,7 @@ class Alignment:
         return at < len(places) and places[at] < end
 
     def _pair_equal(self, before: Nodes, after: Nodes) -> None:
-        """Of what is not paired, equal subtrees, the largest first."""
+        """Pair equal subtrees of what isn't paired, the largest first."""
         left: defaultdict[int, deque[Node]] = defaultdict(deque)
         for node in before:
             if id(node) not in self._new:
@@ -170,7 +201,7 @@ class Alignment:
         return end - first
 
     def _pair_around(self, old: Nodes, new: Nodes) -> None:
-        """Of what is not paired in a gap, the old ones with those inside the new ones, and the other way round."""
+        """Pair what is left in a gap: old nodes with those inside the new ones, and the other way round."""
         for node in new:
             one, inner = self._free(old, self._new), self._free(node.children, self._old)
             if id(node) not in self._old and one and inner:
@@ -185,7 +216,7 @@ class Alignment:
 
 
 def _overlap(one: Iterable[object], other: Iterable[object]) -> float:
-    """The share of items that two collections have in common, from 0 to 1; 0 for empty ones."""
+    """Return the share of items that two collections have in common, from 0 to 1; 0 for empty ones."""
     first, second = Counter(one), Counter(other)
     total = max(first.total(), second.total())
     return (first & second).total() / total if total else 0.0

@@ -1,4 +1,4 @@
-"""The syntax tree of a mission, as both parsers give it: what was said, with the exact characters of each part.
+"""The syntax tree of a mission, as both parsers make it: what was said, with the exact characters of each part.
 
 Commands: Phrase, Name, Chain, If, IfWorks, While, Provided, StopWhen, Repeat, Retry, Try, Within, For, UpTo, Every,
 UntilTime, Apart, Delay, Constrained, Wait, WaitUntil, WaitTime, Check, Nothing, Fail, Assign, Remember, ForEach,
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class Ast(Record):
-    """Base of all syntax nodes."""
+    """The base of all syntax nodes."""
 
     if TYPE_CHECKING:  # each class has it as its last field
 
@@ -65,7 +65,9 @@ class Compared(Ast):
 
 
 class Assign(Ast):
-    """Gives a key a value; `operation` is "set", "increase" or "decrease", `text` is a port text of the type `kind`."""
+    """An assignment to a key; `operation` is "set", "increase" or "decrease", `text` is a port text of the type
+    `kind`.
+    """
 
     key: str
     operation: str
@@ -75,7 +77,7 @@ class Assign(Ast):
 
 
 class Remember(Ast):
-    """Gives a key the number that a quantity measures now."""
+    """A measurement: the key gets the number that a quantity measures now."""
 
     key: str
     entry: Entry
@@ -84,7 +86,7 @@ class Remember(Ast):
 
 
 class ForEach(Ast):
-    """The body once for each of the values (port texts of the type `kind`), which the key has in it."""
+    """A loop over values (port texts of the type `kind`), each of which the key has in the body."""
 
     key: str
     kind: str
@@ -95,7 +97,8 @@ class ForEach(Ast):
 
 
 class Chain(Ast):
-    """Operands joined by one connective: a "sequence", "fallback" or "parallel" of commands, "all" or "any" conditions.
+    """A chain of operands joined by one connective: "sequence", "fallback", "parallel", or "all" and "any" of
+    conditions.
 
     The lines below a node that is said by its id are "children", as long as it is not made (see Exact).
 
@@ -125,7 +128,7 @@ class Not(Ast):
 
 
 class _Branching(Ast):
-    """`negated` is "unless" or "until"."""
+    """A form with a condition; `negated` is "unless" or "until"."""
 
     negated: bool
     condition: Ast
@@ -136,15 +139,15 @@ class _Branching(Ast):
 
 
 class If(_Branching):
-    """if, unless."""
+    """A form with `if` or `unless`."""
 
 
 class While(_Branching):
-    """while, until."""
+    """A form with `while` or `until`."""
 
 
 class IfWorks(Ast):
-    """One command that decides which of two others is next; without `otherwise` its failure skips."""
+    """A form in which one command decides which of two others is next; without `otherwise` its failure skips."""
 
     tried: Ast
     body: Ast
@@ -171,7 +174,7 @@ class Provided(Ast):
 
 
 class StopWhen(Ast):
-    """The body once, ended early with success when the condition becomes true."""
+    """A body that runs once, ended early with success when the condition becomes true."""
 
     condition: Ast
     body: Ast
@@ -180,7 +183,7 @@ class StopWhen(Ast):
 
 
 class Repeat(Ast):
-    """`rounds` is a port text, "-1" for without end."""
+    """A loop; `rounds` is a port text, "-1" for without end."""
 
     rounds: str
     body: Ast
@@ -189,7 +192,7 @@ class Repeat(Ast):
 
 
 class Retry(Ast):
-    """`attempts` is a port text; `pause` are the seconds after each failure, "" for none."""
+    """A retried body; `attempts` is a port text; `pause` are the seconds after each failure, "" for none."""
 
     attempts: str
     body: Ast
@@ -199,7 +202,7 @@ class Retry(Ast):
 
 
 class Try(Ast):
-    """Without `otherwise` a failure of the body is ignored."""
+    """A body whose failure leads to `otherwise`; without one it is ignored."""
 
     body: Ast
     otherwise: Ast | None
@@ -215,15 +218,15 @@ class _Timed(Ast):
 
 
 class Within(_Timed):
-    """The body, which fails when it takes longer."""
+    """A body that fails when it takes longer."""
 
 
 class For(_Timed):
-    """The body over and over until the time is over."""
+    """A body that runs over and over until the time is over."""
 
 
 class UpTo(_Timed):
-    """The body once, ended with success when the time is over."""
+    """A body that runs once, ended with success when the time is over."""
 
 
 class _Paced(Ast):
@@ -235,19 +238,19 @@ class _Paced(Ast):
 
 
 class Every(_Paced):
-    """The body once in each period; `rounds` is a port text, "" for without end."""
+    """A body that runs once in each period; `rounds` is a port text, "" for without end."""
 
 
 class Apart(_Paced):
-    """The body so many rounds, with the time between one and the next."""
+    """A body that runs so many rounds, with the time between one and the next."""
 
 
 class Delay(_Timed):
-    """The body after the time."""
+    """A body that runs after the time."""
 
 
 class Constrained(Ast):
-    """The body, during which the robot keeps out of zones, or stays in them; `kind` is "keep out" or "keep in"."""
+    """A body during which the robot keeps out of zones, or stays in them; `kind` is "keep out" or "keep in"."""
 
     kind: str
     zones: tuple[str, ...]
@@ -262,7 +265,7 @@ class Wait(Ast):
 
 
 class WaitUntil(Ast):
-    """`held` are the seconds for which the condition has to hold, "" for none."""
+    """A wait for a condition; `held` are the seconds for which it has to hold, "" for none."""
 
     condition: Ast
     held: str
@@ -271,14 +274,14 @@ class WaitUntil(Ast):
 
 
 class WaitTime(Ast):
-    """Waits for a time of day, which is a port text (18:30), or for the next of some (08:00;18:00)."""
+    """A wait for a time of day, which is a port text (18:30), or for the next of some (08:00;18:00)."""
 
     time: str
     span: Span
 
 
 class UntilTime(Ast):
-    """The body over and over until a time of day."""
+    """A body that runs over and over until a time of day."""
 
     time: str
     body: Ast
@@ -317,7 +320,7 @@ class Exact(Ast):
 
 
 class Definition(Ast):
-    """`name_span` covers the words of the name where it is defined; `parameters` are (name, type).
+    """A definition; `name_span` covers the words of the name where it is defined, `parameters` are (name, type).
 
     One that `is_quoted` is the name of a subtree as it stands, and no phrase.
     """
@@ -332,7 +335,7 @@ class Definition(Ast):
 
 
 class Fact(Ast):
-    """A place of this mission, in metres and degrees; `facing` is None where any direction will do."""
+    """A place of this mission, in metres and degrees; `facing` is None if any direction will do."""
 
     name: str
     x: float
@@ -342,7 +345,7 @@ class Fact(Ast):
 
 
 class Include(Ast):
-    """Another mission, whose definitions and facts hold here too; `path` as it was written."""
+    """Another mission, whose definitions and facts hold here too; `path` is as it was written."""
 
     path: str
     mission: Program
@@ -355,7 +358,7 @@ class Include(Ast):
 
 
 class Program(Ast):
-    """A whole text: the sequence of its commands (None where there are none), its definitions and facts in order.
+    """A whole text: the sequence of its commands (None if there are none), its definitions and facts in order.
 
     `name` is that of its tree, "" where it has none. `needs` are the roles and paths of lines that name what it needs,
     such as ("needs_world", "museum.toml"), `given` the keys of values that come from outside. `all_definitions` and
@@ -374,7 +377,7 @@ class Program(Ast):
 
 
 def all_definitions(mission: Program) -> list[Definition]:
-    """Those of the included missions, then its own; of one name the last."""
+    """List the definitions of the included missions, then its own; of one name the last."""
     found: dict[str, Definition] = {}
     for part in _with_included(mission):
         for definition in part.definitions:
@@ -384,7 +387,7 @@ def all_definitions(mission: Program) -> list[Definition]:
 
 
 def all_facts(mission: Program) -> list[Fact]:
-    """Those of the included missions, then its own; of one place the last."""
+    """List the facts of the included missions, then its own; of one place the last."""
     return list({fact.name: fact for part in _with_included(mission) for fact in part.facts}.values())
 
 
@@ -395,7 +398,7 @@ def _with_included(mission: Program) -> Iterator[Program]:
 
 
 def parts(node: Ast) -> list[Ast]:
-    """The subtrees of a node in the order of its fields."""
+    """List the subtrees of a node in the order of its fields."""
     found: list[Ast] = []
     for field in node.parts:
         part = getattr(node, field)
@@ -407,7 +410,7 @@ def parts(node: Ast) -> list[Ast]:
 
 
 def with_parts(node: Ast, made: Sequence[Ast]) -> Ast:
-    """The node with other subtrees, in the order of `parts`; the node itself where none is another."""
+    """Return the node with other subtrees, in the order of `parts`; the node itself if none is another."""
     if all(new is old for new, old in zip(made, parts(node), strict=True)):
         return node
     rest, changed = iter(made), dict[str, object]()
@@ -419,7 +422,7 @@ def with_parts(node: Ast, made: Sequence[Ast]) -> Ast:
 
 
 def with_bodies(mission: Program, body: Callable[[Ast], Ast], included: Callable[[Program], Program]) -> Program:
-    """The mission with another body and other bodies of its definitions, and with other missions that it includes."""
+    """Return the mission with other bodies of itself and of its definitions, and with other included missions."""
     return mission.replace(  # type: ignore[no-any-return]
         body=None if mission.body is None else body(mission.body),
         definitions=tuple(each.replace(body=body(each.body)) for each in mission.definitions),
@@ -428,7 +431,7 @@ def with_bodies(mission: Program, body: Callable[[Ast], Ast], included: Callable
 
 
 def parents_first(root: Ast) -> list[Ast]:
-    """Every node, parents before their parts, in the order of the text."""
+    """List every node, parents before their parts, in the order of the text."""
     found: list[Ast] = []
     stack = [root]
     while stack:
@@ -440,12 +443,12 @@ def parents_first(root: Ast) -> list[Ast]:
 
 
 def bodies(mission: Program) -> list[Ast]:
-    """Those of all definitions, then the mission's own."""
+    """List the bodies of all definitions, then the mission's own."""
     return [each.body for each in all_definitions(mission)] + ([] if mission.body is None else [mission.body])
 
 
 def exact_nodes(mission: Program) -> list[Exact]:
-    """The nodes that a mission and its definitions say by their ids."""
+    """List the nodes that a mission and its definitions say by their ids."""
     return [node for body in bodies(mission) for node in parents_first(body) if type(node) is Exact]
 
 
@@ -456,7 +459,7 @@ def says_ports(mission: Program) -> bool:
 
 
 def keys_of(node: Ast) -> list[str]:
-    """The keys of values of the mission that a node itself uses, not those in its parts."""
+    """List the keys of values of the mission that a node itself uses, not those in its parts."""
     texts_of = _TEXTS.get(type(node))
     if texts_of is None:
         return []
@@ -465,7 +468,7 @@ def keys_of(node: Ast) -> list[str]:
 
 
 def chosen_keys(node: Ast) -> list[str]:
-    """The keys into which the robot puts what it chooses for a node itself."""
+    """List the keys into which the robot puts what it chooses for a node itself."""
     texts_of = _TEXTS.get(type(node))
     choices = [choice_of(text) for text in texts_of(node)] if texts_of is not None else []
     return [choice.key for choice in choices if choice is not None]

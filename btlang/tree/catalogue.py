@@ -1,4 +1,4 @@
-"""The built-in nodes: what each of them is. What it does when it is ticked is in the engine, under the same id.
+"""The catalogue of built-in nodes: what each of them is. The engine has what it does, under the same id.
 
 Sources: the manifests (`providedPorts`) of BehaviorTree.CPP 4.10, and of Nav2's nodes. A new node needs an entry here,
 its semantics in engine/compile.py and a row in the behaviour tables of the tests; XML, lints and drawings look it up.
@@ -39,7 +39,7 @@ _UNSIGNED = 2**32 - 1
 
 
 class Port(Record):
-    """A port: `type` as in C++, "" where it is a template or a text that the node interprets.
+    """A port: `type` as in C++, "" if it is a template or a text that the node interprets.
 
     `default` is None where the port must be given. `least` and `most` bound the value of a number; None: they depend on
     the node's children. `unit` is "ms", "Hz", "rounds" or "time of day", "" for others. `name_3` is its name in
@@ -57,7 +57,7 @@ class Port(Record):
 
 
 class NodeKind(Record):
-    """A kind of node. The fields after `ports` are traits: what others need to know of its semantics.
+    """A kind of node. The fields after `ports` are traits: what others need to know about its semantics.
 
     - `kind`: the tag that names its sort in XML: Control, Decorator, Action, Condition or SubTree.
     - `least`, `most`: the number of children; `roles` are the first ones' parts in it, for drawings and lints.
@@ -241,7 +241,7 @@ _BETWEEN = re.compile(r"\s*[;,]\s*")
 
 
 def zone_names(text: str) -> list[str]:
-    """The names in the port of such a node, or in another one that may hold several."""
+    """Return the names in the port of such a node, or in another one that may hold several."""
     return [name for name in _BETWEEN.split(text.strip()) if name]
 
 
@@ -259,8 +259,8 @@ def never_ends(node_id: str, ports: Sequence[tuple[str, str]], endless: Sequence
     return kind.again == ON_SUCCESS and kind.is_endless(ports)
 
 
-def held(node_id: str, port: str) -> str:
-    """What the text of a port is: SCRIPT, KEY, or "" for a value or a reference."""
+def port_content(node_id: str, port: str) -> str:
+    """Return what the text of a port is: SCRIPT, KEY, or "" for a value or a reference."""
     if port in PRE_CONDITIONS or port in POST_CONDITIONS:
         return SCRIPT
     kind = CATALOGUE.get(node_id)

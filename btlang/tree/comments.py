@@ -1,4 +1,4 @@
-"""The comments of a mission by the statement that they describe: the one on their line, or else the next one."""
+"""Comments of a mission by the statement that they describe: the one on their line, or else the next one."""
 
 from __future__ import annotations
 
@@ -16,12 +16,13 @@ KEPT = "#:"
 
 
 def line_of(node: Node) -> int:
-    """The line on which a node is said, from 1; 0 for one that comes from no text."""
+    """Return the line on which a node is said, from 1; 0 for one that comes from no text."""
     return node.span.source.position(node.span.start)[0] if node.span is not None else 0
 
 
 def comments_by_line(source: Source, orthography: Orthography, tree: Tree) -> dict[float, list[str]]:
-    """The comments of the text of a tree without their marks, by the line of the statement that they describe.
+    """Return the comments of the text of a tree without their marks, by the line of the statement that they
+    describe.
 
     Those without a letter or digit are left out: they are rulers.
     """

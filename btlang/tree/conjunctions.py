@@ -1,4 +1,4 @@
-"""What `and` between commands means: at the same time for what can go along with others, else one after the other.
+"""Conjunctions: `and` between commands means at the same time for what can go together, else one after the other.
 
 Both parsers make a chain of the operator "and". When all names and included missions are known, `resolve` makes each
 of them a "parallel" or a "sequence"; only then do equal chains melt into one.
@@ -20,7 +20,7 @@ from btlang.vocabulary.lexicon import Lexicon
 
 
 class Traits(Record):
-    """What a command is to those beside it.
+    """The traits of a command that matter to those beside it.
 
     `accompanies`: it can go along with others. `holds` are the resources that it needs for itself. `endless`: it runs
     until it fails or is stopped.
@@ -35,7 +35,7 @@ _TASK = Traits(False)
 
 
 def resolve(mission: ast.Program, vocabulary: Lexicon) -> tuple[ast.Program, list[Diagnostic]]:
-    """The mission with a meaning for each `and`, and what has to be said about them (BT050, BT174)."""
+    """Return the mission with a meaning for each `and`, and messages about them (BT050, BT174)."""
     if not _has_conjunction(mission):
         return mission, []
     definitions = {definition.name: definition.body for definition in ast.all_definitions(mission)}
@@ -52,7 +52,7 @@ def _is_conjunction(node: ast.Ast) -> bool:
 
 
 class Conjunctions:
-    """Gives each `and` of one mission, and of those that it includes, a meaning. `problems` is what there is to say."""
+    """The conjunctions of one mission, and of those that it includes. `problems` are messages about them."""
 
     def __init__(self, definitions: Mapping[str, ast.Ast], vocabulary: Lexicon) -> None:
         self.problems: list[Diagnostic] = []
@@ -62,20 +62,20 @@ class Conjunctions:
         self._noted: dict[int, tuple[ast.Ast, Traits]] = {}  # with its node, which keeps the identity
 
     def program(self, mission: ast.Program) -> ast.Program:
-        """A text with those that it includes."""
+        """Resolve a text with those that it includes."""
         return ast.with_bodies(mission, self._body, self.program)
 
     def _body(self, body: ast.Ast) -> ast.Ast:
-        """Statements without `and` stay as they are and aren't looked into."""
+        """Resolve a body. Statements without `and` stay as they are and aren't looked into."""
         if type(body) is not ast.Chain or body.operator != "sequence":
-            return self._resolved(body)[0] if any(map(_is_conjunction, ast.parents_first(body))) else body
+            return self._resolve(body)[0] if any(map(_is_conjunction, ast.parents_first(body))) else body
         items = [
-            self._resolved(item)[0] if item.parts and any(map(_is_conjunction, ast.parents_first(item))) else item
+            self._resolve(item)[0] if item.parts and any(map(_is_conjunction, ast.parents_first(item))) else item
             for item in body.items
         ]
-        return _melted(body.replace(items=tuple(items)))
+        return _flatten(body.replace(items=tuple(items)))
 
-    def _resolved(self, root: ast.Ast) -> tuple[ast.Ast, Traits]:
+    def _resolve(self, root: ast.Ast) -> tuple[ast.Ast, Traits]:
         return fold(root, ast.parts, self._one)
 
     def _one(self, node: ast.Ast, done: list[tuple[ast.Ast, Traits]]) -> tuple[ast.Ast, Traits]:
@@ -92,15 +92,15 @@ class Conjunctions:
     def _chain(self, chain: ast.Chain, items: Sequence[ast.Ast], traits: Sequence[Traits]) -> tuple[ast.Ast, Traits]:
         operator = chain.operator
         if operator == "and":
-            operator = self._meaning(chain, traits)
+            operator = self._choose_meaning(chain, traits)
         made: ast.Ast = chain
         if operator != chain.operator or any(new is not old for new, old in zip(items, chain.items, strict=True)):
-            made = _melted(ast.Chain(operator, tuple(items), chain.bracketed, chain.span))
+            made = _flatten(ast.Chain(operator, tuple(items), chain.bracketed, chain.span))
         endless = [each.endless for each in traits]
         never = any(endless) if operator == "sequence" else all(endless)
-        return made, Traits(all(each.accompanies for each in traits), _joined(traits), never)
+        return made, Traits(all(each.accompanies for each in traits), _union(traits), never)
 
-    def _meaning(self, chain: ast.Chain, traits: Sequence[Traits]) -> str:
+    def _choose_meaning(self, chain: ast.Chain, traits: Sequence[Traits]) -> str:
         """Whether the parts run at the same time."""
         if any(each.endless for each in traits[:-1]):
             return "parallel"  # it lasts as long as what stands behind it
@@ -108,7 +108,7 @@ class Conjunctions:
             if traits[-1].endless:
                 self._report_endless(chain)
             return "sequence"
-        shared = _shared(traits)
+        shared = _find_shared(traits)
         if shared is not None:
             resource, first, second = shared
             self._report_shared(chain, resource, chain.items[first], chain.items[second])
@@ -118,14 +118,12 @@ class Conjunctions:
     def are_simultaneous(self, items: Iterable[ast.Ast]) -> bool:
         """Whether `and` between such commands means that they all run at the same time."""
         traits = [self._traits(item) for item in items]
-        return all(each.accompanies for each in traits) and not (_shared(traits) or _speaks_first(traits))
-
-    def are_independent(self, items: Iterable[ast.Ast]) -> bool:
-        """Whether no two of the commands need the same part of the robot."""
-        return _shared([self._traits(item) for item in items]) is None
+        return all(each.accompanies for each in traits) and not (_find_shared(traits) or _speaks_first(traits))
 
     def _traits(self, root: ast.Ast) -> Traits:
-        """Those of a command in which each `and` has its meaning; noted, since they are asked for at every depth."""
+        """Return the traits of a command in which each `and` has its meaning. They are kept, as every depth asks for
+        them.
+        """
 
         def parts(node: ast.Ast) -> Sequence[ast.Ast]:
             return () if id(node) in self._noted else ast.parts(node)
@@ -138,7 +136,7 @@ class Conjunctions:
         return fold(root, parts, one)[1]
 
     def _report_shared(self, chain: ast.Chain, resource: str, first: ast.Ast, second: ast.Ast) -> None:
-        """BT174: commands that could go along with each other need the same part of the robot."""
+        """Report commands that could go along with each other, but need the same part of the robot (BT174)."""
         joint = self._vocabulary.word("and")
         self.problems.append(
             diagnostic(
@@ -148,8 +146,8 @@ class Conjunctions:
         )  # fmt: skip
 
     def _report_endless(self, chain: ast.Chain) -> None:
-        """BT050 for a last part that never ends: it may be meant to go along with the ones before it."""
-        joint = next(_joints(chain, self._vocabulary.word("and")), None)
+        """Report a last part that never ends: it may be meant to go along with the ones before it (BT050)."""
+        joint = next(_connectives(chain, self._vocabulary.word("and")), None)
         if joint is None:
             return
         text, span = chain.span.text, chain.span
@@ -176,20 +174,20 @@ class Conjunctions:
         return Traits(any(entry.accompaniment for entry in entries), holds)
 
     def _name(self, name: str) -> Traits:
-        """What a defined name is; one that reaches itself is a task."""
+        """Return the traits of a defined name; one that reaches itself is a task."""
         if name not in self._named:
             self._named[name] = _TASK
             if name in self._definitions:
                 problems, self.problems = self.problems, []  # they are reported where the name is defined
-                self._named[name] = self._resolved(self._definitions[name])[1]
+                self._named[name] = self._resolve(self._definitions[name])[1]
                 self.problems = problems
         return self._named[name]
 
     def _form(self, node: ast.Ast, commands: Sequence[Traits]) -> Traits:
-        """A form has the kind of its commands."""
+        """Return the traits of a form, which has the kind of its commands."""
         if isinstance(node, ast.Check | ast.WaitUntil) or not commands:
             return _TASK
-        return Traits(all(each.accompanies for each in commands), _joined(commands), _is_endless(node, commands))
+        return Traits(all(each.accompanies for each in commands), _union(commands), _is_endless(node, commands))
 
 
 def _is_endless(node: ast.Ast, commands: Sequence[Traits]) -> bool:
@@ -210,8 +208,8 @@ def _is_endless(node: ast.Ast, commands: Sequence[Traits]) -> bool:
     return False
 
 
-def _melted(chain: ast.Chain) -> ast.Ast:
-    """The chain with the items of equal chains in it that have no brackets."""
+def _flatten(chain: ast.Chain) -> ast.Ast:
+    """Return the chain with the items of equal chains in it that have no brackets."""
     items: list[ast.Ast] = []
     for item in chain.items:
         is_equal = type(item) is ast.Chain and item.operator == chain.operator and not item.bracketed
@@ -219,12 +217,12 @@ def _melted(chain: ast.Chain) -> ast.Ast:
     return chain.replace(items=tuple(items)) if len(items) != len(chain.items) else chain
 
 
-def _joined(traits: Iterable[Traits]) -> frozenset[str]:
+def _union(traits: Iterable[Traits]) -> frozenset[str]:
     return frozenset().union(*(each.holds for each in traits))
 
 
-def _shared(traits: Sequence[Traits]) -> tuple[str, int, int] | None:
-    """A resource that two of them hold, and which two."""
+def _find_shared(traits: Sequence[Traits]) -> tuple[str, int, int] | None:
+    """Return a resource that two of them hold, and which two."""
     holders: dict[str, int] = {}
     for at, each in enumerate(traits):
         for resource in each.holds:
@@ -240,8 +238,8 @@ def _speaks_first(traits: Sequence[Traits]) -> bool:
     return any(MOVES in each.holds for each in traits[speech + 1 :])
 
 
-def _joints(chain: ast.Chain, word: str) -> Iterator[Span]:
-    """The words `and` between the parts, the last first."""
+def _connectives(chain: ast.Chain, word: str) -> Iterator[Span]:
+    """Find the words `and` between the parts, the last first."""
     items = sorted(chain.items, key=lambda item: item.span.start)
     for left, right in reversed(list(pairwise(items))):
         source = left.span.source

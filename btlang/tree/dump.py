@@ -19,20 +19,21 @@ _ESCAPES = str.maketrans({"\\": "\\\\", '"': '\\"', "\n": "\\n", "\r": "\\r", "\
 
 
 def plain(tree: Tree) -> str:
-    """One line a node, `Id port=value`, indented by two spaces a level; named subtrees follow, sorted by name.
+    """Return one line a node, `Id port=value`, indented by two spaces a level; named subtrees follow, sorted by
+    name.
 
     Nothing in it depends on how the mission was spelled or laid out.
     """
     lines = [f"BehaviorTree ID={_value(tree.name)} main=true"] if tree.name else []
-    lines += [f"{_indented(depth)}{described(node)}" for depth, node in _nodes(tree.root)]
+    lines += [f"{_indent(depth)}{describe_node(node)}" for depth, node in _nodes(tree.root)]
     for name, root in sorted(tree.subtrees):
         lines.append(f"BehaviorTree ID={_value(name)}")
-        lines += [f"{_indented(depth + 1)}{described(node)}" for depth, node in _nodes(root)]
+        lines += [f"{_indent(depth + 1)}{describe_node(node)}" for depth, node in _nodes(root)]
     return "\n".join(lines)
 
 
-def described(node: Node) -> str:
-    """`Id port=value`, a value in double quotes where it is not one plain word; an instance name comes first."""
+def describe_node(node: Node) -> str:
+    """Return `Id port=value`, a value in double quotes unless it is one plain word; an instance name comes first."""
     name = f" name={_value(node.name)}" if node.name else ""
     return node.id + name + "".join(f" {key}={_value(text)}" for key, text in sorted(node.ports))
 
@@ -70,8 +71,8 @@ class Outline(Record):
             yield _rich_tree(root, self.label)
 
 
-def outline(tree: Tree, label: Callable[[Node], str] = described) -> str:
-    """The main tree with branches drawn, then each named subtree under its name."""
+def outline(tree: Tree, label: Callable[[Node], str] = describe_node) -> str:
+    """Draw the main tree with branches, then each named subtree under its name."""
     return str(Outline((("", tree.root), *tree.subtrees), label))
 
 
@@ -87,7 +88,7 @@ def _rich_tree(root: Node, label: Callable[[Node], str]) -> RichTree:
 
 
 class _Label(Record):
-    """Worded when it is drawn: the prompt draws only as many as there is room for."""
+    """A label that is worded when it is drawn: the prompt draws only as many as there is room for."""
 
     node: Node
     label: Callable[[Node], str]
@@ -108,7 +109,7 @@ def _nodes(root: Node) -> Iterator[tuple[int, Node]]:
         stack.extend((depth + 1, child) for child in reversed(node.children))
 
 
-def _indented(depth: int) -> str:
+def _indent(depth: int) -> str:
     return "  " * depth if depth <= _DEEPEST else f"{'  ' * _DEEPEST}[level {depth}] "
 
 

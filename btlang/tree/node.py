@@ -1,4 +1,7 @@
-"""The tree that every front end makes and every back end reads: BehaviorTree.CPP node names, ports and semantics."""
+"""Trees, which every front end makes and every back end reads, with BehaviorTree.CPP node names, ports and semantics.
+
+A tree may have models of its leaves, as TreeNodesModel of BehaviorTree.CPP holds them.
+"""
 
 from __future__ import annotations
 
@@ -7,11 +10,29 @@ from collections.abc import Iterator
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.support.record import Record
 from btlang.text.source import PythonSource, Span
-from btlang.tree.model import NodeModel
+
+
+class PortModel(Record):
+    """A declared port: `direction` is "input", "output" or "inout", `type` as in C++, "" if it isn't declared."""
+
+    name: str
+    direction: str = "input"
+    type: str = ""
+    default: str | None = None
+    text: str = ""
+
+
+class NodeModel(Record):
+    """A kind of node: "Action", "Condition", "Decorator", "Control" or "SubTree"; `text` is its description."""
+
+    kind: str
+    id: str
+    ports: tuple[PortModel, ...] = ()
+    text: str = ""
 
 
 class Node(Record, uncompared=("span",)):
-    """One node.
+    """A node of a tree.
 
     `id` is the registered type (`Sequence`, `GoTo`); `ports` are (name, text) pairs, text as XML would hold it,
     a text `{key}` refers to the blackboard; `name` is an instance name, "" where none was given;
@@ -30,7 +51,7 @@ class Node(Record, uncompared=("span",)):
         return self.id if self.span is None or isinstance(self.span.source, PythonSource) else self.span.text
 
     def port(self, name: str, default: str = "") -> str:
-        """The text of a port, or the default where it is not set."""
+        """Return the text of a port, or the default if it isn't set."""
         for key, text in self.ports:
             if key == name:
                 return text
@@ -54,7 +75,9 @@ class Tree(Record, uncompared=("models", "origin", "warnings")):
     warnings: tuple[Diagnostic, ...] = ()
 
     def walk(self) -> Iterator[Node]:
-        """Every node of the main tree, then of each subtree, parents before children; SubTree nodes are not entered."""
+        """Yield every node of the main tree, then of each subtree, parents before children; SubTree nodes aren't
+        entered.
+        """
         for root in (self.root, *(node for _, node in self.subtrees)):
             stack = [root]
             while stack:

@@ -1,4 +1,4 @@
-"""Sets of things: `take every cube from the table and put it in the box` is one round a cube.
+"""Rounds over sets: `take every cube from the table and put it in the box` is one round for each cube.
 
 A phrase says a set as one argument, a choice of all names that are described. Its round takes in what comes behind it
 in the statement up to the last command that speaks of its thing, and behind a set of places or people what is joined
@@ -20,13 +20,13 @@ _TRAVELS = "navigation"
 
 
 def with_rounds(mission: ast.Program, vocabulary: Lexicon) -> ast.Program:
-    """The mission with a loop for each set that a command of it speaks of."""
+    """Return the mission with a loop for each set that a command of it speaks of."""
     if not any(map(_set_of, (node for body in _own_bodies(mission) for node in ast.parents_first(body)))):
         return mission
     if mission.facts:
         vocabulary = vocabulary.with_places(tuple(fact.name for fact in ast.all_facts(mission)))
     return ast.with_bodies(
-        mission, lambda body: _looped(body, vocabulary), lambda included: with_rounds(included, vocabulary)
+        mission, lambda body: _add_loops(body, vocabulary), lambda included: with_rounds(included, vocabulary)
     )
 
 
@@ -36,7 +36,7 @@ def _own_bodies(mission: ast.Program) -> list[ast.Ast]:
 
 
 def _set_of(node: ast.Ast) -> Choice | None:
-    """The set that a command speaks of."""
+    """Return the set that a command speaks of."""
     if not isinstance(node, ast.Phrase | ast.Name):
         return None
     for _, text in node.arguments:
@@ -47,7 +47,7 @@ def _set_of(node: ast.Ast) -> Choice | None:
 
 
 class _Round(Record):
-    """A set, and the parts `first` to `last` of a chain that are in its round; no chain where one command is all."""
+    """A set, and the parts `first` to `last` of a chain that are in its round; no chain if one command is all."""
 
     choice: Choice
     chain: ast.Chain | None = None
@@ -55,7 +55,7 @@ class _Round(Record):
     last: int = 0
 
 
-def _looped(root: ast.Ast, vocabulary: Lexicon) -> ast.Ast:
+def _add_loops(root: ast.Ast, vocabulary: Lexicon) -> ast.Ast:
     if any(isinstance(node, ast.Remember) for node in ast.parents_first(root)):
         root = fold(root, ast.parts, _with_what_says_it)
     nodes = ast.parents_first(root)
@@ -75,18 +75,18 @@ def _looped(root: ast.Ast, vocabulary: Lexicon) -> ast.Ast:
     def combine(node: ast.Ast, done: list[ast.Ast]) -> ast.Ast:
         choice = _set_of(node)
         if choice is not None and isinstance(node, ast.Phrase | ast.Name):
-            one = _with(node, choice.text, f"{{{choice.key}}}")
+            one = _replace_argument(node, choice.text, f"{{{choice.key}}}")
             return _loop(choice, one, vocabulary) if id(node) in alone else one
         made = ast.with_parts(node, done)
         for each in sorted(of_chain.get(id(node), ()), key=lambda found: -found.first):
-            made = _wrapped(made, each, vocabulary)
+            made = _wrap(made, each, vocabulary)
         return made
 
     return fold(root, ast.parts, combine)
 
 
 def _with_what_says_it(node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
-    """`A and say the battery`: what says a value goes along with what measures it, as one phrase says both."""
+    """Keep `A and say the battery` together: the command that says a value stays with the one that measures it."""
     if not isinstance(node, ast.Chain) or node.operator != "sequence":
         return ast.with_parts(node, done)
     made: list[ast.Ast] = []
@@ -101,7 +101,7 @@ def _with_what_says_it(node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
 
 
 def _round(nodes: Sequence[ast.Ast], at: int, choice: Choice, parents: dict[int, ast.Ast]) -> _Round:
-    """How far the round of a set reaches."""
+    """Return how far the round of a set reaches."""
     key, node = choice.key, nodes[at]
     last = at
     for later in range(at + 1, len(nodes)):
@@ -127,7 +127,7 @@ def _round(nodes: Sequence[ast.Ast], at: int, choice: Choice, parents: dict[int,
 
 
 def _path(node: ast.Ast, parents: dict[int, ast.Ast]) -> list[ast.Ast]:
-    """The node and what it is in, the innermost first."""
+    """List the node and what it is in, the innermost first."""
     found = [node]
     while id(node) in parents:
         node = parents[id(node)]
@@ -136,13 +136,13 @@ def _path(node: ast.Ast, parents: dict[int, ast.Ast]) -> list[ast.Ast]:
 
 
 def _index(chain: ast.Chain, path: Sequence[ast.Ast]) -> int:
-    """The part of a chain in which a path begins."""
+    """Return the part of a chain in which a path begins."""
     within = {id(each) for each in path}
     return next(at for at, item in enumerate(chain.items) if id(item) in within)
 
 
 def _goes_along(chain: ast.Chain, first: int, last: int, choice: Choice) -> int:
-    """The last part that is in the round of a set of places or people without a word about them."""
+    """Return the last part that is in the round of a set of places or people without a word about them."""
     node = chain.items[first]
     goes = isinstance(node, ast.Phrase) and _TRAVELS in node.entry.needs
     if choice.type in (PLACE, PERSON) and goes:
@@ -170,7 +170,7 @@ def _travels(node: ast.Ast) -> bool:
     return False
 
 
-def _wrapped(chain: ast.Ast, found: _Round, vocabulary: Lexicon) -> ast.Ast:
+def _wrap(chain: ast.Ast, found: _Round, vocabulary: Lexicon) -> ast.Ast:
     assert isinstance(chain, ast.Chain)
     items = chain.items[found.first : found.last + 1]
     body: ast.Ast = items[0] if len(items) == 1 else chain.replace(items=items, bracketed=False)
@@ -180,17 +180,17 @@ def _wrapped(chain: ast.Ast, found: _Round, vocabulary: Lexicon) -> ast.Ast:
 
 
 def _loop(choice: Choice, body: ast.Ast, vocabulary: Lexicon) -> ast.Ast:
-    """One round for each name; where the names are known, of a single command the list of all."""
+    """Make one round for each name; of a single command with known names the list of all."""
     names = vocabulary.values.likenesses.members(choice)
     if names and isinstance(body, ast.Phrase | ast.Name):
-        each = tuple(_with(body, f"{{{choice.key}}}", name) for name in names)
+        each = tuple(_replace_argument(body, f"{{{choice.key}}}", name) for name in names)
         is_search = isinstance(body, ast.Phrase) and body.entry.first and choice.type == PLACE
         operator = "fallback" if is_search else "sequence"
         return each[0] if len(each) == 1 else ast.Chain(operator, each, True, body.span)
     return ast.ForEach(choice.key, choice.type, names or (choice.text,), body, body.span)
 
 
-def _with(body: ast.Phrase | ast.Name, old: str, new: str) -> ast.Ast:
-    """The command with another text in its arguments."""
+def _replace_argument(body: ast.Phrase | ast.Name, old: str, new: str) -> ast.Ast:
+    """Return the command with another text in its arguments."""
     arguments = tuple((slot, new if text == old else text) for slot, text in body.arguments)
     return body.replace(arguments=arguments)  # type: ignore[no-any-return]

@@ -1,4 +1,4 @@
-"""Counts over several places: `count the people in the lab and the hall, then say the number` says how many in all.
+"""Sums: `count the people in the lab and the hall, then say the number` says how many there are in total.
 
 Where somebody asks for the number behind several counts of one command, these are summed in a value of the mission.
 """
@@ -26,7 +26,7 @@ _TOTAL, _LAST = "counted_in_all", "counted_there"
 
 
 def with_sums(mission: ast.Program, vocabulary: Lexicon) -> ast.Program:
-    """The mission with the sums that it asks for."""
+    """Return the mission with the sums that it asks for."""
     count, number = vocabulary.entry(COUNT), number_type(vocabulary.types)
     if count is None or number is None:
         return mission
@@ -34,7 +34,7 @@ def with_sums(mission: ast.Program, vocabulary: Lexicon) -> ast.Program:
 
     def body(root: ast.Ast) -> ast.Ast:
         is_asked = any(map(_asks, ast.parents_first(root)))
-        return fold(root, ast.parts, sums.summed)[0] if is_asked else root
+        return fold(root, ast.parts, sums.add_sum)[0] if is_asked else root
 
     def program(part: ast.Program) -> ast.Program:
         return ast.with_bodies(part, body, program)
@@ -43,13 +43,13 @@ def with_sums(mission: ast.Program, vocabulary: Lexicon) -> ast.Program:
 
 
 class _Sums:
-    """Puts sums into missions, in numbers of a type, with the quantity that was counted last."""
+    """The sums of a mission, in numbers of a type, with the quantity that was counted last."""
 
     def __init__(self, count: Entry, number: str) -> None:
         self._count, self._number = count, number
 
-    def summed(self, node: ast.Ast, done: Sequence[_Made]) -> _Made:
-        """A node with its parts, and whether it counts.
+    def add_sum(self, node: ast.Ast, done: Sequence[_Made]) -> _Made:
+        """Return a node with its parts, and whether it counts.
 
         In a sequence each command that counts several times is summed, if what follows asks for the number.
         """
@@ -61,7 +61,7 @@ class _Sums:
         sums = False
         for at, (item, counting) in enumerate(done):
             if not counting:
-                made.append(fold(item, ast.parts, self._asking_sum) if sums else item)
+                made.append(fold(item, ast.parts, self._ask_sum) if sums else item)
                 continue
             chains, last = _last_count(item)
             sums = last is not None and any(map(_is_of_sum, ast.parents_first(last)))
@@ -73,23 +73,25 @@ class _Sums:
         return ast.Chain(whole.operator, tuple(made), whole.bracketed, whole.span), True
 
     def _sum(self, chains: Sequence[ast.Chain], counting: ast.Ast) -> list[ast.Ast]:
-        """The outermost of some chains, with what begins the sum and tells it around what counts in the innermost."""
+        """Return the outermost of some chains. The innermost gets the commands that begin the sum and use it."""
         begun = ast.Assign(_TOTAL, "set", self._number, "0", counting.span)
         keys = sorted(_keys(counting))
         told = [ast.Assign(key, "set", self._number, f"{{{_TOTAL}}}", counting.span) for key in keys]
-        made: list[ast.Ast] = [begun, fold(counting, ast.parts, partial(self._adding, keys)), *told]
+        made: list[ast.Ast] = [begun, fold(counting, ast.parts, partial(self._add_up, keys)), *told]
         for chain, part in zip(reversed(chains), reversed([*chains, counting][1:]), strict=True):
             at = next(at for at, item in enumerate(chain.items) if item is part)
-            behind = (fold(item, ast.parts, self._asking_sum) for item in chain.items[at + 1 :])
+            behind = (fold(item, ast.parts, self._ask_sum) for item in chain.items[at + 1 :])
             items = (*chain.items[:at], *made, *behind)
             made = [ast.Chain(chain.operator, items, chain.bracketed, chain.span)]
         return made
 
-    def _adding(self, told: Container[str], node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
-        """A command that counts, with the number that it adds; what is told later isn't kept in each place."""
+    def _add_up(self, told: Container[str], node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
+        """Return a command that counts, with the number that it adds. A sum that is used later isn't kept in each
+        place.
+        """
         if isinstance(node, ast.Chain) and node.operator in _IN_TURN:
             kept = (item for item in done if not (isinstance(item, ast.Remember) and item.key in told))
-            items = tuple(part for item in kept for part in _spliced(item))
+            items = tuple(part for item in kept for part in _splice(item))
             return ast.Chain(node.operator, items, node.bracketed, node.span)
         if not _is_count(node):
             return ast.with_parts(node, done)
@@ -97,7 +99,7 @@ class _Sums:
         more = ast.Assign(_TOTAL, "increase", self._number, f"{{{_LAST}}}", node.span)
         return ast.Chain("sequence", (node, number, more), False, node.span)
 
-    def _asking_sum(self, node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
+    def _ask_sum(self, node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
         if isinstance(node, ast.Remember) and _is_number(node):
             return ast.Assign(node.key, "set", self._number, f"{{{_TOTAL}}}", node.span)
         if isinstance(node, ast.Phrase) and node.entry.id == _COMPARED:
@@ -115,8 +117,8 @@ def _is_number(node: ast.Ast) -> bool:
     return isinstance(node, ast.Remember) and node.entry.id == COUNT
 
 
-def _spliced(node: ast.Ast) -> tuple[ast.Ast, ...]:
-    """The commands of a node that counts and adds to the sum, or the node itself."""
+def _splice(node: ast.Ast) -> tuple[ast.Ast, ...]:
+    """Return the commands of a node that counts and adds to the sum, or the node itself."""
     last = node.items[-1] if isinstance(node, ast.Chain) else None
     return (
         node.items if isinstance(node, ast.Chain) and isinstance(last, ast.Assign) and last.key == _TOTAL else (node,)
@@ -128,7 +130,7 @@ def _counts(node: ast.Ast) -> bool:
 
 
 def _last_count(node: ast.Ast) -> tuple[list[ast.Chain], ast.Ast | None]:
-    """What counts last in a command, if that counts in each place of a list or set, with the chains around it."""
+    """Return what counts last in a command, if it counts in each place of a list or set, with the chains around it."""
     chains: list[ast.Chain] = []
     while not _counts_several(node):
         if not isinstance(node, ast.Chain) or node.operator not in _IN_TURN:
@@ -162,7 +164,7 @@ def _is_of_sum(node: ast.Ast) -> bool:
 
 
 def _keys(node: ast.Ast) -> set[str]:
-    """The values in which a command keeps numbers for what stands behind it, and doesn't use them itself."""
+    """Return the values in which a command keeps numbers for what stands behind it, and doesn't use them itself."""
     nodes = ast.parents_first(node)
     used = {key for each in nodes if not isinstance(each, ast.Remember) for key in ast.keys_of(each)}
     return {each.key for each in nodes if isinstance(each, ast.Remember) and _is_number(each)} - used

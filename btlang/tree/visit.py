@@ -1,4 +1,4 @@
-"""Walks over trees as loops, because trees may be 10,000 deep."""
+"""Walks over trees as loops, because trees may be 10,000 levels deep."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 def fold(
     root: Item, parts: Callable[[Item], Sequence[Item]], combine: Callable[[Item, list[Result]], Result]
 ) -> Result:
-    """Combines each item with the results of its parts, parts first."""
+    """Combine each item with the results of its parts, parts first."""
     items: list[Item] = []
     counts: list[int] = []
     waiting = [root]
@@ -40,7 +40,7 @@ def fold(
 
 
 def children_first(root: Node) -> list[Node]:
-    """Every node, children before their parents, from left to right."""
+    """List every node, children before their parents, from left to right."""
     found: list[Node] = []
     waiting = [root]
     while waiting:
@@ -52,12 +52,12 @@ def children_first(root: Node) -> list[Node]:
 
 
 def subtree_names(root: Node) -> list[str]:
-    """The names of the subtrees that a tree uses itself, from left to right, each as often as it is used."""
+    """List the names of the subtrees that a tree uses itself, from left to right, each as often as it is used."""
     return [node.port("ID") for node in children_first(root) if node.id == SUBTREE]
 
 
 def used_subtrees(tree: Tree, names: Iterable[str] = ()) -> tuple[tuple[str, Node], ...]:
-    """The subtrees of these names and those that they and the main tree use, in the order defined."""
+    """Return the subtrees of these names and those that they and the main tree use, in the order defined."""
     roots = dict(tree.subtrees)
     used = {name for name in names if name in roots}
     waiting = [tree.root, *(roots[name] for name in used)]
@@ -70,7 +70,7 @@ def used_subtrees(tree: Tree, names: Iterable[str] = ()) -> tuple[tuple[str, Nod
 
 
 def in_order_of_use(uses: Mapping[str, Iterable[str]]) -> tuple[list[str], list[list[str]]]:
-    """All names, each behind those that it uses, and the circles of names that use each other, each once.
+    """Return all names, each behind those that it uses, and the circles of names that use each other, each once.
 
     What is used and has no entry is left out.
     """

@@ -6,10 +6,8 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from functools import wraps
 
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
-from btlang.text.python_line import calling_line
-from btlang.text.source import NOWHERE
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.text.source import NOWHERE, find_calling_line
 from btlang.vocabulary.capabilities import resources_of
 from btlang.vocabulary.entry import Entry, SlotSpec
 
@@ -134,7 +132,7 @@ def _word(
     from btlang.vocabulary.pattern import PatternError, Slot, forms
 
     given = (phrase,) if isinstance(phrase, str) else tuple(phrase)
-    span = calling_line()
+    span = find_calling_line()
 
     def decorate(call: Call) -> Call:
         phrases = given if any(given) else (_phrase_of(call),)

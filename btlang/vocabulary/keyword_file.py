@@ -6,12 +6,10 @@ import re
 import tomllib
 from math import inf, isfinite
 
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.support.record import Record
 from btlang.text.source import Source, Span
-from btlang.text.toml import parse_toml
-from btlang.text.toml_positions import positions
+from btlang.text.toml import find_positions, parse_toml
 from btlang.tree.catalogue import CATALOGUE, CONSTRAINTS
 from btlang.vocabulary.capabilities import resources_of
 from btlang.vocabulary.entry import COMPARISONS, MEASURED, POINT, VERB_ROLES, Entry, Role, SlotSpec
@@ -427,7 +425,7 @@ def read_keyword_file(source: Source) -> KeywordFile:
     for key in [key for key in document if key not in _TOP]:
         reader.wrong(f"'{key}' is not a key of keyword files; the keys are {', '.join(sorted(_TOP))}", key)
     entries, types, names = [], [], []
-    places = positions(source.text)
+    places = find_positions(source.text)
     for table in _tables(document, "noun", reader):
         reader.noun(table)
     for sort in ("action", "condition", "quantity"):

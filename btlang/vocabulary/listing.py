@@ -5,7 +5,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Iterable, Sequence
 
-from btlang.text.enumeration import joined
+from btlang.text.formatting import joined
 from btlang.text.source import Source
 from btlang.text.spelling import nearest
 from btlang.text.words import split

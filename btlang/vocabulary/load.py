@@ -5,9 +5,8 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.diagnostics.files import read_source
 from btlang.text.source import Source, Span
 from btlang.vocabulary.cache import cached, recent, stamp
 from btlang.vocabulary.entry import Entry

@@ -8,7 +8,7 @@ import pytest
 
 import btlang
 from btlang.cli import main
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.frontends.mission.reader import PARSERS
 from btlang.repl.commands import ReplCommands
 from btlang.repl.draft import MissionDraft

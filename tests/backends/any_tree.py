@@ -8,8 +8,7 @@ from collections.abc import Sequence
 from hypothesis import strategies as st
 
 from btlang.tree.catalogue import CATALOGUE, SUBTREE
-from btlang.tree.model import NodeModel, PortModel
-from btlang.tree.node import Node, Tree
+from btlang.tree.node import Node, NodeModel, PortModel, Tree
 
 SHAPES = {node_id: (kind.least, min(kind.most, kind.least + 2)) for node_id, kind in CATALOGUE.items()}
 """How many children a node of each type has at least, and at most here."""

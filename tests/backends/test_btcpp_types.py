@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 import btlang
 from btlang.api import parse_tree
 from btlang.backends.btcpp import to_xml
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.engine.status import SUCCESS
 from btlang.run.events import Said
 from btlang.tree.node import Node, Tree

@@ -9,13 +9,13 @@ from hypothesis import given, note
 
 from btlang.api import parse_tree
 from btlang.backends.english import to_english
-from btlang.backends.english.editors import without_editors
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import read_source
+from btlang.backends.english.target import remove_editor_attributes
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.files import read_source
 from btlang.frontends.mission.reader import read_mission
 from btlang.passes import lower_mission
 from btlang.passes.compilation import Compilation
-from btlang.passes.lint.two_readings import two_readings
+from btlang.passes.lint.two_readings import find_two_readings
 from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.text.source import Source
 from btlang.tree.catalogue import CATALOGUE
@@ -38,13 +38,13 @@ def test_any_tree_is_said_and_read_back(tree: Tree) -> None:
     for parser in PARSERS:
         mission = read_mission(Source(text), vocabulary, parser).mission
         again = lower_mission(mission, vocabulary)
-        assert plain(again) == plain(without_editors(tree))
+        assert plain(again) == plain(remove_editor_attributes(tree))
         for models in (tree.models, (*tree.models, *again.models), again.models):
             assert to_english(again.replace(models=models), vocabulary) == text
         told = {model.id for model in tree.models if model.kind == "Condition"}
         conditions = {model.id for model in again.models if model.kind == "Condition"} - told
         assert all(id in ("IsOk", "CheckDoor") or vocabulary.entry(id) or CATALOGUE[id].kind for id in conditions)
-        assert not list(two_readings(Compilation(vocabulary, mission, again)))
+        assert not list(find_two_readings(Compilation(vocabulary, mission, again)))
 
 
 @pytest.mark.parametrize("path", CORPUS, ids=lambda path: path.stem)
@@ -53,7 +53,7 @@ def test_trees_of_the_corpus(path: Path) -> None:
     text = str(tree.to("english"))
     for parser in PARSERS:
         again = lower_mission(read_mission(Source(text), tree.vocabulary, parser).mission, tree.vocabulary)
-        assert plain(again) == plain(without_editors(tree.tree))
+        assert plain(again) == plain(remove_editor_attributes(tree.tree))
 
 
 def test_comments_stand_before_what_they_are_about() -> None:
@@ -110,7 +110,7 @@ def said(xml: str) -> list[str]:
     text = str(tree.to("english"))
     for parser in PARSERS:
         again = parse_tree(text, parser=parser)
-        assert plain(again.tree) == plain(without_editors(tree.tree))
+        assert plain(again.tree) == plain(remove_editor_attributes(tree.tree))
         again_said = str(again.to("english")).splitlines()
         assert again_said == [line for line in text.splitlines() if line[:1] != "#"]
     return [line for line in text.splitlines() if not line.startswith("#:")]

@@ -17,7 +17,7 @@ from btlang.api import parse_file, parse_tree
 from btlang.backends.grammar.forms import FORMS
 from btlang.backends.grammar.targets import GRAMMARS
 from btlang.cli import main
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.frontends.mission.reader import PARSERS, read_mission
 from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.text.source import Source

@@ -13,12 +13,11 @@ from hypothesis import strategies as st
 
 from btlang.api import parse_tree
 from btlang.backends.json_tree import SCHEMA, to_json
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.frontends.json.reader import read_json
 from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.support.record import Record
-from btlang.tree.model import NodeModel, PortModel
-from btlang.tree.node import Node, Tree
+from btlang.tree.node import Node, NodeModel, PortModel, Tree
 
 WORDS = world_vocabulary()
 TEXTS = st.text(st.characters(exclude_categories=["Cs"]), max_size=8)

@@ -13,14 +13,14 @@ from btlang.backends.keyword_pack import KeywordPack, keyword_pack, leaves_of, p
 from btlang.backends.keywords import is_unknown
 from btlang.backends.wording import SpokenPorts, phrases
 from btlang.cli import main
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.files import read_source
 from btlang.frontends.btcpp.files import read_files
 from btlang.frontends.btcpp.models import nav2_models
 from btlang.printer.phrase import leaf_words
 from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.text.source import Source
 from btlang.tree.dump import plain
-from btlang.tree.model import NodeModel
+from btlang.tree.node import NodeModel
 from btlang.vocabulary.load import vocabulary_with
 from tests.conftest import matches_golden
 from tests.profiles import only_long

@@ -8,8 +8,8 @@ import pytest
 
 from btlang.api import parse_file, parse_tree
 from btlang.cli import main
-from btlang.diagnostics.errors import MissionError
-from btlang.editing.words import Words
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.editing.words import RobotWords
 from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.text.source import Source
 
@@ -55,7 +55,7 @@ def test_every_verb_takes_them(nodes: str, tmp_path: Path, capsys: pytest.Captur
     assert main(["compile", str(tree), "--to", "english", *words]) == 0
     assert 'move to pose "{dock}"' in capsys.readouterr().out
     source = Source("", str(tmp_path / "mission.txt"), may_load=True)
-    assert "IsLidOpen" in Words([nodes]).vocabulary(source).entries  # of the page
+    assert "IsLidOpen" in RobotWords([nodes]).vocabulary(source).entries  # of the page
 
 
 def test_to_run_them_takes_functions(nodes: str, capsys: pytest.CaptureFixture[str]) -> None:

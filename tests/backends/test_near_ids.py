@@ -5,8 +5,7 @@ from __future__ import annotations
 import pytest
 
 import btlang
-from btlang.diagnostics.diagnostic import Diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError
 from btlang.text.source import Source
 
 

@@ -10,11 +10,11 @@ from hypothesis import given, reject
 from hypothesis import strategies as st
 
 from btlang.backends.btcpp import to_xml
-from btlang.backends.btcpp.onto import written_onto
+from btlang.backends.btcpp.onto import write_onto
 from btlang.backends.english import to_english
-from btlang.backends.english.editors import without_editors
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import read_source
+from btlang.backends.english.target import remove_editor_attributes
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.files import read_source
 from btlang.frontends.btcpp.reader import read_xml
 from btlang.frontends.mission.reader import read_mission
 from btlang.passes import lower_mission
@@ -50,8 +50,10 @@ def test_edits_of_a_team_s_trees(path: Path) -> None:
     for number, (kind, text) in enumerate(edits_of(path), 1):
         wanted = text.removeprefix("\ufeff")
         tree = read(text, path)
-        made = written_onto(before, mission_of(to_english(tree, WORDS)), WORDS)
-        assert plain(without_editors(read(made, path))) == plain(without_editors(tree)), f"edit {number}, {kind}"
+        made = write_onto(before, mission_of(to_english(tree, WORDS)), WORDS)
+        assert plain(remove_editor_attributes(read(made, path))) == plain(remove_editor_attributes(tree)), (
+            f"edit {number}, {kind}"
+        )
         most = len(changed_lines(before.text, wanted)) + FURTHER_LINES
         assert len(changed_lines(before.text, made)) <= most, f"edit {number}, {kind}"
 
@@ -60,7 +62,7 @@ def test_edits_of_a_team_s_trees(path: Path) -> None:
 def test_without_an_edit_no_byte_changes(path: Path) -> None:
     source = read_source(str(path))
     text = to_english(read_xml(source), WORDS)
-    assert written_onto(source, mission_of(text), WORDS) == source.text
+    assert write_onto(source, mission_of(text), WORDS) == source.text
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
@@ -86,7 +88,7 @@ def test_a_node_that_went_elsewhere_is_not_taken_twice() -> None:
     round_ = Node("Repeat", (Node("Sequence", (Node("Script", ports=(("code", "_1 := 2"),)), other)),))
     patrol = Node("Sequence", (wave, Node("Sequence", (sleep,))))
     after = Tree(round_.replace(ports=(("num_cycles", "3"),)), (("patrol", patrol),))
-    made = written_onto(_written(before), after, WORDS)
+    made = write_onto(_written(before), after, WORDS)
     assert _in_any_order(read_xml(Source(made))) == _in_any_order(after)
 
 
@@ -94,7 +96,7 @@ def test_a_new_node_with_the_id_of_a_tree() -> None:
     wave = Node("Wave")
     before = Tree(wave, (("GraspObject", wave), ("each", wave)))
     after = Tree(wave, (("GraspObject", wave), ("each", Node("Sequence", (wave, Node("GraspObject"))))))
-    made = written_onto(_written(before), after, WORDS)
+    made = write_onto(_written(before), after, WORDS)
     assert _in_any_order(read_xml(Source(made))) == _in_any_order(after)
 
 
@@ -104,10 +106,10 @@ def test_any_tree_onto_any_other(before: Tree, after: Tree) -> None:
     """Nothing that was written onto a file is lost, however much is edited at once."""
     original = _written(before)
     _written(after)
-    made = written_onto(original, after, WORDS)
+    made = write_onto(original, after, WORDS)
     told = f"{original.text}\n\n{_written(after).text}\n\n{made}"
     assert _in_any_order(read_xml(Source(made))) == _in_any_order(after), told
-    assert written_onto(Source(made), after, WORDS) == made
+    assert write_onto(Source(made), after, WORDS) == made
 
 
 @searches(10, 1000, deadline=None)
@@ -120,7 +122,7 @@ def test_a_changed_value_changes_one_line(tree: Tree, data: st.DataObject) -> No
         return
     lines[at] = lines[at].replace(' text="', ' text="9', 1)
     wanted = read_xml(Source("\n".join(lines)))
-    assert written_onto(original, wanted, WORDS) == "\n".join(lines)
+    assert write_onto(original, wanted, WORDS) == "\n".join(lines)
 
 
 def _in_any_order(tree: Tree) -> tuple[Node, str, dict[str, Node]]:
@@ -132,7 +134,7 @@ def _in_any_order(tree: Tree) -> tuple[Node, str, dict[str, Node]]:
     def in_order(root: Node) -> Node:
         return fold(root, lambda node: node.children, sorted_ports)
 
-    bare = without_editors(tree)
+    bare = remove_editor_attributes(tree)
     return in_order(bare.root), bare.name, {name: in_order(root) for name, root in bare.subtrees}
 
 

@@ -11,10 +11,10 @@ from itertools import count
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from btlang.backends.btcpp.onto import written_onto
+from btlang.backends.btcpp.onto import write_onto
 from btlang.backends.english import to_english
 from btlang.backends.english.comments import lines_of
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.frontends.btcpp.reader import read_xml
 from btlang.text.source import Source
 from btlang.tree.dump import plain
@@ -127,10 +127,10 @@ def test_they_are_those_of_the_mission(shapes: list[Shape], line_end: str, edits
         tree = mission_of(text)
     except MissionError:  # a block is empty now
         return
-    made = written_onto(original, tree, WORDS)
+    made = write_onto(original, tree, WORDS)
     told = f"{original.text}\n{text}\n{made}"
     assert plain(read_xml(Source(made))) == plain(tree), told
     assert comments_in(made) == comments_of(text), told
     assert instructions_in(made) == instructions_in(original.text), told
-    assert written_onto(Source(made), tree, WORDS) == made, told
+    assert write_onto(Source(made), tree, WORDS) == made, told
     assert not re.search(r"(?<!\r)\n|\r(?!\n)" if line_end == "\r\n" else "\r", made), told

@@ -12,13 +12,12 @@ from py_trees.trees import BehaviourTree
 import btlang
 from btlang.api import parse_tree
 from btlang.backends.py_trees.build import to_py_trees
-from btlang.backends.py_trees.in_order import SkippableSequence
 from btlang.backends.py_trees.module import to_module
 from btlang.backends.py_trees.plan import DEEPEST
-from btlang.diagnostics.errors import MissionError
+from btlang.backends.py_trees.sequences import SkippableSequence
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.robots.mission_vocabulary import world_vocabulary
-from btlang.tree.model import NodeModel
-from btlang.tree.node import Node, Tree
+from btlang.tree.node import Node, NodeModel, Tree
 
 from ..engine.scripted import World, Zoned, n
 from ..engine.their_leaves import Script, TheirLeaf

@@ -13,8 +13,7 @@ from py_trees.common import Status
 from btlang.backends.py_trees.build import to_py_trees
 from btlang.backends.py_trees.module import to_module
 from btlang.robots.mission_vocabulary import world_vocabulary
-from btlang.tree.model import NodeModel
-from btlang.tree.node import Node, Tree
+from btlang.tree.node import Node, NodeModel, Tree
 from btlang.vocabulary.lexicon import Lexicon
 from tests.profiles import searches
 

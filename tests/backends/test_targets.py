@@ -15,14 +15,13 @@ import pytest
 
 import btlang
 from btlang.api import Mission, format_mission
-from btlang.backends.targets import TARGETS, compiled, target_of
+from btlang.backends.targets import TARGETS, compile_to, target_of
 from btlang.cli import main
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.frontends.json.reader import read_json
 from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.text.source import Source
-from btlang.tree.model import NodeModel, PortModel
-from btlang.tree.node import Node, Tree
+from btlang.tree.node import Node, NodeModel, PortModel, Tree
 from tests.engine.scripted import n
 from tests.examples.cases import world_of
 from tests.profiles import cases
@@ -75,7 +74,7 @@ def test_unknown_targets_and_options_are_refused() -> None:
 
 @pytest.mark.parametrize("name", ["json", "dot", "python", "keywords", "tree"])
 def test_deep_trees_have_text(name: str) -> None:
-    assert len(compiled(deep().tree, deep().vocabulary, name)) > 40
+    assert len(compile_to(deep().tree, deep().vocabulary, name)) > 40
 
 
 @cases("path", EXAMPLES, 14, ids=lambda path: path.stem)
@@ -121,7 +120,7 @@ ODD = Node('a"b\\n]', ports=(("p", '{x} "\\" <&> \n ü'),), name='"')
 
 
 def test_dot_escapes_everything() -> None:
-    text = compiled(Tree(ODD, (('t"\\', ODD),)), world_vocabulary(), "dot")
+    text = compile_to(Tree(ODD, (('t"\\', ODD),)), world_vocabulary(), "dot")
     assert isinstance(text, str)
     graph = graph_of(text)
     assert boxes_of(graph) == ["n0"]
@@ -131,7 +130,7 @@ def test_dot_escapes_everything() -> None:
 @pytest.mark.parametrize("tree", [ODD, *EXAMPLES], ids=lambda tree: getattr(tree, "stem", "odd"))
 def test_graphviz_draws_it_without_a_word(tree: Node | Path) -> None:
     made = Tree(tree, (('t"\\', tree),)) if isinstance(tree, Node) else example(tree).tree
-    text = str(compiled(made, world_vocabulary(), "dot"))
+    text = str(compile_to(made, world_vocabulary(), "dot"))
     drawn = subprocess.run(["dot", "-Tsvg"], input=text.encode(), capture_output=True, check=True, timeout=60)
     assert drawn.stderr == b""
     assert drawn.stdout.count(b'class="node"') == text.count("[label=")
@@ -162,7 +161,7 @@ def test_the_module_for_py_trees_needs_py_trees_only(tmp_path: Path) -> None:
 
 def test_the_module_for_py_trees_prints_the_zones_that_hold(tmp_path: Path) -> None:
     root = n("KeepIn", n("KeepOut", n("Wave"), zones="stairs; wet floor"), zones="hall")
-    (tmp_path / "tree.py").write_text(str(compiled(Tree(root), world_vocabulary(), "py_trees")), encoding="utf-8")
+    (tmp_path / "tree.py").write_text(str(compile_to(Tree(root), world_vocabulary(), "py_trees")), encoding="utf-8")
     (tmp_path / "btlang.py").write_text("raise ImportError('it is not needed')", encoding="utf-8")
     ran = python(tmp_path, "tree.py", path=tmp_path)
     assert ran.returncode == 0, ran.stderr
@@ -194,7 +193,7 @@ def test_keyword_entries_make_the_tree_known(tmp_path: Path) -> None:
         Node("DockNow", ports=(("p", "2"),)),
     )
     tree = Tree(Node("Sequence", leaves), models=(NodeModel("Condition", "DockNow", ports, 'Is "docked"\n now\x7f'),))
-    text = compiled(tree, world_vocabulary(), "keywords")
+    text = compile_to(tree, world_vocabulary(), "keywords")
     assert isinstance(text, str)
     file = tmp_path / "words.toml"
     file.write_text(text, encoding="utf-8")
@@ -202,7 +201,7 @@ def test_keyword_entries_make_the_tree_known(tmp_path: Path) -> None:
     assert [vocabulary.entries[leaf.id][0].sort for leaf in leaves] == [
         "action", "condition", "action", "action", "action", "action", "condition"
     ]  # fmt: skip
-    assert compiled(tree, vocabulary, "keywords").count("[[") == 0
+    assert compile_to(tree, vocabulary, "keywords").count("[[") == 0
     Mission(tree, vocabulary).check()
 
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 
 from btlang.api import parse_tree
-from btlang.backends.tree_diff import differences
+from btlang.backends.tree_diff import find_differences
 from btlang.passes import compile_mission
 from btlang.recording.diff import words_of
 from tests.language.letters import letters
@@ -43,14 +43,14 @@ CASES = {
 @pytest.mark.parametrize(("old", "new", "lines"), CASES.values(), ids=CASES)
 def test_differences(old: str, new: str, lines: list[str]) -> None:
     one, other = parse_tree(old), parse_tree(new)
-    assert list(differences(one.tree, other.tree, words_of(one), words_of(other))) == lines
+    assert list(find_differences(one.tree, other.tree, words_of(one), words_of(other))) == lines
 
 
 @searches(40, 2000, deadline=None)
 @given(trees(), trees())
 def test_there_are_some_just_where_the_trees_are_not_equal(one: object, other: object) -> None:
     old, new = (compile_mission(each, letters()) for each in (one, other))  # type: ignore[arg-type]
-    found = list(differences(old, new, lambda node: node.id, lambda node: node.id))
+    found = list(find_differences(old, new, lambda node: node.id, lambda node: node.id))
     equal = old.root == new.root and dict(old.subtrees) == dict(new.subtrees)
     assert (found == []) == equal
 
@@ -58,6 +58,6 @@ def test_there_are_some_just_where_the_trees_are_not_equal(one: object, other: o
 def test_deep_and_long_trees() -> None:
     deep = parse_tree("(" * 300 + "wave" + " then nod) twice" * 300)
     other = parse_tree("(" * 300 + "dock" + " then nod) twice" * 300)
-    assert list(differences(deep.tree, other.tree, words_of(deep), words_of(other))) == ["'wave' is now 'dock'"]
+    assert list(find_differences(deep.tree, other.tree, words_of(deep), words_of(other))) == ["'wave' is now 'dock'"]
     long = parse_tree("wave; nod;" * 3000)
-    assert list(differences(long.tree, long.tree, words_of(long), words_of(long))) == []
+    assert list(find_differences(long.tree, long.tree, words_of(long), words_of(long))) == []

@@ -16,12 +16,11 @@ from itertools import count
 from statistics import median
 from time import perf_counter
 
-from btlang.editing.completion import complete
 from btlang.editing.document import document
-from btlang.editing.hover import hover
+from btlang.editing.help import complete, hover
 from btlang.editing.palette import palette
 from btlang.editing.rename import rename
-from btlang.editing.words import Words
+from btlang.editing.words import RobotWords
 from btlang.server.page.processes import Checker
 from btlang.text.source import Source
 from tests.benchmarks.missions import mission
@@ -42,7 +41,7 @@ def milliseconds(work: Callable[[], object], rounds: int) -> float:
 
 def here(text: str, rounds: int) -> None:
     """In this process."""
-    words, place = Words(), count(len(text) // 2)  # what may follow at the same place is remembered
+    words, place = RobotWords(), count(len(text) // 2)  # what may follow at the same place is remembered
     defined = text.index("task xaa")
     works: dict[str, Callable[[], object]] = {
         "text to tree": lambda: words.mission(Source(text)),
@@ -66,7 +65,7 @@ async def in_a_worker(text: str, rounds: int) -> None:
         taken = []
         for number in range(rounds + 1):
             began = perf_counter()
-            await checker.answer("document", f"{text}# {number}\n", Words())
+            await checker.answer("document", f"{text}# {number}\n", RobotWords())
             taken.append(perf_counter() - began)
     print(f"document in a worker: {median(taken[1:]) * 1e3:.1f} ms")
 

@@ -22,8 +22,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from btlang.cli.examples import examples
-from btlang.diagnostics.diagnostic import Diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError
 from btlang.frontends.mission.reader import read_mission
 from btlang.passes import compile_mission, errors_of
 from btlang.robots.mission_vocabulary import world_vocabulary

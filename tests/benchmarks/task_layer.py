@@ -24,7 +24,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from statistics import median
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.task.commands.client import RobotClient, emergency_stop
 from btlang.task.messages import Pause, Release, Resume, Show, Submit
 

@@ -12,7 +12,7 @@ from btlang.components.checking import check_robot
 from btlang.components.component import ComponentError
 from btlang.components.location import load_class
 from btlang.devices.driver import DeviceError, driver_class
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.files import read_source
 
 ROBOT = 'name = "faulty"\nradius = 0.2\nover = "devices"\n'
 DRIVER = """

@@ -11,7 +11,7 @@ import pytest
 from btlang.components.checking import check_robot, circle, levels
 from btlang.components.component import ComponentError
 from btlang.components.manager import class_of
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.files import read_source
 from btlang.robots.bodies.body import ComponentPart, RosNode
 from btlang.robots.bodies.body_file import read_body
 from btlang.text.source import Source
@@ -103,7 +103,7 @@ def test_the_command(tmp_path: Path) -> None:
 
 def test_a_text_from_elsewhere_runs_no_code(tmp_path: Path) -> None:
     for text in (machine(), WHEELS.replace("simulated", "os:system"), WHEELS.replace("simulated", "serial-board")):
-        from btlang.diagnostics.errors import MissionError
+        from btlang.diagnostics.diagnostic import MissionError
 
         source = Source(BODY.replace('over = "devices"', "") + text, str(tmp_path / "robot.toml"))
         with pytest.raises(MissionError, match="may only be in a robot file on this computer"):

@@ -8,9 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from btlang.diagnostics.diagnostic import Diagnostic
-from btlang.diagnostics.reading import read_source
-from btlang.diagnostics.render import render
+from btlang.diagnostics.diagnostic import Diagnostic, render
+from btlang.diagnostics.files import read_source
 from btlang.frontends.btcpp.files import XmlFiles
 from btlang.frontends.btcpp.project import read_project
 from btlang.projects.checking import project_problems

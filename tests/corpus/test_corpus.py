@@ -11,7 +11,7 @@ from xml.etree import ElementTree
 import pytest
 
 from btlang.cli import main
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.files import read_source
 from btlang.frontends.btcpp.origin import XmlOrigin
 from btlang.frontends.btcpp.reader import read_xml
 from btlang.frontends.btcpp.repair import is_odd

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.files import read_source
 from btlang.frontends.btcpp.origin import XmlOrigin
 from btlang.frontends.btcpp.reader import read_xml
 from btlang.tree.node import Node, Tree

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from btlang.cli import main
-from btlang.diagnostics.reading import read_source
-from btlang.diagnostics.render import render
+from btlang.diagnostics.diagnostic import render
+from btlang.diagnostics.files import read_source
 from btlang.frontends.btcpp.file import XmlFile
 from btlang.frontends.btcpp.reader import read_xml
 from btlang.frontends.btcpp.scan import scanned

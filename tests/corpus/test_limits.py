@@ -11,7 +11,7 @@ import pytest
 
 import btlang
 from btlang.cli import main
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.frontends.btcpp.scan import MOST_DEEP
 from btlang.tree.node import Node, Tree
 from tests.corpus.same import content, read, written

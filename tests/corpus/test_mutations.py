@@ -10,8 +10,8 @@ from typing import TypeVar
 
 import pytest
 
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.files import read_source
 from btlang.frontends.btcpp.origin import XmlOrigin
 from btlang.frontends.btcpp.reader import read_xml
 from btlang.text.source import Source

@@ -6,8 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.render import render
+from btlang.diagnostics.diagnostic import MissionError, render
 from btlang.frontends.btcpp.reader import read_xml
 from btlang.text.source import Source
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.files import read_source
 from btlang.frontends.btcpp.reader import read_xml
 from btlang.text.source import Source
 from btlang.tree.node import Tree

@@ -6,9 +6,8 @@ import os
 from functools import cache
 from pathlib import Path
 
-from btlang.diagnostics.diagnostic import Diagnostic
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError
+from btlang.diagnostics.files import read_source
 from btlang.frontends.btcpp.reader import read_xml
 from btlang.frontends.mission.reader import DEFAULT_PARSER, read_mission
 from btlang.passes import errors_of, run_passes

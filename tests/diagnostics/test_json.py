@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from btlang.cli import main
-from btlang.diagnostics.data import as_json
+from btlang.diagnostics.formats import format_json
 from btlang.text.source import Source
 from tests.diagnostics.samples import sample_diagnostics
 
@@ -81,7 +81,7 @@ def test_one_document(arguments: list[str], code: int, codes: list[str], capsys:
 def test_every_sample_can_be_used() -> None:
     """Keys and types are those that are promised, and lines and columns lead back to the words."""
     problems = sample_diagnostics()
-    document: list[dict[str, Any]] = json.loads(as_json(problems))
+    document: list[dict[str, Any]] = json.loads(format_json(problems))
     assert len(document) == len(set(problems))
     sources = {problem.span.source.name: problem.span.source for problem in problems}
     for told in document:
@@ -104,7 +104,7 @@ def between(source: Source, place: dict[str, Any]) -> str:
 
 def test_order_is_stable() -> None:
     problems = list(sample_diagnostics())
-    assert as_json(problems) == as_json(reversed(problems))
+    assert format_json(problems) == format_json(reversed(problems))
 
 
 def test_strange_characters_do_not_break_it(capsys: pytest.CaptureFixture[str]) -> None:

@@ -12,9 +12,8 @@ import pytest
 
 import btlang
 from btlang.cli import main
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import MOST_BYTES, read_source
-from btlang.diagnostics.render import render
+from btlang.diagnostics.diagnostic import MissionError, render
+from btlang.diagnostics.files import MOST_BYTES, read_source
 from btlang.text.source import Source
 
 XML = '<root BTCPP_format="4"><include path="{}"/><BehaviorTree ID="M"><AlwaysSuccess/></BehaviorTree></root>'

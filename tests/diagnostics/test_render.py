@@ -11,8 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from btlang.cli import main
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.render import mended_line, render
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic, fix_line, render
 from btlang.text.output import has_colour
 from btlang.text.source import Source, Span
 from tests.diagnostics.samples import sample_diagnostics, told
@@ -102,7 +101,7 @@ def test_the_command_colours_where_it_is_asked_to(
 )
 def test_mended_line(mission: str, line: str) -> None:
     problem = next(p for p in told(Source(mission)) if p.fix is not None or p.code != "BT020")
-    assert mended_line(problem) == line
+    assert fix_line(problem) == line
     assert render(problem).endswith(f"\n  Did you mean: {line}") is bool(line)
 
 
@@ -113,13 +112,13 @@ def test_a_fix_that_changes_nothing_is_none() -> None:
 
 def test_a_fix_of_several_lines_is_not_shown() -> None:
     source = Source("wave\nnod")
-    assert mended_line(diagnostic("BT025", Span(source, 0, 4), fix=(Span(source, 2, 6), "x"))) == ""
-    assert mended_line(diagnostic("BT025", Span(source, 0, 4), fix=(Span(source, 0, 4), "x\ny"))) == ""
+    assert fix_line(diagnostic("BT025", Span(source, 0, 4), fix=(Span(source, 2, 6), "x"))) == ""
+    assert fix_line(diagnostic("BT025", Span(source, 0, 4), fix=(Span(source, 0, 4), "x\ny"))) == ""
 
 
 def test_a_mended_line_cannot_control_the_terminal() -> None:
     source = Source("wave \x1b[31mnod")
-    assert mended_line(diagnostic("BT025", Span(source, 0, 4), fix=(Span(source, 0, 4), "nod"))) == "nod  [31mnod"
+    assert fix_line(diagnostic("BT025", Span(source, 0, 4), fix=(Span(source, 0, 4), "nod"))) == "nod  [31mnod"
 
 
 def test_the_fix_of_a_sample_mends_it() -> None:

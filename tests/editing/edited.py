@@ -7,11 +7,11 @@ import sys
 from collections.abc import Sequence
 
 from btlang.api import parse_tree
-from btlang.diagnostics.errors import MissionError
-from btlang.editing.changes import Change, changed
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.editing.changes import Change, apply_changes
 from btlang.editing.edits import Edit, Edited, edit, read_edit
 from btlang.editing.syntax import Syntax
-from btlang.editing.words import Words
+from btlang.editing.words import RobotWords
 from btlang.text.source import Source
 from btlang.tree import ast
 
@@ -22,7 +22,7 @@ def edit_sample(text: str) -> int:
     """
     first, _, mission = text.partition("\n")
     try:
-        edit(Source(mission), Words(), read_edit(json.loads(first.removeprefix("# edit "))))
+        edit(Source(mission), RobotWords(), read_edit(json.loads(first.removeprefix("# edit "))))
     except MissionError as error:
         print(error, file=sys.stderr)
         return 2
@@ -44,9 +44,9 @@ def edited(text: str, do: str, words: str, *, last: str = "", to: str = "", nth:
     numbers = {key: number(text, value) for key, value in (("last", last), ("to", to)) if value}
     with_words = more.pop("given", "")
     wanted = Edit(do, number(text, words, nth), **numbers, **more, words=with_words)  # type: ignore[arg-type]
-    made = edit(Source(text), Words(), wanted)
+    made = edit(Source(text), RobotWords(), wanted)
     [change] = (Change(**each) for each in made["changes"])
-    return Edited(changed(text, [change]), change, made["start"], made["end"])
+    return Edited(apply_changes(text, [change]), change, made["start"], made["end"])
 
 
 def statements(text: str) -> Sequence[ast.Ast]:

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import re
 
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.render import render
-from btlang.editing.changes import Change, changed
+from btlang.diagnostics.diagnostic import MissionError, render
+from btlang.editing.changes import Change, apply_changes
 from btlang.editing.rename import rename
-from btlang.editing.words import Words
+from btlang.editing.words import RobotWords
 from btlang.text.source import Source
 
 
-def renamed(text: str, at: int, name: str, words: Words) -> str:
+def renamed(text: str, at: int, name: str, words: RobotWords) -> str:
     """The text with the changes. Raises MissionError."""
-    return changed(text, [Change(**change) for change in rename(Source(text), at, words, name)["changes"]])
+    return apply_changes(text, [Change(**change) for change in rename(Source(text), at, words, name)["changes"]])
 
 
 def refusal(text: str) -> str:
@@ -22,7 +21,7 @@ def refusal(text: str) -> str:
     asked = re.match(r"# (.+) -> (.+)\n", text)
     assert asked is not None
     try:
-        renamed(text, text.index(asked[1], asked.end()), asked[2], Words())
+        renamed(text, text.index(asked[1], asked.end()), asked[2], RobotWords())
     except MissionError as error:
         return render(error.diagnostics[0], False)
     return ""

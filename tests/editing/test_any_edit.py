@@ -12,8 +12,8 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from btlang.diagnostics.errors import MissionError
-from btlang.editing.changes import changed
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.editing.changes import apply_changes
 from btlang.editing.edits import Edit, Editor
 from btlang.editing.lines import comments_in
 from btlang.editing.syntax import Syntax, Unplaced
@@ -216,7 +216,7 @@ def check(text: str, edit: Edit) -> bool:
     if wanted is not None:
         assert flat(after.root) == flat(wanted), (text, edit, edited.text)
     assert not comments_in(text, letters().orthography) - comments_in(edited.text, letters().orthography)
-    assert changed(text, [edited.change]) == edited.text
+    assert apply_changes(text, [edited.change]) == edited.text
     place = 0
     for part in outside(text, edit):
         assert part in edited.text[place:], (text, edit, edited.text)

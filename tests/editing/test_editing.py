@@ -10,12 +10,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from btlang.diagnostics.errors import MissionError
-from btlang.editing.completion import complete
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.editing.document import document, text_messages
-from btlang.editing.hover import hover
+from btlang.editing.help import complete, hover
 from btlang.editing.palette import palette
-from btlang.editing.words import Words
+from btlang.editing.words import RobotWords
 from btlang.printer.mission import english as printed
 from btlang.text.source import Source
 from tests.language.letters import ENTRIES, letters
@@ -23,8 +22,8 @@ from tests.language.sentences import broken_missions, english, missions
 from tests.printer import trees
 from tests.profiles import searches
 
-LETTERS: Any = Words(ENTRIES)  # type: ignore[arg-type]
-SHIPPED = Words()
+LETTERS: Any = RobotWords(ENTRIES)  # type: ignore[arg-type]
+SHIPPED = RobotWords()
 TEA = """# for the afternoon
 include "tea.txt"
 patrol is go to the lobby, then wave
@@ -140,7 +139,7 @@ def test_a_document_has_its_tree_and_outline(tmp_path: Path) -> None:
 
 
 def test_what_can_be_changed_of_a_node() -> None:
-    shown = document(Source("if the battery is low, go to the lab\nrepeat wave twice\nwave"), Words())
+    shown = document(Source("if the battery is low, go to the lab\nrepeat wave twice\nwave"), RobotWords())
     found = {node["label"]: shown["kinds"][node["kind"]] for node in shown["nodes"]}
     assert found["battery is low"]["sort"] == "condition"
     assert found["go to lab"]["values"] == [("place", "place", "lab")]
@@ -212,7 +211,7 @@ def test_completions_end_at_their_place() -> None:
 
 @pytest.mark.parametrize("world", [None, BARN])
 def test_all_of_the_palette_can_be_put_in(world: str | None) -> None:
-    words = Words(world_text=world or "")
+    words = RobotWords(world_text=world or "")
     text = 'look is look around\ngreet {someone} means wave at {someone}\n"quick" is nod\nlook\n'
     topics = palette(Source(text), words)["topics"]
     own, *others = topics
@@ -228,7 +227,7 @@ def test_all_of_the_palette_can_be_put_in(world: str | None) -> None:
 
 
 def test_words_that_cannot_be_used_are_told() -> None:
-    words = Words(("nowhere.toml",))
+    words = RobotWords(("nowhere.toml",))
     assert [each["code"] for each in document(Source("wave"), words)["messages"]] == ["BT001"]
     with pytest.raises(MissionError, match="BT001"):
         palette(Source("wave"), words)

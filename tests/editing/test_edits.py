@@ -7,10 +7,10 @@ import json
 import pytest
 
 from btlang.api import parse_tree
-from btlang.diagnostics.errors import MissionError
-from btlang.editing.changes import changed
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.editing.changes import apply_changes
 from btlang.editing.edits import read_edit
-from btlang.editing.forms import FORMS
+from btlang.editing.palette import FORMS
 
 from .edited import edited
 
@@ -157,7 +157,7 @@ def test_texts(case: str) -> None:
         given["nth"] = int(given["nth"])  # type: ignore[assignment]
     after = edited(TEA, **given)  # type: ignore[arg-type]
     assert lines(TEA, after.text) == expected
-    assert changed(TEA, [after.change]) == after.text
+    assert apply_changes(TEA, [after.change]) == after.text
     assert after.start < after.end <= len(after.text) or given["do"] == "delete"
 
 

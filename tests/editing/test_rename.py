@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.editing.rename import rename
-from btlang.editing.words import Words
+from btlang.editing.words import RobotWords
 from btlang.printer.mission import english
 from btlang.text.source import Source
 from tests.editing.renames import renamed
@@ -18,8 +18,8 @@ from tests.language.letters import ENTRIES, letters
 from tests.printer import trees
 from tests.profiles import searches
 
-LETTERS: Any = Words(ENTRIES)  # type: ignore[arg-type]
-SHIPPED = Words()
+LETTERS: Any = RobotWords(ENTRIES)  # type: ignore[arg-type]
+SHIPPED = RobotWords()
 TOUR = """# patrol: the usual round
 The patrol is go to the lobby, then wave  # patrol
 Greet {someone} for {time} means wave at {someone} for {time} and say hello

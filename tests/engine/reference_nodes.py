@@ -6,7 +6,8 @@ from collections import deque
 from typing import Any, cast
 
 from btlang.engine.blackboard import Blackboard
-from btlang.engine.script.script import ScriptFailed, compile_script, truth
+from btlang.engine.script.script import compile_script
+from btlang.engine.script.values import ScriptFailed, truth
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 
 from .reference_node import ReferenceNode

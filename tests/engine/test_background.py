@@ -14,7 +14,7 @@ import pytest
 
 from btlang.engine.engine import Engine
 from btlang.engine.instance import EngineError
-from btlang.engine.leaves.leaf import ActionFailed, Failed, described
+from btlang.engine.leaves.leaf import ActionFailed, Failed, describe_exception
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
 from btlang.tree.node import Node
 
@@ -261,7 +261,7 @@ def test_what_it_raises_when_it_is_halted_is_told(world: World, kind: str, probl
     engine.halt()
     assert engine.close(PATIENCE) == []
     [failure] = engine.take_halt_failures()
-    assert (failure.path, failure.reason, failure.exception) == ("/1", described(problem), problem)
+    assert (failure.path, failure.reason, failure.exception) == ("/1", describe_exception(problem), problem)
     assert engine.take_halt_failures() == []
 
 

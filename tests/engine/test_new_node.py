@@ -9,7 +9,7 @@ import pytest
 
 import btlang
 from btlang.engine.compile import SEMANTICS
-from btlang.engine.instance import NodeInstance, apart
+from btlang.engine.instance import NodeInstance, split_children
 from btlang.engine.status import FAILURE, RUNNING, SUCCESS
 from btlang.tree.catalogue import CATALOGUE, MOST_NODES, NodeKind, Port
 
@@ -29,7 +29,7 @@ XML = """
 
 def majority(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
     """Ticks all children; SUCCESS if at least `needed` of them succeed in the same tick."""
-    ticks, halts = apart(children)
+    ticks, halts = split_children(children)
     needed = instance.number("needed", most=len(ticks))
 
     def tick() -> int:

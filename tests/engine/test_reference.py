@@ -35,7 +35,7 @@ LEFT_RUNNING = n("LoopString", n("RateController", Node("F:k"), hz=0.4), queue="
 def test_engine_equals_reference(shape: Node, orders: str, watched: bool, fused: bool) -> None:
     drawn, world = Drawn(shape), World()
     drawn.bind(world)
-    variants = nullcontext() if fused else patch("btlang.engine.compile.fused", lambda usual, *_: usual)
+    variants = nullcontext() if fused else patch("btlang.engine.compile.choose_compiler", lambda usual, *_: usual)
     with variants:
         check(drawn, world, orders, watched)
 

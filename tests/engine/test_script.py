@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.engine.script.script import ScriptError, ScriptFailed, as_text, compile_script
-from btlang.engine.script.values import literal
+from btlang.engine.script.script import compile_script
+from btlang.engine.script.tokens import ScriptError
+from btlang.engine.script.values import ScriptFailed, as_text, literal
 from tests.profiles import searches
 
 ENUMS = {"RED": 1, "BLUE": 3}

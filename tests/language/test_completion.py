@@ -10,7 +10,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.frontends.mission.completion.completer import Completion, completions
 from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.vocabulary.lexicon import Lexicon

@@ -13,10 +13,8 @@ from prompt_toolkit.input import create_pipe_input
 from prompt_toolkit.output import DummyOutput
 
 import btlang
-from btlang.diagnostics.data import as_data
-from btlang.diagnostics.diagnostic import Diagnostic
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.render import render
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, render
+from btlang.diagnostics.formats import to_data
 from btlang.frontends.mission.completion.completer import completions
 from btlang.repl.draft import MissionDraft
 from btlang.repl.screen import ReplScreen
@@ -187,7 +185,7 @@ def test_no_correction_changes_the_meaning(text: str, parser: str) -> None:
     for problem in errors(text, parser):
         assert problem.fix is None
         assert "Did you mean" not in render(problem)
-        assert as_data(problem)["fix"] is None
+        assert to_data(problem)["fix"] is None
 
 
 @pytest.mark.parametrize("parser", PARSERS)
@@ -195,7 +193,7 @@ def test_no_correction_changes_the_meaning(text: str, parser: str) -> None:
 def test_slips_are_corrected(broken: str, sound: str, parser: str) -> None:
     problem = next(problem for problem in errors(broken, parser) if problem.fix is not None)
     assert mended(broken, problem) == sound
-    fix = as_data(problem)["fix"]
+    fix = to_data(problem)["fix"]
     assert broken[: fix["column"] - 1] + fix["text"] + broken[fix["end_column"] - 1 :] == sound
     btlang.parse_tree(sound)
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import pytest
 
 from btlang.api import parse_tree
-from btlang.diagnostics.diagnostic import Diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError
 
 
 def problems(text: str) -> list[Diagnostic]:

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.frontends.mission.parsers import lark_parser, shunting_yard
 from btlang.frontends.mission.parsers.build import Builder
 from btlang.frontends.mission.parsers.parse_error import ParseError

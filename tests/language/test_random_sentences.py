@@ -6,7 +6,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 import btlang
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.tree.node import Tree
 from tests.language.test_meaning import WORLD, rows
 from tests.profiles import searches

@@ -11,7 +11,7 @@ import pytest
 import btlang
 from btlang.api import format_mission
 from btlang.cli import main
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.frontends.mission.completion.completer import completions
 from btlang.frontends.mission.reader import PARSERS
 from btlang.printer.mission import english

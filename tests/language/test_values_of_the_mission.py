@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import btlang
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.engine.status import FAILURE, SUCCESS
 from btlang.run.events import Said
 from btlang.tree.dump import plain

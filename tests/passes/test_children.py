@@ -7,7 +7,7 @@ from contextlib import suppress
 import pytest
 
 from btlang.api import parse_tree
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.tree.catalogue import CATALOGUE
 
 INNER = [node_id for node_id, kind in CATALOGUE.items() if kind.most]

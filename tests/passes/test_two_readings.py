@@ -10,12 +10,11 @@ from typing import NamedTuple
 from hypothesis import example, given, reject
 from hypothesis import strategies as st
 
-from btlang.diagnostics.diagnostic import Diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError
 from btlang.frontends.mission.reader import read_mission
 from btlang.passes import compile_mission
 from btlang.passes.compilation import Compilation
-from btlang.passes.lint.two_readings import two_readings
+from btlang.passes.lint.two_readings import find_two_readings
 from btlang.printer.mission import english
 from btlang.text.source import Source
 from btlang.tree.node import Node, Tree
@@ -52,7 +51,7 @@ def read(text: str) -> Read:
     mission = read_mission(Source(text), letters()).mission
     tree = compile_mission(mission, letters())
     subject = Compilation(letters(), mission, tree)
-    return Read(subject, tree, list(two_readings(subject)))
+    return Read(subject, tree, list(find_two_readings(subject)))
 
 
 def found_in(text: str) -> Read:

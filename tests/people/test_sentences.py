@@ -11,7 +11,7 @@ from functools import cache
 
 import pytest
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.tree.node import Node
 from tests.conftest import matches_golden
 from tests.people.notation import FOLDER, Sample, compiled, parsed, samples, written

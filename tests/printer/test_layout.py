@@ -10,10 +10,10 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from btlang.api import format_mission, parse_tree
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.frontends.mission.reader import read_mission
 from btlang.passes import compile_mission
-from btlang.printer.layout import laid_out
+from btlang.printer.layout import format_layout
 from btlang.text.source import Source
 from btlang.text.words import split
 from btlang.tree.node import Tree
@@ -71,8 +71,8 @@ def comments(text: str) -> list[str]:
 
 def check_layout(text: str, vocabulary: Lexicon) -> None:
     before = split(Source(text), vocabulary.orthography)
-    done = laid_out(Source(text), vocabulary.orthography)
-    assert laid_out(Source(done), vocabulary.orthography) == done
+    done = format_layout(Source(text), vocabulary.orthography)
+    assert format_layout(Source(done), vocabulary.orthography) == done
     after = split(Source(done), vocabulary.orthography)
     assert [w for w in after.words if w != "\n"] == [w for w in before.words if w != "\n"]
     assert len(after.lines) == len(before.lines)

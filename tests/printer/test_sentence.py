@@ -9,11 +9,10 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.frontends.mission.reader import read_mission
 from btlang.passes import compile_mission
-from btlang.printer import blocks
-from btlang.printer.mission import english
+from btlang.printer.mission import english, lines_of
 from btlang.printer.printer import Printer
 from btlang.printer.sentence import PRINTERS, statements
 from btlang.robots.mission_vocabulary import world_vocabulary
@@ -98,9 +97,9 @@ def test_syntax_trees_keep_their_tree(mission: ast.Program, is_mixed: bool) -> N
 def test_blocks_keep_the_tree(mission: ast.Program, width: int, brackets: str) -> None:
     tree = compile_mission(mission, letters())
     speaker = Printer(PRINTERS, letters(), mission.definitions, brackets)
-    lines = [line for one in mission.definitions for line in blocks.lines_of(one, speaker, width, least=0)]
+    lines = [line for one in mission.definitions for line in lines_of(one, speaker, width, least=0)]
     for item, joined in statements(mission.body):
-        lines += blocks.lines_of(item, speaker, width, joined, least=0)
+        lines += lines_of(item, speaker, width, joined, least=0)
     for parser in PARSERS:
         assert compiled("\n".join(lines), letters(), parser)[1] == tree, "\n".join(lines)
 
@@ -228,7 +227,7 @@ def test_depth_does_not_matter() -> None:
     mission = ast.Program(node, (), trees.SPAN)
     text = english(mission, letters())
     assert compiled(text, letters(), "shunting-yard")[1] == compile_mission(mission, letters())
-    assert len(blocks.lines_of(node, Printer(PRINTERS, letters()), 100)) == 3
+    assert len(lines_of(node, Printer(PRINTERS, letters()), 100)) == 3
 
 
 def test_wrong_brackets_are_refused() -> None:
@@ -248,4 +247,4 @@ def test_a_condition_is_never_a_block() -> None:
     mission, _ = compiled(text, letters(), PARSERS[0])
     [definition] = mission.definitions
     printer = Printer(PRINTERS, letters(), mission.definitions)
-    assert len(blocks.lines_of(definition, printer, 1, least=0)) == 1
+    assert len(lines_of(definition, printer, 1, least=0)) == 1

@@ -11,7 +11,7 @@ import pytest
 
 from btlang.api import parse_tree
 from btlang.cli import main
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.engine.compile import outline
 from btlang.engine.status import IDLE
 from btlang.recording.film import Film, try_mission

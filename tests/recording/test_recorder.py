@@ -23,7 +23,7 @@ from mcap.stream_reader import StreamReader
 
 import btlang
 from btlang.cli import main
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.recording.channels import THINGS
 from btlang.recording.reader import read_recording
 from btlang.run.events import Ended, PeriodPassed, Said, Sampled

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from btlang.cli import main
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.recording.film import side_by_side
 from tests.recording.runs import recorded
 

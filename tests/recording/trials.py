@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 
 from btlang.api import parse_tree
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.recording.film import try_mission
 
 

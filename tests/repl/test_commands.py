@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.repl.commands import COMMANDS, Leave, ReplCommands, command_of, near_command
 from btlang.repl.draft import MissionDraft
 from btlang.repl.keys import entries, needs_more

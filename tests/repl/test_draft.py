@@ -9,7 +9,7 @@ import pytest
 
 import btlang
 from btlang import Outcome
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.engine.status import FAILURE, SUCCESS
 from btlang.repl.draft import Compiled, MissionDraft
 from btlang.run.events import Event

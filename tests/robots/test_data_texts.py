@@ -9,7 +9,7 @@ from collections.abc import Callable
 import pytest
 
 import btlang
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.recording.bundle import files_of
 from btlang.robots.bodies.body_file import read_body
 from btlang.robots.worlds.world_file import read_world

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.vocabulary.load import load_vocabulary
 from tests.ros.domains import free_domain
 

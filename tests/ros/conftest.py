@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.ros import interfaces
 from btlang.ros.available import require_interfaces
 from tests.ros.domains import free_domain

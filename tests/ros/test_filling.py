@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.vocabulary.entry import Entry, SlotSpec

@@ -13,7 +13,7 @@ import pytest
 from std_msgs.msg import String
 
 import btlang
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from tests.lies.lies import ROS, Lie
 from tests.lies.scene import Result
 from tests.lies.test_lies import judge, judge_both, mission, pairs, scene, scene_of_both, some

@@ -12,7 +12,7 @@ import pytest
 from rclpy.action import ActionClient, ActionServer
 from std_msgs.msg import String
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.ros.node import SpunNode
 from tests.ros.client import check_nodes
 from tests.ros.processes import wait_until

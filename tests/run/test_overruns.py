@@ -11,12 +11,11 @@ from typing import Any
 import pytest
 
 import btlang
-from btlang.engine import timing
-from btlang.engine.clock import Clock
+from btlang.engine import clock as engine_clock
+from btlang.engine.clock import Clock, LeafTimer
 from btlang.engine.engine import Engine
 from btlang.engine.leaves.leaf import LeafBinding
 from btlang.engine.status import RUNNING, SUCCESS
-from btlang.engine.timing import Stopwatch
 from btlang.run import pace as overruns
 from btlang.run import terminal
 from btlang.run.bus import Bus
@@ -31,7 +30,7 @@ class Time:
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.now = 50.0
-        monkeypatch.setattr(timing, "perf_counter", lambda: self.now)
+        monkeypatch.setattr(engine_clock, "perf_counter", lambda: self.now)
         monkeypatch.setattr(overruns, "perf_counter", lambda: self.now)
 
     def leaf(self, *seconds: float) -> LeafBinding:
@@ -50,7 +49,7 @@ def run(root: Node, leaves: dict[str, LeafBinding], speed: float = 10.0) -> tupl
     told: list[Overrun] = []
     bus = Bus()
     bus.add(lambda event: told.append(event) if isinstance(event, Overrun) else None)
-    engine = Engine(Tree(root), leaves.get, clock=bus.clock, stopwatch=Stopwatch())
+    engine = Engine(Tree(root), leaves.get, clock=bus.clock, stopwatch=LeafTimer())
     outcome = Runner(engine, bus=bus, rate=1, speed=speed).run()
     assert outcome.status == SUCCESS
     return outcome, told
@@ -119,7 +118,7 @@ def test_nothing_is_measured_at_full_speed(monkeypatch: pytest.MonkeyPatch) -> N
 
 
 def test_no_wrapper_is_compiled_in_without_a_stopwatch(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(timing, "perf_counter", lambda: 1 / 0)
+    monkeypatch.setattr(engine_clock, "perf_counter", lambda: 1 / 0)
     engine = Engine(Tree(A), {"A": LeafBinding(lambda: None)}.get, clock=Clock())
     assert engine.tick() == SUCCESS
 

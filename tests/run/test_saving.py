@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 import btlang
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.engine.status import RUNNING
 from btlang.run.events import Event, Printed, Said
 from btlang.session import Run, Session

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from btlang.api import parse_tree
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.files import read_source
 from btlang.frontends.mission.reader import read_mission
 from btlang.printer.mission import english
 from btlang.robots.mission_vocabulary import world_vocabulary

@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 import btlang
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.engine.status import FAILURE, SUCCESS
 from btlang.run import runner
 from btlang.run.events import Troubled

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from btlang.cli import main
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.server.accounts import accounts as module
 from btlang.server.accounts.accounts import Accounts, UserRole
 from btlang.task.store.backup import restore_backup

@@ -17,7 +17,7 @@ import pytest
 from websockets.exceptions import InvalidStatus
 
 from btlang.cli import main
-from btlang.editing.words import Words
+from btlang.editing.words import RobotWords
 from btlang.server.accounts.accounts import Accounts
 from btlang.server.page import editor, local_page
 from btlang.server.page.editor import EditorFiles
@@ -239,7 +239,7 @@ def test_the_cookie_is_for_this_site_and_its_scripts_cannot_read_it(
 def test_a_token_is_good_for_a_minute(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from starlette.testclient import TestClient
 
-    words = Words(file=str(tmp_path / "tour.txt"))
+    words = RobotWords(file=str(tmp_path / "tour.txt"))
     with closing(Accounts(str(tmp_path / "accounts"), clock=lambda: 0.0)) as accounts:
         api = editor.EditorApi(accounts, EditorFiles(words), words, 1)
         client: Any = TestClient(api.app(), base_url="http://127.0.0.1:1")

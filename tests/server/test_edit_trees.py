@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from btlang.api import parse_tree
-from btlang.editing.words import Words
+from btlang.editing.words import RobotWords
 from btlang.server.page.editor import TreeEditorFiles, XmlEditorFiles, english_beside, tree_sort
 
 TREE = """<root BTCPP_format="4" main_tree_to_execute="Main">
@@ -22,7 +22,7 @@ TREE = """<root BTCPP_format="4" main_tree_to_execute="Main">
 def test_a_tree_in_xml_is_opened_in_english_and_saved_onto_itself(tmp_path: Path) -> None:
     tree, beside = tmp_path / "tree.xml", tmp_path / "tree.edited.txt"
     tree.write_text(TREE)
-    files = XmlEditorFiles(Words(file=english_beside(str(tree))), str(tree))
+    files = XmlEditorFiles(RobotWords(file=english_beside(str(tree))), str(tree))
     assert (files.name, tree_sort(str(tree))) == (beside.name, "xml")
     first = files.read(files.name)
     assert first["tree"] == "tree.xml"
@@ -47,7 +47,7 @@ def test_a_tree_in_xml_is_opened_in_english_and_saved_onto_itself(tmp_path: Path
 def test_what_others_have_changed_stays(tmp_path: Path) -> None:
     tree = tmp_path / "tree.xml"
     tree.write_text(TREE)
-    files = XmlEditorFiles(Words(file=english_beside(str(tree))), str(tree))
+    files = XmlEditorFiles(RobotWords(file=english_beside(str(tree))), str(tree))
     first = files.read(files.name)
     by_hand = TREE.replace('"kitchen"', '"lab"')
     tree.write_text(by_hand)
@@ -61,7 +61,7 @@ def test_what_others_have_changed_stays(tmp_path: Path) -> None:
 def test_a_tree_in_json_is_saved_as_a_copy(tmp_path: Path) -> None:
     tree = tmp_path / "tree.json"
     tree.write_text(str(parse_tree(TREE).to("json")))
-    files = TreeEditorFiles(Words(file=english_beside(str(tree))), str(tree))
+    files = TreeEditorFiles(RobotWords(file=english_beside(str(tree))), str(tree))
     assert (files.name, tree_sort(str(tree))) == ("tree.edited.txt", "json")
     first = files.read(files.name)
     assert (first["tree"], first["copy"], first["revision"]) == ("tree.json", "tree.edited.json", "")
@@ -99,7 +99,7 @@ def test_a_file_that_has_the_name_of_a_copy_stays(tmp_path: Path) -> None:
     tree, copy = tmp_path / "tree.json", tmp_path / "tree.edited.json"
     tree.write_text(str(parse_tree(TREE).to("json")))
     copy.write_text("mine")
-    files = TreeEditorFiles(Words(file=english_beside(str(tree))), str(tree))
+    files = TreeEditorFiles(RobotWords(file=english_beside(str(tree))), str(tree))
     assert "another program" in files.save(files.name, files.read(files.name)["text"], "").data["problem"]
     assert copy.read_text() == "mine"
 
@@ -108,7 +108,7 @@ def test_a_file_that_has_the_name_of_a_copy_stays(tmp_path: Path) -> None:
 def test_a_tree_is_known_by_what_is_in_it(tmp_path: Path, name: str) -> None:
     tree = tmp_path / name
     tree.write_text(str(parse_tree(TREE).to("json")))
-    files = TreeEditorFiles(Words(file=english_beside(str(tree))), str(tree), "Grab")
+    files = TreeEditorFiles(RobotWords(file=english_beside(str(tree))), str(tree), "Grab")
     text = files.read(files.name)["text"]
     assert files.save(files.name, text, "").ok
     assert parse_tree((tmp_path / "tree.edited.json").read_text()).tree == parse_tree(TREE, main="Grab").tree

@@ -13,11 +13,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from btlang.api import parse_tree
-from btlang.editing.words import Words
+from btlang.editing.words import RobotWords
 from btlang.server.http.access import AccessError
 from btlang.server.page import processes as checking
 from btlang.server.page.processes import DOES, Checker, answer, arguments_of, in_units
-from btlang.text.utf16 import Units
+from btlang.text.source import Utf16Units
 from tests.profiles import amount, searches
 from tests.server.doors import Door
 
@@ -31,13 +31,13 @@ def in_utf16(text: str, start: int, end: int) -> str:
 
 
 def unit_of(words: str) -> int:
-    return Units(TEXT).unit(TEXT.index(words))
+    return Utf16Units(TEXT).unit(TEXT.index(words))
 
 
 @searches(200, 5000)
 @given(st.text(alphabet=st.sampled_from(f"a\n{ROBOT_FACE}\u00e9\uffff\U00010000\ud800")))
 def test_places_are_counted_as_pages_do(text: str) -> None:
-    units = Units(text)
+    units = Utf16Units(text)
     assert units.length == len(text.encode("utf-16-le", "surrogatepass")) // 2
     for at in range(len(text) + 1):
         assert units.unit(at) == len(text[:at].encode("utf-16-le", "surrogatepass")) // 2
@@ -47,24 +47,24 @@ def test_places_are_counted_as_pages_do(text: str) -> None:
 
 
 def test_answers_have_places_as_pages_count_them() -> None:
-    shown = answer("document", TEXT, Words())
+    shown = answer("document", TEXT, RobotWords())
     nod = next(each for each in shown["nodes"] if each["id"] == "Nod")
     assert in_utf16(TEXT, nod["start"], nod["end"]) == "nod"
     patrol, used = shown["outline"][:2]
     assert in_utf16(TEXT, patrol["start"], patrol["end"]) == "patrol"
     assert in_utf16(TEXT, *used["of"]) == "patrol"
     slip = TEXT + "wavee then wave"
-    [wrong] = answer("check", slip, Words())["messages"]
+    [wrong] = answer("check", slip, RobotWords())["messages"]
     assert in_utf16(slip, wrong["start"], wrong["end"]) == "wavee"
     assert in_utf16(slip, wrong["fix"]["start"], wrong["fix"]["end"]) == "wavee"
     at = arguments_of("hover", {"at": unit_of("nod")}, TEXT)
-    assert answer("hover", TEXT, Words(), at)["found"]["id"] == "Nod"
+    assert answer("hover", TEXT, RobotWords(), at)["found"]["id"] == "Nod"
     at = arguments_of("rename", {"at": unit_of("patrol then"), "name": "round"}, TEXT)
-    changes = answer("rename", TEXT, Words(), at)["changes"]
+    changes = answer("rename", TEXT, RobotWords(), at)["changes"]
     assert [in_utf16(TEXT, each["start"], each["end"]) for each in changes] == ["patrol", "patrol"]
-    offered = answer("complete", TEXT + "go to the kit", Words())["completions"]
+    offered = answer("complete", TEXT + "go to the kit", RobotWords())["completions"]
     assert [each["text"] for each in offered] == ["kitchen", "kitchen door"]
-    assert {each["start"] for each in offered} == {Units(TEXT).length + len("go to the ")}
+    assert {each["start"] for each in offered} == {Utf16Units(TEXT).length + len("go to the ")}
 
 
 def test_a_selection_behind_changes_is_counted_in_the_new_text() -> None:
@@ -78,7 +78,7 @@ def test_the_newest_request_of_a_page_wins() -> None:
         with closing(Checker()) as checker:
 
             def ask(text: str, kind: str = "check", user: str = "ann", page: str | None = "1") -> Any:
-                return checker.answer(kind, text, Words(), {}, user, page)
+                return checker.answer(kind, text, RobotWords(), {}, user, page)
 
             others = [ask("nod", "format"), ask("nod", page="2"), ask("nod", page=None), ask("nod", user="bob")]
             done = await asyncio.gather(*map(ask, ("wave", "nod", "dock", "nod")), *others, return_exceptions=True)
@@ -94,11 +94,11 @@ def test_the_newest_request_of_a_page_wins() -> None:
 def test_slow_texts_of_one_user_delay_others_once() -> None:
     async def asked() -> None:
         with closing(Checker()) as checker:
-            await checker.answer("check", "wave", Words())  # its process is up
+            await checker.answer("check", "wave", RobotWords())  # its process is up
             ended: list[str] = []
 
             async def ask(user: str, text: str) -> None:
-                await checker.answer("check", text, Words(), {}, user)
+                await checker.answer("check", text, RobotWords(), {}, user)
                 ended.append(user)
 
             await asyncio.gather(*(ask("slow", "wave\n" * 2000) for _ in range(5)), ask("quick", "wave"))
@@ -182,7 +182,7 @@ def test_any_text_has_an_answer_in_time(door: Door, kind: str) -> None:
 
 
 def test_a_mission_as_xml() -> None:
-    made = answer("xml", TEXT, Words())
+    made = answer("xml", TEXT, RobotWords())
     assert made["ok"]
     assert made["xml"] == parse_tree(TEXT).to("xml")
-    assert answer("xml", "wavee", Words())["messages"][0]["code"] == "BT010"
+    assert answer("xml", "wavee", RobotWords())["messages"][0]["code"] == "BT010"

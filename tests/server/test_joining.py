@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.server.accounts.accounts import Accounts
 from btlang.server.fleet.fleet import VALID, Fleet, pin_in
 from btlang.server.live.robot_connection import STREAM

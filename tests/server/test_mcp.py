@@ -15,7 +15,7 @@ from typing import Any
 
 import pytest
 
-from btlang.diagnostics.reading import MOST_BYTES
+from btlang.diagnostics.files import MOST_BYTES
 from btlang.server.mcp import Tools
 from btlang.vocabulary.decorators import action
 

@@ -26,7 +26,7 @@ from std_msgs.msg import ByteMultiArray, String
 from std_srvs.srv import SetBool
 
 from btlang.cli.values import ros_name
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.ros.available import require_package
 from btlang.ros.goals import GoalServer, HeldGoal
 from btlang.ros.lease import Leases

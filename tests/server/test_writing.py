@@ -15,7 +15,7 @@ from starlette.applications import Starlette
 from starlette.routing import Route
 
 from btlang.editing.edits import Edit
-from btlang.editing.words import Words
+from btlang.editing.words import RobotWords
 from btlang.server.accounts.accounts import Accounts
 from btlang.server.http.access import AccessError
 from btlang.server.http.app import Api
@@ -53,7 +53,7 @@ def test_a_mission_is_checked_and_explained(door: Door) -> None:
     "text", ["", "\0", "\ud800", 'words "evil.toml"\nhop', 'include "/etc/passwd"', "( " * 3000, "<root/>"]
 )
 def test_any_text_has_an_answer(kind: str, text: str) -> None:
-    found = answer(kind, text, Words(), ARGUMENTS.get(kind, {}))
+    found = answer(kind, text, RobotWords(), ARGUMENTS.get(kind, {}))
     assert isinstance(found["ok"], bool)
     assert "root:" not in str(found)
 
@@ -61,7 +61,7 @@ def test_any_text_has_an_answer(kind: str, text: str) -> None:
 def test_checking_runs_no_python(tmp_path: Path) -> None:
     (tmp_path / "hop.py").write_text(f"open({str(tmp_path / 'ran')!r}, 'w').close()\ndef hop(): return True\n")
     (tmp_path / "hop.toml").write_text('[[action]]\nphrase = "hop"\nid = "Hop"\ncall = "hop:hop"\n')
-    words = Words((str(tmp_path / "hop.toml"),))
+    words = RobotWords((str(tmp_path / "hop.toml"),))
     text = "round is hop then wave; round"
     assert all(answer(kind, text, words, ARGUMENTS.get(kind, {}))["ok"] for kind in checking.DOES)
     assert not (tmp_path / "ran").exists()
@@ -73,11 +73,11 @@ def test_a_text_that_takes_too_long_ends_with_its_process(monkeypatch: pytest.Mo
     async def asked() -> None:
         with closing(Checker()) as checker:
             with pytest.raises(AccessError, match="too long to read"):
-                await checker.answer("check", "wave", Words())
+                await checker.answer("check", "wave", RobotWords())
             with pytest.raises(AccessError, match="may have"):
-                await checker.answer("check", "wave " * 100_000, Words())
+                await checker.answer("check", "wave " * 100_000, RobotWords())
             monkeypatch.setattr(checking, "_PATIENCE", 20.0)
-            assert json.loads(await checker.answer("check", "wave", Words()))["ok"]
+            assert json.loads(await checker.answer("check", "wave", RobotWords()))["ok"]
 
     asyncio.run(asked())
 

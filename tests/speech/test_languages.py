@@ -9,7 +9,7 @@ import pytest
 
 import btlang
 from btlang.cli import main
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.robots.bodies.body_file import load_body
 from btlang.robots.voice import Synthesizer
 from btlang.run.events import LanguageChosen

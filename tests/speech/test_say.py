@@ -10,7 +10,7 @@ import pytest
 
 import btlang
 from btlang.actions.speech import say
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.engine.status import RUNNING
 from btlang.robots.registry import Connector
 from btlang.run.events import Event, GestureStarted, Said, StrokePlanned, Warned

@@ -15,7 +15,7 @@ from btlang.components.parts.parts import DeviceJoints, DeviceVoice
 from btlang.devices.driver import DeviceError
 from btlang.devices.kinds import Command, Play, Shown
 from btlang.devices.media import SoundCard
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.robots.bodies.body import Body, Device, Joint, Mouth
 from btlang.robots.registry import Connector
 from btlang.robots.simulation.robot import SimulatedRobot

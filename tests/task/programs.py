@@ -9,7 +9,7 @@ import resource
 import sys
 import time
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.task.store.task_store import TaskStore, open_store
 from tests.task.places import a_task
 

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.task import messages
 from btlang.task.commands.schema import schema
 from btlang.task.messages import COMMANDS, as_json, read_command

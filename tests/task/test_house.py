@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.robots.bodies.body_file import read_body
 from btlang.robots.registry import connector
 from btlang.task.execution.missions import MissionReader

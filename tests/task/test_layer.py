@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from btlang.api import parse_tree
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.run.events import Event, Printed
 from btlang.task.execution import executor
 from btlang.task.execution.missions import MissionReader

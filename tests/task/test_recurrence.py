@@ -14,7 +14,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.task.schedule.calendar import Days, Rule
 from btlang.task.schedule.recurrence import Recurrence, read_moment, read_past_moment, read_rule
 from tests.profiles import searches

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.task.schedule.recurrence import read_moment, read_past_moment, read_rule
 from tests.conftest import matches_golden
 from tests.profiles import searches

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.task.store.database import StoreError
 from btlang.task.store.records import (
     ACTIVE,

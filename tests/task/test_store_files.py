@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.task.store import migrations
 from btlang.task.store.backup import restore_backup
 from btlang.task.store.database import StoreError

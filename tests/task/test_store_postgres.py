@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.task.store.database import StoreError
 from btlang.task.store.postgres import Postgres
 from btlang.task.store.records import TaskState

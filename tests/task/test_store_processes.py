@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.task.store.records import Act, TaskState
 from btlang.task.store.task_store import TaskStore, open_store
 from tests.profiles import amount

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from btlang.api import parse_tree
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.session import Session
 from btlang.task.commands.client import socket_path
 from btlang.task.execution.missions import MissionReader, read_house_rules

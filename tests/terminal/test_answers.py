@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.robots.ears import read_answers
 from btlang.run.world_input import WorldInput
 from btlang.text.source import Source

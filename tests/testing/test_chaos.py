@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from btlang.cli import main
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.files import read_source
 from btlang.robots.simulation.base import SimulatedBase
 from btlang.testing.runner import run_chaos
 from btlang.testing.test_file import read_tests

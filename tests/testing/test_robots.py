@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.files import read_source
 from btlang.testing.runner import run_test
 from btlang.testing.test_file import read_tests
 from btlang.testing.trial import results_of

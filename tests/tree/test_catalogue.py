@@ -19,7 +19,7 @@ AT_HOME = {
     "passes/__init__.py",
     "passes/lower.py",
     "passes/lower_time.py",
-    "passes/lowered.py",
+    "passes/scope.py",
     "passes/scripts.py",
 }
 """Where ids may be spelt, beside the folders that hold the English of a node and the nodes of py_trees."""

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.text.source import Source
 from btlang.text.words import split

@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.files import read_source
 from btlang.frontends.mission.reader import read_mission
 from btlang.passes import compile_mission
 from btlang.printer.mission import english

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from btlang.api import parse_tree
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.vocabulary.load import load_vocabulary
 
 ACTION = '[[action]]\nphrase = "hop"\nid = "Hop"\n'

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from btlang.api import parse_tree
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.engine.status import SUCCESS
 from btlang.run.events import Printed
 from btlang.tree.dump import plain

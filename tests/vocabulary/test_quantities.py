@@ -7,9 +7,8 @@ from pathlib import Path
 import pytest
 
 import btlang
-from btlang.backends.comparing import comparing
-from btlang.backends.engine import bind_leaf
-from btlang.diagnostics.errors import MissionError
+from btlang.backends.engine import bind_leaf, compare_quantity
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
 from btlang.engine.instance import EngineError
@@ -125,14 +124,14 @@ def test_what_was_read_is_the_reason(condition: str, reason: str) -> None:
     ],
 )
 def test_a_reading_is_rounded_so_that_it_still_fails(ports: dict[str, float], value: float, reason: str) -> None:
-    refused = comparing(lambda: value, lambda given, read: read)(**ports)
+    refused = compare_quantity(lambda: value, lambda given, read: read)(**ports)
     assert isinstance(refused, Failed)
     assert reason_text(refused.reason) == reason
 
 
 def test_a_reading_that_is_not_a_number_is_unknown() -> None:
     with pytest.raises(Unknown, match="it is not a number"):
-        comparing(lambda: float("nan"), lambda given, read: read)(above=1.0)
+        compare_quantity(lambda: float("nan"), lambda given, read: read)(above=1.0)
 
 
 def test_they_stop_a_loop() -> None:

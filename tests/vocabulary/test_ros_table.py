@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.text.source import Source
 from btlang.vocabulary.keyword_file import read_keyword_file
 from btlang.vocabulary.ros_binding import Fields, RosBinding

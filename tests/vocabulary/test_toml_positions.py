@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from btlang.text.toml_positions import Path as Keys
-from btlang.text.toml_positions import nearest, positions
+from btlang.text.toml import Path as Keys
+from btlang.text.toml import find_positions, nearest_position
 
 ROOT = Path(__file__).parents[2]
 TEXT = '''# a = 1
@@ -52,15 +52,15 @@ f = 2
     ],
 )
 def test_positions(path: Keys, line: int, begins: str) -> None:
-    at = positions(TEXT)[path]
+    at = find_positions(TEXT)[path]
     assert TEXT.count("\n", 0, at) + 1 == line
     assert TEXT[at:].startswith(begins)
 
 
 def test_what_is_missing_is_where_it_would_be() -> None:
-    found = positions(TEXT)
-    assert nearest(found, ("d", 1, "inner", "g")) == found["d", 1, "inner"]
-    assert nearest(found, ("g",)) is None
+    found = find_positions(TEXT)
+    assert nearest_position(found, ("d", 1, "inner", "g")) == found["d", 1, "inner"]
+    assert nearest_position(found, ("g",)) is None
 
 
 def paths(value: object, path: Keys = ()) -> list[Keys]:
@@ -74,9 +74,9 @@ def paths(value: object, path: Keys = ()) -> list[Keys]:
 )
 def test_all_keys_of_real_files_are_found(file: Path) -> None:
     text = file.read_text(encoding="utf-8")
-    assert positions(text).keys() == {*paths(tomllib.loads(text))} - {()}
+    assert find_positions(text).keys() == {*paths(tomllib.loads(text))} - {()}
 
 
 def test_texts_that_are_no_toml_or_too_deep_do_no_harm() -> None:
     for text in ("[", "a", "a = ", "[[a", "a = {", "a = [" * 9999, "\0", '"', "= 1"):
-        positions(text)
+        find_positions(text)

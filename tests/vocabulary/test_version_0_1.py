@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from btlang.backends.engine import _imported
+from btlang.backends.engine import import_call
 from btlang.vocabulary.load import load_vocabulary
 from tests.conftest import without_overruns
 from tests.test_readme import Block, blocks_of, btc, command_and_output, first_line
@@ -44,4 +44,4 @@ def test_functions_that_have_moved_are_found(call: str, function: str, tmp_path:
         f'[[action]]\nphrase = "perform it"\nid = "Performed"\ncall = "{call}"\nhelp = "."\nexample = "perform it"\n'
     )
     entry = load_vocabulary([str(pack)]).entries["Performed"][0]
-    assert _imported(entry).__name__ == function
+    assert import_call(entry).__name__ == function

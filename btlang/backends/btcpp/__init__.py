@@ -1,4 +1,4 @@
-"""Trees to XML of BehaviorTree.CPP."""
+"""Trees as XML of BehaviorTree.CPP."""
 
 from btlang.backends.btcpp.writer import to_xml
 

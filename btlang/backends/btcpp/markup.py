@@ -1,4 +1,4 @@
-"""XML as text: tags, attributes and parts of files.
+"""Markup: tags, attributes and parts of XML files as text.
 
 Strings are put together by hand: the writer of ElementTree is slower, and drops the comments around the outermost tag.
 """
@@ -7,8 +7,7 @@ from __future__ import annotations
 
 import re
 
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.frontends.btcpp.fragments import IN_TEXTS
 from btlang.frontends.btcpp.models import why_no_port
 from btlang.frontends.btcpp.origin import Element, Markup
@@ -28,17 +27,17 @@ _NO_XML = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 
 
 def sound_comment(text: str) -> str:
-    """As a comment may hold it: XML forbids two hyphens in it."""
+    """Return a text as a comment may hold it: XML forbids two hyphens in it."""
     return text.replace("--", "- -").removesuffix("-")
 
 
 def margin(depth: int) -> str:
-    """The spaces before a line."""
+    """Return the spaces before a line."""
     return INDENT * min(depth, _DEEPEST)
 
 
 class Markers:
-    """Writes attributes. `problems` are names and texts that no XML file can hold, each reported once."""
+    """A writer of attributes. `problems` are names and texts that no XML file can hold, each reported once."""
 
     def __init__(self) -> None:
         self.problems: list[Diagnostic] = []
@@ -46,7 +45,7 @@ class Markers:
         self._texts: dict[str, str] = {}
 
     def attributes(self, pairs: Pairs, span: Span | None = None) -> str:
-        """As they stand in a tag, each after a space; `span` is where to complain."""
+        """Return attributes as they stand in a tag, each after a space; `span` is where to report problems."""
         written = ""
         for key, text in pairs:
             if key not in self._sound:
@@ -69,16 +68,16 @@ class Markers:
             self.wrong(name, why_no_port(name), span)
 
     def wrong(self, words: str, reason: str, span: Span | None) -> None:
-        """BT129."""
+        """Report words that no XML file can hold (BT129)."""
         self.problems.append(diagnostic("BT129", span or NOWHERE, words=words, reason=reason))
 
     def finish(self) -> None:
-        """Raises MissionError where something was wrong."""
+        """Raise MissionError if something was wrong."""
         if self.problems:
             raise MissionError(self.problems)
 
     def part(self, root: Element, depth: int) -> list[str]:
-        """The lines of a part of a file that is no tree."""
+        """Return the lines of a part of a file that is no tree."""
         lines: list[str] = []
         stack: list[tuple[Element | Markup | str, int]] = [(root, depth)]
         while stack:
@@ -97,9 +96,9 @@ class Markers:
                 else:
                     lines.append(f"{head}>")
                     stack.append((f"</{item.tag}>", level))
-                    stack += [(_escaped(inner), level + 1) for inner in reversed(item.items)]
+                    stack += [(_escape(inner), level + 1) for inner in reversed(item.items)]
         return lines
 
 
-def _escaped(item: Element | Markup | str) -> Element | Markup | str:
+def _escape(item: Element | Markup | str) -> Element | Markup | str:
     return item.strip().translate(IN_TEXTS) if isinstance(item, str) else item

@@ -1,19 +1,26 @@
-"""TreeNodesModel: what editors such as Groot2 need to know of nodes that BehaviorTree.CPP does not have itself."""
+"""TreeNodesModel and IDs of trees: what editors such as Groot2 need to know.
+
+They need models of nodes that BehaviorTree.CPP doesn't have itself. BehaviorTree.CPP 4.10 and Groot2 refuse some IDs of
+trees that a mission may use, such as those with spaces.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterable, Iterator
 
 from btlang.frontends.btcpp.models import nav2_models
 from btlang.frontends.btcpp.origin import Element
-from btlang.frontends.btcpp.spelling import AUTOREMAP, IN_3, KINDS, MODEL, TRUE
+from btlang.frontends.btcpp.spelling import AUTOREMAP, IN_3, IN_NO_ID, KINDS, MAIN_TREE, MODEL, TRUE
 from btlang.tree.catalogue import BEHAVIOR_TREE_CPP, CATALOGUE, SUBTREE
-from btlang.tree.model import NodeModel, PortModel
-from btlang.tree.node import Node, Tree
+from btlang.tree.node import Node, NodeModel, PortModel, Tree
 from btlang.vocabulary.entry import COMPARISONS, MEASURED, Entry
 from btlang.vocabulary.lexicon import Lexicon
 
 _BUILT_IN = frozenset(kind.id for kind in CATALOGUE.values() if kind.origin == BEHAVIOR_TREE_CPP)
+_REFUSED = re.compile(f"[{IN_NO_ID}{{}}]+")
+"""Also braces, which they take; but a name in braces looks like a reference."""
+_RESERVED = frozenset(("", "Root", "root", *KINDS, *CATALOGUE))
 
 
 class Uses:
@@ -69,7 +76,7 @@ class Uses:
             self._given[name] = self._given.get(name, ports) & ports
 
     def kind(self, node_id: str) -> str:
-        """Action, Condition, Control or Decorator: as declared, else as it is used."""
+        """Return Action, Condition, Control or Decorator: as declared, else as it is used."""
         found = self._kinds.get(node_id)
         if found is None:
             found = self._kinds[node_id] = self._kind(node_id)
@@ -88,18 +95,20 @@ class Uses:
         return ("Action", "Decorator", "Control")[min(self._most.get(node_id, 0), 2)]
 
     def models(self) -> list[NodeModel]:
-        """One for each, in an order that does not change with the tree: by kind, then by id."""
+        """Return a model for each node, in an order that doesn't change with the tree: by kind, then by id."""
         found = [self._model(node_id) for node_id in self._ports]
         subtrees = [self._subtree(m) for m in self._known.values() if m.kind == SUBTREE and m.id in self._trees]
         return sorted(found, key=lambda m: (KINDS.index(m.kind), m.id)) + sorted(subtrees, key=lambda m: m.id)
 
     def _subtree(self, model: NodeModel) -> NodeModel:
-        """Without ports that a node leaves out: BehaviorTree.CPP would set their defaults, or refuse the node."""
+        """Return the model without ports that a node leaves out: BehaviorTree.CPP would set their defaults, or refuse
+        the node.
+        """
         given = self._given.get(model.id)
         return model if given is None else model.replace(ports=tuple(p for p in model.ports if p.name in given))
 
     def port_types(self, node_id: str) -> dict[str, str]:
-        """The C++ types of the ports of such a node; none for any other."""
+        """Return the C++ types of the ports of such a node; none for any other."""
         found = self._types.get(node_id)
         if found is None:
             ports = self._model(node_id).ports if node_id in self._ports else ()
@@ -129,7 +138,7 @@ class Uses:
             yield PortModel(MEASURED, "output", kind)
 
     def _type(self, name: str) -> str:
-        """In C++; what isn't a number is a text."""
+        """Return the type in C++; what isn't a number is a text."""
         kind = self._vocabulary.types.get(name)
         if kind is None or kind.kind not in ("quantity", "number"):
             return "std::string"
@@ -137,7 +146,7 @@ class Uses:
 
 
 def model_part(models: list[NodeModel], ids: dict[str, str]) -> Element | None:
-    """TreeNodesModel, None if there are no models."""
+    """Return TreeNodesModel, None if there are no models."""
     if not models:
         return None
     return Element(MODEL, (), tuple(_element(model, ids) for model in models))
@@ -155,3 +164,23 @@ def _port(port: PortModel) -> Element:
     pairs = (("name", port.name), ("type", port.type or None), ("default", port.default))
     attributes = tuple((key, text) for key, text in pairs if text is not None)
     return Element(f"{port.direction}_port", attributes, (port.text,) if port.text else ())
+
+
+def tree_ids(tree: Tree, leaves: Iterable[str], dialect: int) -> dict[str, str]:
+    """Return the ID of each tree by its name, "" being the name of a main tree without one.
+
+    No two are the same, none is the id of a node, and in format 4 each keeps to the rules.
+    """
+    ids = {tree.name: tree.name or MAIN_TREE}
+    taken = {*_RESERVED, *leaves}
+    wanted = [tree.name or MAIN_TREE, *(name for name, _ in tree.subtrees)]
+    for at, name in enumerate(wanted):
+        plain = _REFUSED.sub("_", name).strip("_") if dialect == 4 else name
+        made = plain or "tree"
+        number = 2
+        while made in taken:
+            made = f"{plain or 'tree'}_{number}"
+            number += 1
+        taken.add(made)
+        ids[tree.name if at == 0 else name] = made
+    return ids

@@ -1,4 +1,4 @@
-"""A tree written onto the XML file that it came from: only what was edited changes, all other bytes stay."""
+"""Writing a tree onto the XML file that it came from: only what was edited changes, all other bytes stay."""
 
 from __future__ import annotations
 
@@ -7,12 +7,10 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from difflib import SequenceMatcher
 
 from btlang.backends.btcpp.markup import sound_comment
-from btlang.backends.btcpp.models import Uses
-from btlang.backends.btcpp.names import tree_ids
+from btlang.backends.btcpp.models import Uses, tree_ids
 from btlang.backends.btcpp.rewriting import Rewriter
 from btlang.backends.english.comments import lines_of
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.frontends.btcpp.file import SPOKEN_NAME, XmlFile
 from btlang.frontends.btcpp.reader import MAIN, read_xml
 from btlang.frontends.btcpp.scan import Note, scanned
@@ -38,8 +36,8 @@ if TYPE_CHECKING:
     """How often comments stand at the lines of a mission."""
 
 
-def written_onto(original: Source, tree: Tree, vocabulary: Lexicon) -> str:
-    """The text of the XML file `original` with the nodes and comments of a tree from a mission.
+def write_onto(original: Source, tree: Tree, vocabulary: Lexicon) -> str:
+    """Return the text of the XML file `original` with the nodes and comments of a tree from a mission.
 
     Nodes that have not changed keep their bytes, as do comments, models and all else. Raises MissionError where the
     file is no tree (BT120 to BT129), or where the tree changes what a file has that this one includes (BT135).
@@ -51,8 +49,8 @@ _OWN_TAGS = CATALOGUE.keys() | TO_4.keys() | {SUBTREE}
 """Tags that have no kind."""
 
 
-class _Said(Record):
-    """A comment of the file with the line of the mission that it belongs to; `lines` are what English says of it."""
+class _FileComment(Record):
+    """A comment of the file with the line of the mission that it belongs to; `lines` are its lines in English."""
 
     note: Note
     lines: tuple[str, ...]
@@ -64,8 +62,8 @@ class _Onto:
         self._file = XmlFile(scanned(original))
         is_there = tree.name in (head.name for head in self._file.heads)  # then it is the main tree in any case
         self._before = read_xml(original, tree.name if is_there else "")
-        subtrees = tuple((name, _apart(root)) for name, root in tree.subtrees)
-        self._after = tree.replace(root=_apart(tree.root), subtrees=subtrees)
+        subtrees = tuple((name, _copy_shared(root)) for name, root in tree.subtrees)
+        self._after = tree.replace(root=_copy_shared(tree.root), subtrees=subtrees)
         document = self._file.document
         self._dialect = self._file.dialect
         self._heads = {head.name: head for head in self._file.heads}
@@ -83,23 +81,23 @@ class _Onto:
         if "" not in self._old:
             self._elsewhere[""] = self._before.root
         self._renamed = self._find_renamed()
-        self._alignment = self._aligned()
-        self._ids = self._written_ids()
+        self._alignment = self._align()
+        self._ids = self._find_ids()
         uses = Uses(self._after, vocabulary, self._dialect)
         kinds = {model.id: model.kind for model in self._before.models}
         self._kind: Callable[[str], str] = lambda node_id: kinds.get(node_id) or uses.kind(node_id)
-        self._text = Rewriter(document, self._file.notes, self._known, self._spelled)
+        self._text = Rewriter(document, self._file.notes, self._find_known, self._spell)
         self._mission = tree.origin if isinstance(tree.origin, Source) else None
 
     # -- what is what
 
     def _find_renamed(self) -> dict[str, str]:
-        """New names by old ones, where one tree alone has another name."""
+        """Find new names by old ones, if one tree alone has another name."""
         gone = [name for name in self._old if name not in self._new]
         come = [name for name in self._new if name not in self._old and name not in self._elsewhere]
         return {gone[0]: come[0]} if len(gone) == len(come) == 1 else {}
 
-    def _aligned(self) -> Alignment:
+    def _align(self) -> Alignment:
         named = {self._renamed.get(name, name): root for name, root in self._old.items()}
         roots = [(root, self._new[name]) for name, root in named.items() if name in self._new]
         gone = [root for name, root in named.items() if name not in self._new]
@@ -112,27 +110,27 @@ class _Onto:
             raise MissionError(wrong)
         return alignment
 
-    def _written_ids(self) -> dict[str, str]:
-        """The ID of each tree in the file by its name, those of new trees as the file's dialect allows them."""
+    def _find_ids(self) -> dict[str, str]:
+        """Return the ID of each tree in the file by its name, those of new trees as the file's dialect allows them."""
         nodes = {node.id for node in self._after.walk()}
         made = tree_ids(self._after, nodes, self._dialect)
         heads = {name: head.written for name, head in self._heads.items() if head.written and name in self._new}
         written = {name: id for name, id in heads.items() if id not in nodes}  # what is new may have the ID of a tree
         return made | written
 
-    def _known(self, node: Node) -> int | None:
+    def _find_known(self, node: Node) -> int | None:
         old = self._alignment.old(node)
         return self._elements.get(id(old)) if old is not None else None
 
-    def _spelled(self, node: Node) -> Spelling:
+    def _spell(self, node: Node) -> Spelling:
         return self._in_style(node, SPELL[self._dialect](node, self._kind, self._ids))
 
-    def _spelled_before(self, node: Node) -> Spelling:
+    def _spell_before(self, node: Node) -> Spelling:
         written = {name: head.written for name, head in self._heads.items() if head.written}
         return self._in_style(node, SPELL[self._dialect](node, self._kind, written))
 
     def _in_style(self, node: Node, usual: Spelling) -> Spelling:
-        """With a kind tag where all leaves of the file have one, and without where none has."""
+        """Spell a node with a kind tag if all leaves of the file have one, and without if none has."""
         tag, pairs = usual
         if tag in KINDS and True not in self._kind_tags and is_xml_name(node.id) and ("ID", node.id) in pairs:
             return node.id, tuple(pair for pair in pairs if pair != ("ID", node.id))
@@ -143,7 +141,7 @@ class _Onto:
     # -- writing
 
     def written(self) -> str:
-        """See `written_onto`."""
+        """Return the text; see `write_onto`."""
         for node in self._after.walk():
             old = self._alignment.old(node)
             if old is not None and id(old) in self._elements:
@@ -164,8 +162,8 @@ class _Onto:
         return (("ID", written),) if name == written else (("ID", written), (SPOKEN_NAME, name))
 
     def _change(self, number: int, old: Node, new: Node) -> None:
-        tag, before = self._spelled_before(old)
-        other, after = self._spelled(new)
+        tag, before = self._spell_before(old)
+        other, after = self._spell(new)
         if tag != other and self._file.document.elements[number][0] == tag:
             self._text.rename(number, other)
         kept = tuple(pair for pair in before if not is_editors(pair[0]))
@@ -174,7 +172,7 @@ class _Onto:
             self._text.attributes(number, kept, wanted)
 
     def _name_trees(self) -> None:
-        """The IDs of trees that have other names now."""
+        """Change the IDs of trees that have other names now."""
         for name, head in self._heads.items():
             old = name if name in self._old else ""
             new = self._renamed.get(old, old)
@@ -192,7 +190,7 @@ class _Onto:
     # -- comments
 
     def _change_comments(self) -> None:
-        """Makes the comments those of the mission, where its text is there."""
+        """Change the comments to those of the mission, if its text is there."""
         if self._mission is None:
             return
         nodes = list(self._after.walk())
@@ -208,26 +206,26 @@ class _Onto:
             has = Counter(text for said in there.get(line, ()) for text in said.lines)
             come[line] = Counter(wanted.get(line, ())) - has
             left[line] = has - Counter(wanted.get(line, ()))
-        stays = self._staying(come, left, nodes)
+        stays = self._find_staying(come, left, nodes)
         raw = {said.lines: self._raw(said.note) for said in gone}
         for line in sorted({*there, *wanted}):
             kept = stays[0].get(line, Counter()), stays[1].get(line, Counter())
-            new = self._changed_line(there.get(line, []), wanted.get(line, []), kept, raw)
+            new = self._change_line(there.get(line, []), wanted.get(line, []), kept, raw)
             if line in (HEAD, FOOT):
                 self._text.add_around(new, at_end=line == FOOT)
             elif new:
                 self._add_comments(first[line], new)
 
     def _add_comments(self, node: Node, comments: list[str]) -> None:
-        """Before a node; not in a file that this one includes."""
+        """Add comments before a node; not in a file that this one includes."""
         for name, root in self._elsewhere.items():
             if name in self._new and any(node is each for each in Tree(self._new[name]).walk()):
                 raise MissionError([_in_other_file(name, root, self._new[name])])
         self._text.add_comments(node, comments)
 
-    def _staying(self, come: Lines, left: Lines, nodes: Sequence[Node]) -> tuple[Lines, Lines]:
-        """Of the comments that come and have left, by line, those that only are said in another statement: as English
-        puts comments before whole ones, they stand at a node around their own one, or the other way round.
+    def _find_staying(self, come: Lines, left: Lines, nodes: Sequence[Node]) -> tuple[Lines, Lines]:
+        """Find the new and old comments, by line, that are only said in another statement: as English puts comments
+        before whole ones, they stand at a node around their own one, or the other way round.
         """
         above: defaultdict[float, set[float]] = defaultdict(set)
         around: dict[int, Node] = {id(child): node for node in nodes for child in node.children}
@@ -249,11 +247,11 @@ class _Onto:
                         break
         return old, new
 
-    def _changed_line(
-        self, there: list[_Said], wanted: list[str], stays: tuple[Counter[str], Counter[str]], raw: Raw
+    def _change_line(
+        self, there: list[_FileComment], wanted: list[str], stays: tuple[Counter[str], Counter[str]], raw: Raw
     ) -> list[str]:
-        """Changes the comments of one statement to those that are wanted, but for old and new ones that stay elsewhere;
-        returns those that are new.
+        """Change the comments of one statement to the wanted ones, but for old and new ones that stay elsewhere; return
+        those that are new.
         """
         has = [(said, at, text) for said in there for at, text in enumerate(said.lines)]
         texts = [text for _, _, text in has]
@@ -268,8 +266,8 @@ class _Onto:
         for tag, first, last, begin, end in codes:
             if tag == "equal":
                 continue
-            old = [each for each in has[first:last] if not _taken(old_stay, each[2])]
-            new = [text for text in wanted[begin:end] if not _taken(new_stay, text)]
+            old = [each for each in has[first:last] if not _take(old_stay, each[2])]
+            new = [text for text in wanted[begin:end] if not _take(new_stay, text)]
             for (said, at, _), text in zip(old, new, strict=False):
                 changed[id(said)][at] = text
             for said, at, _ in old[len(new) :]:
@@ -280,7 +278,7 @@ class _Onto:
                 self._change_comment(said, changed[id(said)])
         return list(_comments(come, raw))
 
-    def _change_comment(self, said: _Said, lines: Mapping[int, str | None]) -> None:
+    def _change_comment(self, said: _FileComment, lines: Mapping[int, str | None]) -> None:
         if len(lines) == len(said.lines) and not any(lines.values()):
             self._text.remove_comment(said.note)
             return
@@ -303,17 +301,17 @@ class _Onto:
         self._text.change(*self._text.span_of(said.note), f"<!--{inner}-->")
 
     def _raw(self, note: Note) -> str:
-        """A comment with its line ends."""
+        """Return a comment with its line ends."""
         start, end = self._text.span_of(note)
         return self._file.document.source.text[start:end]
 
-    def _comments_by_line(self, top: float) -> tuple[dict[float, list[_Said]], list[_Said]]:
-        """The comments of the file by the line of the mission in which their node is said; and those of nodes that are
-        gone. What stands before all trees belongs to the first statement. What English can't say (processing
-        instructions) goes from a node that is gone to the next one that isn't.
+    def _comments_by_line(self, top: float) -> tuple[dict[float, list[_FileComment]], list[_FileComment]]:
+        """Return the comments of the file by the line of the mission in which their node is said, and those of removed
+        nodes. What stands before all trees belongs to the first statement. What English can't say (processing
+        instructions) moves from a removed node to the next one that isn't.
         """
-        found: defaultdict[float, list[_Said]] = defaultdict(list)
-        gone: list[_Said] = []
+        found: defaultdict[float, list[_FileComment]] = defaultdict(list)
+        gone: list[_FileComment] = []
         unsaid: list[str] = []
 
         def put(notes: Iterable[Note], node: Node | None, line: float | None = None) -> None:
@@ -322,11 +320,11 @@ class _Onto:
                 if node is None and line is None:
                     self._text.remove_comment(note)
                     if lines:
-                        gone.append(_Said(note, lines))
+                        gone.append(_FileComment(note, lines))
                     else:
                         unsaid.append(self._raw(note))
                 elif lines:
-                    found[line_of(node) if node is not None else line].append(_Said(note, lines))  # type: ignore[index]
+                    found[line_of(node) if node is not None else line].append(_FileComment(note, lines))  # type: ignore[index]
 
         notes, document = self._file.notes, self._file.document
         put(notes.before(0), None, top)
@@ -362,7 +360,7 @@ def _features(node: Node) -> list[tuple[str, str]]:
 
 
 def _comments(lines: Sequence[str], raw: Raw) -> Iterator[str]:
-    """New comments; several lines that were one comment are one again, as it was written."""
+    """Yield new comments; several lines that were one comment are one again, as it was written."""
     at = 0
     while at < len(lines):
         same = [old for old in raw if tuple(lines[at : at + len(old)]) == old]
@@ -371,16 +369,16 @@ def _comments(lines: Sequence[str], raw: Raw) -> Iterator[str]:
         at += len(longest) or 1
 
 
-def _taken(counter: Counter[str], text: str) -> bool:
-    """Takes one of them, if there is one."""
+def _take(counter: Counter[str], text: str) -> bool:
+    """Take one of them, if there is one."""
     if counter[text] <= 0:
         return False
     counter[text] -= 1
     return True
 
 
-def _apart(root: Node) -> Node:
-    """The tree with no node in two places, as the body of a loop may be."""
+def _copy_shared(root: Node) -> Node:
+    """Return the tree with no node in two places, as the body of a loop may be."""
 
     def combine(node: Node, children: list[Node]) -> Node:
         return node.replace(children=tuple(children))  # type: ignore[no-any-return]

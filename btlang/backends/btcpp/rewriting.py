@@ -1,4 +1,4 @@
-"""The text of an XML file with other nodes in it, in which all that is not touched stays as it is, byte by byte."""
+"""Rewriting of an XML file with other nodes in it. What isn't touched stays as it is, byte by byte."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class _Slice(Record):
 
 
 class _Element(Record):
-    """A node to be written at a margin. `lead` is what stands before it, where that isn't what the file has there, and
+    """A node to be written at a margin. `lead` is what stands before it, if that isn't what the file has there, and
     `bare` whether its comments are written already.
     """
 
@@ -52,8 +52,8 @@ class _Element(Record):
 
 
 class Rewriter:
-    """Rebuilds the text. `known` gives the number of the element that a node is already, `spell` how a node
-    is written. Changes of single places (`change`) come first, then `write`.
+    """A rewriter of the text. `known` returns the number of the element that a node is already, `spell` how a node is
+    written. Changes of single places (`change`) come first, then `write`.
     """
 
     def __init__(
@@ -90,17 +90,17 @@ class Rewriter:
             opened.append(number)
 
     def span_of(self, note: Note) -> tuple[int, int]:
-        """The characters of a comment."""
+        """Return the characters of a comment."""
         return self._spans[id(note)]
 
     def _margin(self, number: int) -> str | None:
-        """The blanks before an element, None where it doesn't stand first on its line."""
+        """Return the blanks before an element, None if it isn't first on its line."""
         start = self._layout.places[number].start
         line = self._text.rfind("\n", 0, start) + 1
         return self._text[line:start] if self._text[line:start].isspace() or line == start else None
 
     def _usual_unit(self) -> str:
-        """By how much the file indents."""
+        """Return the indentation of the file."""
         steps: Counter[str] = Counter()
         for number, parent in enumerate(self._parents):
             inner, outer = self._margin(number), self._margin(parent) if parent >= 0 else None
@@ -108,18 +108,18 @@ class Rewriter:
                 steps[inner[len(outer) :]] += 1
         return steps.most_common(1)[0][0] if steps else _USUAL
 
-    def _opened(self, number: int) -> int:
-        """Where the start tag of an element ends, with the comments on its line."""
+    def _open(self, number: int) -> int:
+        """Return where the start tag of an element ends, with the comments on its line."""
         return max([self._layout.places[number].head, *(self.span_of(note)[1] for note in self._notes.heading(number))])
 
-    def _ended(self, number: int) -> int:
-        """Where an element ends, with the comments on its line."""
+    def _end(self, number: int) -> int:
+        """Return where an element ends, with the comments on its line."""
         return max([self._layout.places[number].end, *(self.span_of(note)[1] for note in self._notes.behind(number))])
 
     def _lead(self, number: int) -> int:
-        """Where the blanks and comments before an element begin."""
+        """Return where the blanks and comments before an element begin."""
         before = self._before[number]
-        return self._ended(before) if before >= 0 else self._opened(self._parents[number])
+        return self._end(before) if before >= 0 else self._open(self._parents[number])
 
     def _is_in_line(self, number: int) -> bool:
         """Whether the elements inside one stand on its line."""
@@ -132,15 +132,15 @@ class Rewriter:
     # -- changes
 
     def change(self, start: int, end: int, text: str) -> None:
-        """Puts a text in place of some characters, which no other change touches."""
+        """Put a text in place of some characters, which no other change touches."""
         self._changes.append((start, end, text))
 
     def add_comments(self, node: Node, comments: list[str]) -> None:
-        """Comments on lines of their own before a node."""
+        """Add comments on separate lines before a node."""
         self._leads.setdefault(id(node), []).extend(comments)
 
     def add_around(self, comments: list[str], *, at_end: bool) -> None:
-        """Comments on lines of their own before the outermost element, or at the end of what is in it."""
+        """Add comments on separate lines before the outermost element, or at the end of what is in it."""
         root = self._layout.places[0]
         if not at_end:
             self.change(root.start, root.start, "".join(f"{text}{self.line_end}" for text in comments))
@@ -150,7 +150,7 @@ class Rewriter:
         self.change(at, at, "".join(f"{self._unit}{text}{self.line_end}" for text in comments))
 
     def remove_comment(self, note: Note) -> None:
-        """With its line, where nothing else stands there."""
+        """Remove a comment, with its line if nothing else stands there."""
         self._removed.add(id(note))
         start, end = self.span_of(note)
         line = self._text.rfind("\n", 0, start) + 1
@@ -162,7 +162,7 @@ class Rewriter:
         self.change(start, end, "")
 
     def attributes(self, number: int, before: Pairs, after: Pairs) -> None:
-        """Changes the attributes of an element from what one node says to what another one says."""
+        """Change the attributes of an element from those of one node to those of another one."""
         there = {each.name: each for each in self._layout.attributes(number)}
         old, new = dict(before), dict(after)
         touched = [key for key in old if old[key] != new.get(key)]
@@ -179,7 +179,7 @@ class Rewriter:
         for key in touched:
             spot = there[key]
             if key in new:
-                self.change(spot.value, spot.end, self._quoted(new[key], self._text[spot.value]))
+                self.change(spot.value, spot.end, self._quote(new[key], self._text[spot.value]))
             else:
                 self.change(spot.start, spot.end, "")
         added = "".join(
@@ -188,12 +188,12 @@ class Rewriter:
         if added:
             self.change(behind, behind, added)
 
-    def _quoted(self, text: str, mark: str) -> str:
+    def _quote(self, text: str, mark: str) -> str:
         written = self._markers.attributes((("v", text),)).partition("=")[2]
         return written if mark == '"' else f"'{written[1:-1].replace(chr(39), '&apos;').replace('&quot;', chr(34))}'"
 
     def rename(self, number: int, tag: str) -> None:
-        """Gives an element another tag."""
+        """Give an element another tag."""
         self.change(*self._layout.tag(number), tag)
         place = self._layout.places[number]
         if place.foot < place.end:
@@ -203,23 +203,24 @@ class Rewriter:
     # -- writing
 
     def write(self, trees: dict[int, Node | None], added: list[tuple[Pairs, Node]]) -> str:
-        """The whole text. `trees` are the roots by the number of their BehaviorTree, None for one that is gone; `added`
-        are further ones with the attributes of their BehaviorTree. Raises MissionError where XML can't hold a text.
+        """Return the whole text. `trees` are the roots by the number of their BehaviorTree, None for one that is gone;
+        `added` are further ones with the attributes of their BehaviorTree. Raises MissionError if XML can't hold a
+        text.
         """
         self._changes.sort(key=lambda change: change[:2])
         parts = self._children[0]
-        work: list[Work] = [_Slice(0, self._opened(0), STAYS)]
+        work: list[Work] = [_Slice(0, self._open(0), STAYS)]
         behind = max((part for part in parts if part in trees), default=-1)
         for part in parts:
             if part not in trees:
-                work.append(_Slice(self._lead(part), self._ended(part), STAYS))
+                work.append(_Slice(self._lead(part), self._end(part), STAYS))
             elif (root := trees[part]) is not None:
                 work += self._tree(part, root)
             if part == behind:
                 for attributes, node in added:
                     work += self._new_tree(part, attributes, node)
-        work.append(_Slice(self._ended(parts[-1]), len(self._text), STAYS))
-        made = self._written(work)
+        work.append(_Slice(self._end(parts[-1]), len(self._text), STAYS))
+        made = self._write_text(work)
         self._markers.finish()
         return made
 
@@ -230,9 +231,9 @@ class Rewriter:
         if lead is not None and self._notes.before(inner):  # these go with what was there
             lead = "" if margin is None else self.line_end + margin
         return [
-            _Slice(self._lead(part), self._opened(part), STAYS),
+            _Slice(self._lead(part), self._open(part), STAYS),
             _Element(root, STAYS, self._unit * 2 if margin is None else margin, lead),
-            _Slice(self._ended(inner), place.end, STAYS),
+            _Slice(self._end(inner), place.end, STAYS),
         ]  # fmt: skip
 
     def _new_tree(self, beside: int, attributes: Pairs, root: Node) -> list[Work]:
@@ -247,7 +248,7 @@ class Rewriter:
             f"{self.line_end}{outer}</BehaviorTree>",
         ]
 
-    def _written(self, work: list[Work]) -> str:
+    def _write_text(self, work: list[Work]) -> str:
         out: list[str] = []
         work.reverse()
         while work:
@@ -255,14 +256,14 @@ class Rewriter:
             if isinstance(item, str):
                 out.append(item)
             elif isinstance(item, _Slice):
-                out.append(self._changed(item))
+                out.append(self._change_text(item))
             else:
                 number = self._known(item.node)
                 work += reversed(self._new(item) if number is None else self._again(item, number))
         return "".join(out)
 
-    def _changed(self, piece: _Slice) -> str:
-        """Characters of the file with their changes."""
+    def _change_text(self, piece: _Slice) -> str:
+        """Return characters of the file with their changes."""
         made: list[str] = []
         at = piece.start
         index = bisect_left(self._changes, (piece.start, -1, ""))
@@ -273,10 +274,10 @@ class Rewriter:
                 at = end
             index += 1
         made.append(self._text[at : piece.end])
-        return _shifted("".join(made), piece.shift, piece.in_tag)
+        return _shift("".join(made), piece.shift, piece.in_tag)
 
     def _again(self, item: _Element, number: int) -> list[Work]:
-        """A node that is in the file already."""
+        """Write a node that is in the file already."""
         place, shift = self._layout.places[number], item.shift
         work: list[Work] = [_Slice(self._lead(number), place.start, shift) if item.lead is None else item.lead]
         margin = self._margin(number)
@@ -287,24 +288,24 @@ class Rewriter:
         inner = self._inner_margin(number, own)
         if place.head == place.end:  # no end tag
             if not children:
-                return [*work, _Slice(place.start, self._ended(number), own, True)]
+                return [*work, _Slice(place.start, self._end(number), own, True)]
             tag = self._text[slice(*self._layout.tag(number))]
             work += (_Slice(place.start, place.head - 2, own, True), ">")
             work += self._inner(children, number, own, inner)
-            return [*work, f"{self.line_end}{item.margin}</{tag}>", _Slice(place.end, self._ended(number), own)]
-        work += (_Slice(place.start, place.head, own, True), _Slice(place.head, self._opened(number), own))
+            return [*work, f"{self.line_end}{item.margin}</{tag}>", _Slice(place.end, self._end(number), own)]
+        work += (_Slice(place.start, place.head, own, True), _Slice(place.head, self._open(number), own))
         work += self._inner(children, number, own, inner)
         last = self._children[number][-1:]
-        begin = self._ended(last[0]) if last else self._opened(number)
-        return [*work, _Slice(begin, place.end, own), _Slice(place.end, self._ended(number), own)]
+        begin = self._end(last[0]) if last else self._open(number)
+        return [*work, _Slice(begin, place.end, own), _Slice(place.end, self._end(number), own)]
 
     def _own_notes(self, number: int, item: _Element) -> list[Work]:
-        """The comments before a node, which goes elsewhere."""
+        """Write the comments before a node, which goes elsewhere."""
         left = [note for note in self._notes.before(number) if id(note) not in self._removed]
         return [part for note in left for part in (_Slice(*self.span_of(note), STAYS), self.line_end + item.margin)]
 
     def _inner(self, children: tuple[Node, ...], parent: int, shift: Shift, margin: str) -> list[Work]:
-        """What is inside a node that is in the file already."""
+        """Write the inside of a node that is in the file already."""
         work: list[Work] = []
         before: int | None = -1
         for child in children:
@@ -313,28 +314,28 @@ class Rewriter:
         return work
 
     def _child(self, child: Node, parent: int, shift: Shift, margin: str, before: int | None) -> _Element:
-        """One of them; `before` is the one before it, -1 for none, None where that is new."""
+        """Write one of the children; `before` is the one before it, -1 for none, None if that is new."""
         number = self._known(child)
         in_line = self._is_in_line(parent)
         if number is not None and self._parents[number] == parent:
             own = self._margin(number)
             if self._before[number] != before and "\n" not in self._lead_text(number) and not in_line:
                 return _Element(child, STAYS, margin, self.line_end + margin)
-            return _Element(child, shift, margin if own is None else _moved(own, shift))
+            return _Element(child, shift, margin if own is None else _move(own, shift))
         if number is not None and not in_line and (own := self._margin(number)) is not None:
             return _Element(child, (own, margin), margin)
         return _Element(child, STAYS, margin, "" if in_line else self.line_end + margin)
 
     def _inner_margin(self, number: int, shift: Shift) -> str:
-        """Where what is inside an element begins."""
+        """Return where what is inside an element begins."""
         margins = (self._margin(child) for child in self._children[number])
         found = next((margin for margin in margins if margin is not None), None)
         if found is None:
             found = (self._margin(number) or "") + self._unit
-        return _moved(found, shift)
+        return _move(found, shift)
 
     def _new(self, item: _Element) -> list[Work]:
-        """A node that isn't in the file yet. What stood before the first one in it stands before it now."""
+        """Write a node that isn't in the file yet. What stood before the first one in it stands before it now."""
         tag, pairs = self._spell(item.node)
         head = f"<{tag}{self._markers.attributes(pairs)}"
         children = item.node.children
@@ -358,21 +359,21 @@ class Rewriter:
         return [lead, *comments, f"{head}>", *work, f"{self.line_end}{item.margin}</{tag}>"]
 
     def _comments(self, item: _Element, lead: str, notes: Sequence[Work] = ()) -> list[Work]:
-        """Comments before a node, on their own lines: behind something else on a line they'd belong to that."""
+        """Write comments before a node on separate lines: behind something else on a line they'd belong to that."""
         margin = self.line_end + item.margin
         texts = [*notes, *(f"{text}{margin}" for text in self._leads.get(id(item.node), ()))]
         return [margin, *texts] if texts and "\n" not in lead else texts
 
 
-def _moved(margin: str, shift: Shift) -> str:
+def _move(margin: str, shift: Shift) -> str:
     before, after = shift
     return after + margin[len(before) :] if margin.startswith(before) else margin
 
 
-def _shifted(text: str, shift: Shift, in_tag: bool) -> str:
-    """The text with its lines moved; lines inside a value stay."""
+def _shift(text: str, shift: Shift, in_tag: bool) -> str:
+    """Return the text with its lines moved; lines inside a value stay."""
     if shift[0] == shift[1]:
         return text
     if in_tag:
-        return _IN_TAG.sub(lambda match: match[0] if match[1] else "\n" + _moved(match[2], shift), text)
-    return _MARGIN.sub(lambda match: "\n" + _moved(match[1], shift), text)
+        return _IN_TAG.sub(lambda match: match[0] if match[1] else "\n" + _move(match[2], shift), text)
+    return _MARGIN.sub(lambda match: "\n" + _move(match[1], shift), text)

@@ -1,4 +1,4 @@
-"""A tree whose values have one type each: in BehaviorTree.CPP an entry of the blackboard keeps its type.
+"""Typed trees: in BehaviorTree.CPP an entry of the blackboard keeps its type, so each value gets one.
 
 An entry has the type of the constant that a SubTree gives it, else of the first port that names it; a port of another
 type is refused when the tree is made ("initially created with type [int] and, later type [double]"). A script that
@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator, Mapping
 from btlang.engine.instance import blackboard_key
 from btlang.engine.script.tokens import ScriptError, Tokens
 from btlang.engine.script.values import literal
-from btlang.passes.scripts import script
+from btlang.passes.scripts import make_script
 from btlang.support.record import Record
 from btlang.tree.catalogue import CATALOGUE, SEQUENCE, SUBTREE
 from btlang.tree.node import Node, Tree
@@ -45,7 +45,7 @@ _BUILT_IN = {
 
 
 class Assignment(Record):
-    """One of a script: its right side stands from `start` to `end`.
+    """An assignment of a script: its right side is from `start` to `end`.
 
     `number` is the constant that is assigned, "" for another value; `copied` is the key that is alone on the right
     side, `names` are all keys there.
@@ -62,7 +62,7 @@ class Assignment(Record):
 
 
 class _Facts:
-    """What is known of one value, or of several that are one entry."""
+    """The known facts about one value, or about several that are one entry."""
 
     def __init__(self) -> None:
         self.ports: list[str] = []
@@ -83,8 +83,8 @@ class _Facts:
         self.from_values |= other.from_values
 
 
-def typed(tree: Tree, port_types: PortTypes) -> Tree:
-    """The same tree where it is well typed already."""
+def give_types(tree: Tree, port_types: PortTypes) -> Tree:
+    """Return a well-typed tree; the same tree if it is well typed already."""
     return _Typing(tree, lambda node_id: _BUILT_IN.get(node_id) or port_types(node_id)).tree()
 
 
@@ -101,8 +101,8 @@ class _Typing:
         self._find_decimals()
 
     def tree(self) -> Tree:
-        root = self._written(self._tree.name, self._tree.root)
-        subtrees = tuple((name, self._written(name, node)) for name, node in self._tree.subtrees)
+        root = self._write_node(self._tree.name, self._tree.root)
+        subtrees = tuple((name, self._write_node(name, node)) for name, node in self._tree.subtrees)
         return Tree(root, subtrees, self._tree.name, self._tree.models)
 
     # -- reading
@@ -145,7 +145,7 @@ class _Typing:
             facts.from_values.add(other)
 
     def _value(self, value: Value) -> Value:
-        """The one that stands for an entry."""
+        """Return the value that represents an entry."""
         if value[1][:1] == "@":
             value = self._tree.name, value[1][1:]
         while value in self._joined:
@@ -172,7 +172,7 @@ class _Typing:
     # -- writing
 
     def _type(self, facts: _Facts) -> str:
-        """The type of an entry, "" if nothing shows it."""
+        """Return the type of an entry, "" if nothing shows it."""
         is_given = not facts.given.isdisjoint((int, float))
         if facts.is_decimal and (is_given or facts.is_set or any(kind in _DECIMALS for kind in facts.ports)):
             return "double"
@@ -181,7 +181,7 @@ class _Typing:
             return "int"
         return (integers or facts.ports or [""])[0]
 
-    def _written(self, name: str, root: Node) -> Node:
+    def _write_node(self, name: str, root: Node) -> Node:
         return fold(root, lambda node: node.children, lambda node, children: self._node(name, node, children))
 
     def _node(self, name: str, node: Node, children: list[Node]) -> Node:
@@ -222,7 +222,7 @@ class _Typing:
 
     def _own_key(self, code: str, scripts: list[Node]) -> str:
         self._made += 1
-        scripts.append(script(f"_{self._made} := {code}"))
+        scripts.append(make_script(f"_{self._made} := {code}"))
         return f"{{_{self._made}}}"
 
     def _code(self, name: str, code: str) -> str:
@@ -234,7 +234,7 @@ class _Typing:
 
 
 def assignments(code: str) -> Iterator[Assignment]:
-    """Those of a script, one for each statement that is one; none of what cannot be read."""
+    """List the assignments of a script, one for each statement that is one; none of what can't be read."""
     try:
         tokens = Tokens(code)
         found: list[tuple[str, str, int]] = []

@@ -1,13 +1,12 @@
-"""A tree as XML of BehaviorTree.CPP: format 4, or the dialect of version 3."""
+"""The XML writer for BehaviorTree.CPP: format 4, or the dialect of version 3."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
 from btlang.backends.btcpp.markup import INDENT, Markers, margin, sound_comment
-from btlang.backends.btcpp.models import Uses, model_part
-from btlang.backends.btcpp.names import tree_ids
-from btlang.backends.btcpp.typed import typed
+from btlang.backends.btcpp.models import Uses, model_part, tree_ids
+from btlang.backends.btcpp.typed import give_types
 from btlang.frontends.btcpp.dialect import dialect_of_shapes
 from btlang.frontends.btcpp.file import SPOKEN_NAME
 from btlang.frontends.btcpp.kept import Kept, kept_in
@@ -27,16 +26,17 @@ _DECLARATION = '<?xml version="1.0" encoding="UTF-8"?>'
 
 
 def to_xml(tree: Tree, vocabulary: Lexicon, *, dialect: int = 4, onto: Source | None = None) -> str:
-    """The XML of a tree, in lines, with a line end at the end; or the file `onto`, with what has changed in the tree.
+    """Return the XML of a tree, in lines, with a line end at the end; or the file `onto`, with what has changed in the
+    tree.
 
     A tree that was read from a file of the same dialect, and not changed since, is written with all that stood in the
     file: its tags, attributes, texts and comments. Any other is written in the one canonical way. `dialect` is 4 or 3.
     Raises MissionError where a name or text isn't allowed in XML (BT129), ValueError for another dialect.
     """
     if onto is not None:
-        from btlang.backends.btcpp.onto import written_onto
+        from btlang.backends.btcpp.onto import write_onto
 
-        return written_onto(onto, tree, vocabulary)
+        return write_onto(onto, tree, vocabulary)
     if dialect not in SPELL:
         raise ValueError(f"there is no dialect {dialect}")
     return _Writer(tree, vocabulary, dialect).write()
@@ -62,7 +62,7 @@ class _Writer:
             self._kind = self._uses.kind
             self._ids = tree_ids(tree, self._uses.ids, dialect)
             if dialect == 4:
-                self._tree = typed(tree, self._uses.port_types)
+                self._tree = give_types(tree, self._uses.port_types)
             self._find_comments(tree.origin)
         else:
             kinds = {model.id: model.kind for model in tree.models}
@@ -93,7 +93,7 @@ class _Writer:
         return "\n".join(lines)
 
     def _names_in_file(self) -> dict[str, str]:
-        """The main tree may have another name in the file than in the tree, where it has none."""
+        """Return the names of trees in the file. The main tree may have one there if it has none in the tree."""
         if self._origin is None:
             return {}
         others = dict(self._tree.subtrees)
@@ -104,13 +104,13 @@ class _Writer:
         return (("BTCPP_format", "4"), *main) if self._dialect == 4 else self._format_3() + main
 
     def _format_3(self) -> Pairs:
-        """Declared only if the file would otherwise be taken for one of format 4."""
+        """Return the attribute of the format, only if the file would otherwise be taken for one of format 4."""
         spelled = (spelled_3(node, self._kind, self._ids) for node in self._tree.walk())
         shapes = {(tag, *(key for key, _ in pairs)) for tag, pairs in spelled}
         return (("BTCPP_format", "3"),) if dialect_of_shapes(shapes) == 4 else ()
 
     def _items(self) -> tuple[Element | Markup | str, ...]:
-        """The main tree, the others in their order, the models; with the comments of a mission."""
+        """Return the main tree, the others in their order, the models; with the comments of a mission."""
         models = self._models()
         found: list[Element | Markup | str] = [self._tree.name]
         for name, _ in self._tree.subtrees:
@@ -118,7 +118,7 @@ class _Writer:
         return (*found, *models, *map(Markup, self._foot))
 
     def _models(self) -> list[Element]:
-        """Those that the mission keeps as they stood in its file, and further ones of what it uses."""
+        """Return the models that the mission keeps from its file, and further ones of what it uses."""
         assert self._uses is not None
         known = {model.id for model in self._kept.models}
         found = list(self._kept.parts)
@@ -134,16 +134,16 @@ class _Writer:
         return (*named, *dict(self._kept.trees).get(written, ()))
 
     def _find_comments(self, source: object) -> None:
-        """The comments of a mission, each before the node of its statement."""
+        """Find the comments of a mission, each before the node of its statement."""
         if not isinstance(source, Source) or "#" not in source.text:
             return
         comments = comments_by_line(source, self._vocabulary.orthography, self._tree)
-        self._head, self._foot = _marked(comments.pop(HEAD, ())), _marked(comments.pop(FOOT, ()))
+        self._head, self._foot = _mark(comments.pop(HEAD, ())), _mark(comments.pop(FOOT, ()))
         for name, root in ((self._tree.name, self._tree.root), *self._tree.subtrees):
             before: dict[int, tuple[str, ...]] = {}
             for number, node in enumerate(Tree(root).walk()):
                 if lines := comments.pop(line_of(node), None):
-                    before[number] = _marked(lines)
+                    before[number] = _mark(lines)
             self._comments[name] = before
 
     def _tree_lines(self, name: str, root: Node, lines: list[str]) -> None:
@@ -189,12 +189,12 @@ class _Writer:
         lines.append(f"{INDENT}</BehaviorTree>")
 
 
-def _marked(lines: Iterable[str]) -> tuple[str, ...]:
+def _mark(lines: Iterable[str]) -> tuple[str, ...]:
     return tuple(f"<!-- {sound_comment(line)} -->" for line in lines)
 
 
 def _own_origin(tree: Tree, dialect: int) -> XmlOrigin | None:
-    """What the file of the tree held beside it, if it is of this tree and dialect."""
+    """Return what the file of the tree held beside it, if it is of this tree and dialect."""
     origin = tree.origin
     if isinstance(origin, XmlOrigin) and origin.dialect == dialect:
         if origin.root is tree.root and origin.subtrees is tree.subtrees:

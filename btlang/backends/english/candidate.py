@@ -1,30 +1,35 @@
-"""What a node is said as, and the check that it is just that node: lowering it must give the node back.
+"""Candidates: what a node may be said as, and the check that lowering it gives just that node back.
 
-So the forms in forms.py are only proposals, and `btlang/passes/lower.py` alone knows what each form means.
+Also the candidates of nodes that set, compare and measure values of the mission.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
-from btlang.backends.english.type_inference import Around
+from btlang.backends.english.code import read_comparison, read_given
+from btlang.backends.english.type_inference import KnownTypes, readable
 from btlang.passes.lower import lower_one
-from btlang.passes.lowered import Lowered
-from btlang.passes.scope import Scope
+from btlang.passes.scope import Lowered, LoweringScope
 from btlang.support.record import Record
+from btlang.text.source import NOWHERE
 from btlang.tree import ast
 from btlang.tree.node import Node
-from btlang.vocabulary.references import keys_in, plain
+from btlang.vocabulary.entry import MEASURED, Entry
+from btlang.vocabulary.pattern import Form, Slot, forms
+from btlang.vocabulary.references import choice_by, keys_in, plain
+from btlang.vocabulary.value_type import WORLD
 
 REFERENCE = re.compile(r"\{[^{}]+\}")
 
 
 class Candidate(Record):
-    """`command` says the node in one statement; `body` as all that stands in a block, where rules have their place.
+    """A way to say a node: `command` in one statement, `body` as all that stands in a block, where rules have their
+    place.
 
     `condition` says it as a condition, None where it cannot be one; `is_condition` where it is meant as one.
-    With `in_lines` what is said needs lines of its own (see btlang/printer/blocks.py), so that only forms with blocks
+    With `in_lines` what is said needs lines of its own (see btlang/printer/mission.py), so that only forms with blocks
     can hold it.
     """
 
@@ -43,20 +48,20 @@ class Candidate(Record):
 
 
 class Checked:
-    """What each piece of syntax is lowered to, for the nodes that were raised so far.
+    """The nodes that each piece of syntax is lowered to, for the nodes that were lifted so far.
 
     `around` is what is known where the node stands that is being raised, `texts` what is computed for it. The scope
     makes the keys that reading makes, as nodes are raised in the order in which they are read.
     """
 
-    def __init__(self, scope: Scope, around: Around) -> None:
+    def __init__(self, scope: LoweringScope, around: KnownTypes) -> None:
         self.scope = scope
         self.around = around
         self.texts: Mapping[str, str] = {}
         self._lowered: dict[int, tuple[ast.Ast, Lowered]] = {}  # with its syntax, so that no other one gets its id
 
     def lowered(self, item: ast.Ast) -> Lowered:
-        """What a piece of syntax means. Few are around pieces that are known."""
+        """Lower a piece of syntax. Only few forms around known pieces are lowered."""
         if id(item) in self._lowered:
             return self._lowered[id(item)][1]
         return lower_one(item, [self.lowered(part) for part in ast.parts(item)], self.scope)
@@ -72,11 +77,11 @@ class Checked:
         return True
 
     def assume(self, item: ast.Ast, lowered: Lowered) -> None:
-        """Takes a piece of syntax for what it may not mean."""
+        """Take a piece of syntax for what it may not mean."""
         self._lowered[id(item)] = item, lowered
 
     def text(self, port: str) -> str | None:
-        """What the text of a port is said as, with values of the mission in braces; None where one has no name."""
+        """Return the English of a port text, with values of the mission in braces; None if one has no name."""
         text = self.texts.get(port[1:-1]) if port[:1] == "{" else None
         if text is None:
             text = port if REFERENCE.fullmatch(port) else plain(port)
@@ -88,7 +93,7 @@ class Checked:
 
 
 def _same(made: Node, wanted: Node) -> bool:
-    """Equality up to the order of ports. Parts that are the same object are not looked into."""
+    """Whether two nodes are equal up to the order of ports. Parts that are the same object aren't looked into."""
     pairs = [(made, wanted)]
     while pairs:
         one, other = pairs.pop()
@@ -100,3 +105,69 @@ def _same(made: Node, wanted: Node) -> bool:
             return False
         pairs += zip(one.children, other.children, strict=True)
     return True
+
+
+def propose_assignments(node: Node, checked: Checked) -> Iterator[ast.Ast]:
+    """Propose `set`, `increase` and `decrease` for a Script."""
+    given = read_given(node.port("code"), checked.texts)
+    is_set = given is not None and given.operation == "set" and given.key not in checked.around.outside
+    if given is not None and (is_set or given.operation in ("increase", "decrease")):
+        kind = checked.around.kinds.get(given.key)
+        if kind is not None and can_say(given.text, kind, checked):
+            yield ast.Assign(given.key, given.operation, kind, given.text, NOWHERE)
+
+
+def propose_choices(node: Node, checked: Checked) -> Iterator[ast.Ast]:
+    """Propose a name that is chosen for a key of the mission's own."""
+    key, kind = node.port("output")[1:-1], node.port("type")
+    if key in checked.around.kinds and key not in checked.around.outside and kind in WORLD:
+        choice = choice_by(dict(node.ports)).replace(key=checked.around.vocabulary.context.keys[kind])
+        yield ast.Assign(key, "set", kind, choice.text, NOWHERE)
+
+
+def propose_comparisons(node: Node, checked: Checked) -> Iterator[ast.Ast]:
+    """Propose a comparison for a ScriptCondition."""
+    found = read_comparison(node.port("code"), checked.texts)
+    kind = checked.around.kinds.get(found.key) if found is not None else None
+    if found is None or kind is None or not all(can_say(text, kind, checked) for _, text in found.arguments):
+        return
+    ways = checked.around.vocabulary.comparing_forms(kind)
+    if _first(ways, found.arguments) == [way for way, _ in found.arguments]:
+        yield ast.Compared(found.key, kind, found.arguments, NOWHERE)
+
+
+def propose_measurements(node: Node, entries: Iterable[Entry], checked: Checked) -> Iterator[ast.Ast]:
+    """Propose a quantity that is measured for a key."""
+    key = node.port(MEASURED)[1:-1]
+    if key not in checked.around.kinds or key in checked.around.outside or node.port(MEASURED) != f"{{{key}}}":
+        return
+    arguments = texts_of([port for port in node.ports if port[0] != MEASURED], checked)
+    for entry in entries:
+        ways = (form for pattern in entry.quantity for form in reversed(forms(pattern)))
+        types = {slot.name: slot.type for slot in entry.slots}
+        if arguments is not None and entry.measures and _first(ways, arguments) is not None:
+            if all(can_say(text, types[name], checked) for name, text in arguments):
+                yield ast.Remember(key, entry, arguments, NOWHERE)
+
+
+def texts_of(ports: Iterable[tuple[str, str]], checked: Checked) -> tuple[tuple[str, str], ...] | None:
+    """Return ports as arguments of syntax, None if one can't be said."""
+    found = [(name, checked.text(text)) for name, text in ports]
+    said = tuple((name, text) for name, text in found if text is not None)
+    return said if len(said) == len(found) else None
+
+
+def can_say(text: str, kind: str, checked: Checked) -> bool:
+    """Whether a port text is read back as a value of a type."""
+    around = checked.around
+    return all(key in around.kinds for key in keys_in(text)) and readable(text, kind, around.vocabulary)
+
+
+def _first(ways: Iterable[Form], arguments: tuple[tuple[str, str], ...]) -> list[str] | None:
+    """Return the slots of the first form that has just these."""
+    names = {name for name, _ in arguments}
+    for form in ways:
+        slots = [part.name for part in form if isinstance(part, Slot)]
+        if set(slots) == names:
+            return slots
+    return None

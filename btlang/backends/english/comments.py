@@ -1,4 +1,4 @@
-"""The comments of an XML file as those of a mission: before the statement in which their node is said."""
+"""Comments of an XML file as those of a mission: before the statement in which their node is said."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Comments(Record):
 
 
 def comments_of(tree: Tree) -> Comments:
-    """Those of the file that a tree was read from; none where it comes from elsewhere."""
+    """Return the comments of the file that a tree was read from; none if it comes from elsewhere."""
     origin = tree.origin
     if not isinstance(origin, XmlOrigin):
         return Comments({}, {})
@@ -41,7 +41,7 @@ def comments_of(tree: Tree) -> Comments:
 
 
 def _of_tree(root: Node, origin: TreeOrigin) -> dict[int, tuple[str, ...]]:
-    """All that belongs to a node stands before it here."""
+    """Return the comments of a tree. All that belongs to a node is before it here."""
     places = origin.before, origin.heading, origin.behind, origin.inside
     if not any(places):
         return {}
@@ -54,7 +54,7 @@ def _of_tree(root: Node, origin: TreeOrigin) -> dict[int, tuple[str, ...]]:
 
 
 def lines_of(texts: Iterable[str]) -> Iterator[str]:
-    """What English says of comments: their lines but for rulers, which have no letter."""
+    """Yield the lines of comments that English keeps: all but rulers, which have no letter."""
     for text in texts:
         if text.startswith(_OPEN):
             lines = text.removeprefix(_OPEN).removesuffix(_CLOSE).split("\n")

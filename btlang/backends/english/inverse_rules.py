@@ -1,4 +1,6 @@
-"""For each id of a node the forms of the language that may say it, the most natural first; see raised.py."""
+"""Inverse rules: for each id of a node the forms of the language that may say it, the most natural first; see
+lift.py.
+"""
 
 from __future__ import annotations
 
@@ -39,7 +41,7 @@ def _chain(operator: str) -> Form:
 
 
 def _sequence(node: Node, children: tuple[Candidate, ...], checked: Checked) -> Iterator[ast.Ast]:
-    """`A 3 times 10 s apart`, or a chain."""
+    """Propose `A 3 times 10 s apart`, or a chain."""
     last = children[1] if len(children) == 2 else None
     if last is not None and last.node.id == "LoopString" and children[0].node.id == "ChooseAll":
         found, loop = dict(children[0].node.ports), last.node
@@ -66,7 +68,7 @@ def _line(raised: Candidate) -> ast.Ast:
 
 
 def _round(child: Candidate, checked: Checked, said: Callable[[Candidate], ast.Ast] = _block) -> ast.Ast | None:
-    """The body of a form that counts a skipped round as a round; None where that is not as it stands."""
+    """Return the body of a form that counts a skipped round as a round; None if it isn't as it stands."""
     if child.node.id == "Sequence" and len(child.children) == 2 and not child.node.ports and not child.node.name:
         body, rest = child.children
         if checked.can_skip(said(body)) and _is_plain(rest.node, "AlwaysSuccess"):
@@ -79,13 +81,13 @@ def _is_plain(node: Node, node_id: str) -> bool:
 
 
 def _otherwise(last: Candidate, *ports: tuple[str, str]) -> ast.Ast | None:
-    """The branch behind `otherwise`; None if there is none to be said."""
+    """Return the branch behind `otherwise`; None if there is none to be said."""
     node = last.node
     return None if node.id == "AlwaysSuccess" and node.ports == ports and not node.name else last.part
 
 
 def _condition(raised: Candidate) -> tuple[bool, ast.Ast] | None:
-    """A condition, and whether it stands behind `unless` or `until`."""
+    """Return a condition, and whether it stands behind `unless` or `until`."""
     if raised.condition is None:
         return None
     if isinstance(raised.condition, ast.Not):
@@ -130,7 +132,7 @@ def _provided(_node: Node, children: tuple[Candidate, ...], _checked: Checked) -
 
 
 def _whenever(node: Node, children: tuple[Candidate, ...], _checked: Checked) -> Iterator[ast.Ast]:
-    """The rule, and what it stands over as further lines of its block."""
+    """Propose the rule, with what it stands over as further lines of its block."""
     if len(children) != 3 or children[0].condition is None:
         return
     rule = ast.Whenever(children[0].condition, children[1].part, node.port("once") == "true", NOWHERE)
@@ -211,14 +213,14 @@ def _parallel(node: Node, children: tuple[Candidate, ...], checked: Checked) -> 
 
 
 def _next_time(children: Sequence[Candidate], checked: Checked) -> Iterator[ast.Ast]:
-    """The next of several times of day."""
+    """Propose the next of several times of day."""
     times = [time for child in children for time in _times(child.node.port("time"), checked)]
     if len(times) == len(children):
         yield ast.WaitTime(";".join(times), NOWHERE)
 
 
 def _fallback(node: Node, children: tuple[Candidate, ...], checked: Checked) -> Iterator[ast.Ast]:
-    """Two children are said as blocks if one of them is a sequence that needs its own lines."""
+    """Propose a chain. Two children are said as blocks if one of them is a sequence that needs its own lines."""
     if len(children) == 2 and any(child.part is not child.command for child in children):
         yield ast.Try(children[0].part, children[1].part, NOWHERE)
     yield from _chain("fallback")(node, children, checked)
@@ -254,14 +256,14 @@ def _wait_time(node: Node, _children: tuple[Candidate, ...], checked: Checked) -
 
 
 def _times(port: str, checked: Checked) -> Iterator[str]:
-    """A time of day that can be said."""
+    """Yield a time of day that can be said."""
     text = checked.text(port) if port[:1] == "{" else port if _TIME.fullmatch(port) else None
     if text is not None:
         yield text
 
 
 def _seconds(msec: str, checked: Checked) -> Iterator[str]:
-    """Milliseconds of a port as seconds, as precise; those that a script computes as the value that they come from."""
+    """Yield milliseconds of a port as seconds, as precise; computed ones as the value that they come from."""
     if _WHOLE.fullmatch(msec):
         yield f"{(Decimal(msec) / 1000).normalize():f}"
     elif msec[:1] == "{":
@@ -271,7 +273,7 @@ def _seconds(msec: str, checked: Checked) -> Iterator[str]:
 
 
 def _rounds(port: str, checked: Checked) -> str | None:
-    """A number of rounds that can be said."""
+    """Return a number of rounds that can be said."""
     return checked.text(port) if port[:1] == "{" or _ROUNDS.fullmatch(port) else None
 
 

@@ -1,20 +1,26 @@
-"""Tree to AST: each node in the most natural form that means just it, and by its id if there is none."""
+"""Lifting: a tree becomes an AST, each node in the most natural form that means just it, and by its id if none does."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
 
-from btlang.backends.english.candidate import Candidate, Checked
-from btlang.backends.english.code import Computed, computed
+from btlang.backends.english.candidate import (
+    Candidate,
+    Checked,
+    can_say,
+    propose_assignments,
+    propose_choices,
+    propose_comparisons,
+    propose_measurements,
+    texts_of,
+)
+from btlang.backends.english.code import Computed, Loop, read_computed
 from btlang.backends.english.comments import Comments
 from btlang.backends.english.inverse_rules import INVERSE_RULES
-from btlang.backends.english.loops import Loop
-from btlang.backends.english.names import Names
-from btlang.backends.english.type_inference import Around
-from btlang.backends.english.values import assigned, can_say, chosen, compared, remembered, texts_of
-from btlang.passes.lowered import Lowered
-from btlang.passes.scope import Scope
+from btlang.backends.english.names import SpokenNames
+from btlang.backends.english.type_inference import KnownTypes
+from btlang.passes.scope import Lowered, LoweringScope
 from btlang.printer.phrase import leaf_words
 from btlang.printer.printer import Printer
 from btlang.printer.sentence import PRINTERS
@@ -38,21 +44,23 @@ _QUESTION = re.compile(
 )
 
 
-class _Place(Record):
-    """A node, and what is known where it stands."""
+class _TreePlace(Record):
+    """A node, and what is known at its place."""
 
     node: Node
-    around: Around
+    around: KnownTypes
 
 
 class Lifter:
-    """Lifts the nodes of one tree to English. `known` are its names and loops.
+    """A lifter of the nodes of one tree to English. `known` are its names and loops.
 
     With `natural` False every node is said by its id. `comments` are those of the file that
     the tree was read from, `refused` the bodies of loops that turned out to be none.
     """
 
-    def __init__(self, tree: Tree, vocabulary: Lexicon, known: Names, comments: Comments, *, natural: bool) -> None:
+    def __init__(
+        self, tree: Tree, vocabulary: Lexicon, known: SpokenNames, comments: Comments, *, natural: bool
+    ) -> None:
         self._vocabulary = vocabulary
         self._natural = natural
         self._known = known
@@ -63,7 +71,7 @@ class Lifter:
                                 name not in known.names) for name in names]  # fmt: skip
         self.printer = Printer(PRINTERS, vocabulary, heads, "clear", known.around("").outside)
         self._node_kinds = {model.id: model.kind for model in tree.models}
-        for node_id in _asked(tree):
+        for node_id in _find_asked(tree):
             if vocabulary.entry(node_id) is None:
                 self._node_kinds.setdefault(node_id, "Condition")
         self._outputs = _outputs(tree)
@@ -71,15 +79,15 @@ class Lifter:
         self._conditions: set[str] = set()  # the names that stand for conditions
         self._loops: dict[str, Candidate] = {}
         self._leaves: dict[tuple[str, tuple[tuple[str, str], ...], Lexicon], str] = {}
-        self._checked = Checked(Scope(names, vocabulary.types), known.around(""))
+        self._checked = Checked(LoweringScope(names, vocabulary.types), known.around(""))
 
     def definition(self, name: str, root: Node) -> ast.Definition:
-        """A named subtree; those that it uses have been raised before."""
-        raised = self.raised(root, name)
+        """Lift a named subtree; those that it uses have been lifted before."""
+        lift = self.lift(root, name)
         is_natural = name in self._known.names
-        body = raised.body
-        if is_natural and raised.is_condition and raised.condition is not None:
-            body = raised.condition
+        body = lift.body
+        if is_natural and lift.is_condition and lift.condition is not None:
+            body = lift.condition
             self._conditions.add(name)
         made = ast.Definition(name, self._known.parameters(name), body, NOWHERE, NOWHERE, not is_natural)
         self.printer.note(made, self._comments.trees.get(name, ()))
@@ -89,30 +97,30 @@ class Lifter:
         return made
 
     def main(self, root: Node) -> ast.Ast:
-        """The commands of the mission; the subtrees have been raised before."""
-        body = self.raised(root).body
+        """Lift the commands of the mission; the subtrees have been lifted before."""
+        body = self.lift(root).body
         self.printer.note(_first_line(body), self._comments.trees.get("", ()))
         return body
 
-    def raised(self, root: Node, name: str = "") -> Candidate:
-        """What a tree is said as; `name` is that of a subtree."""
-        return fold(_Place(root, self._known.around(name)), self._parts, self._raise)
+    def lift(self, root: Node, name: str = "") -> Candidate:
+        """Lift a tree; `name` is that of a subtree."""
+        return fold(_TreePlace(root, self._known.around(name)), self._parts, self._raise)
 
-    def _parts(self, place: _Place) -> list[_Place]:
-        """The body of a loop stands where the loop does."""
+    def _parts(self, place: _TreePlace) -> list[_TreePlace]:
+        """Return the places below one. The body of a loop stands where the loop does."""
         loop = self._known.loops.get(id(place.node))
         if loop is not None:
-            return [_Place(loop.body, self._known.inside(place.around, loop))]
-        return [_Place(child, place.around) for child in place.node.children]
+            return [_TreePlace(loop.body, self._known.inside(place.around, loop))]
+        return [_TreePlace(child, place.around) for child in place.node.children]
 
-    def _raise(self, place: _Place, children: list[Candidate]) -> Candidate:
+    def _raise(self, place: _TreePlace, children: list[Candidate]) -> Candidate:
         node, parts = place.node, tuple(children)
         self._checked.around = place.around
         loop = self._known.loops.get(id(node))
         if loop is not None:
             return self._loop(node, loop, parts[0])
         ways = [(Computed(node, {}), parts)]
-        made = computed(node) if self._natural and not node.name else None
+        made = read_computed(node) if self._natural and not node.name else None
         if made is not None:
             ways.insert(0, (made, parts[-1].children))
         condition = self._condition(node, ways)
@@ -130,7 +138,7 @@ class Lifter:
         return Candidate(node, command, natural, condition, is_condition, in_lines, parts)
 
     def _note(self, nodes: Iterable[Node], said: ast.Ast, condition: ast.Ast | None = None) -> None:
-        """The comments of nodes that are said as one; those of a sequence stand before its first line."""
+        """Keep the comments of nodes that are said as one; those of a sequence stand before its first line."""
         lines = tuple(line for node in nodes for line in self._comments.nodes.get(id(node), ()))
         if not lines:
             return
@@ -140,17 +148,19 @@ class Lifter:
             self.printer.note(_first_line(said), lines)
 
     def _exact(self, node: Node, children: tuple[Candidate, ...], condition: ast.Ast | None) -> ast.Ast:
-        """A condition is said as one: without a keyword entry, only its words show its kind."""
+        """Say a node by its id. A condition is said as one: without a keyword entry, only its words show its kind."""
         if isinstance(condition, ast.Exact) and self._kind(node.id) == "Condition":
             made: ast.Ast = ast.Check(condition, NOWHERE)
         else:
             items = tuple(child.command for child in children)
-            made = ast.Exact(node.id, node.ports, node.name, items, False, NOWHERE, self._given(node, node.ports))
+            made = ast.Exact(node.id, node.ports, node.name, items, False, NOWHERE, self._find_given(node, node.ports))
         assert self._checked.says(made, node)
         return made
 
     def _loop(self, node: Node, loop: Loop, body: Candidate) -> Candidate:
-        """A loop that doesn't mean the node is refused; then all is said again. One may stand twice (ast.Apart)."""
+        """Lift a loop. One that doesn't mean the node is refused; then all is said again. One may stand twice
+        (ast.Apart).
+        """
         if loop.name in self._loops:
             return self._loops[loop.name]
         kind = self._known.kind(loop.name, loop.key)
@@ -174,7 +184,7 @@ class Lifter:
     def _natural_form(
         self, node: Node, ways: list[tuple[Computed, tuple[Candidate, ...]]], condition: ast.Ast | None
     ) -> tuple[ast.Ast | None, tuple[Candidate, ...]]:
-        """None where no form means just this node; and the parts that are said in it."""
+        """Return the form and the parts that are said in it; None if no form means just this node."""
         children = ways[-1][1]
         if not self._natural:
             return None, children
@@ -186,7 +196,7 @@ class Lifter:
         return None, children
 
     def _forms(self, node: Node, children: tuple[Candidate, ...], condition: ast.Ast | None) -> Iterator[ast.Ast]:
-        """The commands that may say a node, the most natural first; only a phrase takes a name."""
+        """Propose the commands that may say a node, the most natural first; only a phrase takes a name."""
         if node.name and (children or node.id not in self._vocabulary.entries):
             return
         form = INVERSE_RULES.get(node.id)
@@ -195,10 +205,10 @@ class Lifter:
         if children and not isinstance(condition, ast.Not | ast.AtLeast):
             return
         if node.id == "Script":
-            yield from assigned(node, self._checked)
+            yield from propose_assignments(node, self._checked)
         if node.id == "Choose":
-            yield from chosen(node, self._checked)
-        yield from remembered(node, self._vocabulary.entries.get(node.id, ()), self._checked)
+            yield from propose_choices(node, self._checked)
+        yield from propose_measurements(node, self._vocabulary.entries.get(node.id, ()), self._checked)
         if condition is not None:
             if not isinstance(condition, ast.Exact):
                 yield ast.Check(condition, NOWHERE)
@@ -229,22 +239,22 @@ class Lifter:
             if number.isdecimal() and 1 <= int(number) <= len(inner):
                 yield ast.AtLeast(int(number), tuple(inner), NOWHERE)
         elif node.id == "ScriptCondition":
-            yield from compared(node, self._checked)
+            yield from propose_comparisons(node, self._checked)
         elif node.port("ID") in self._conditions:
             yield from self._name(node)
         elif not children:
             yield from self._phrase(node, "condition")
 
     def _exact_condition(self, node: Node) -> ast.Ast | None:
-        """None for what is no condition, or not known to be one: read again it would be one everywhere."""
+        """Return a condition, None for a node that isn't known to be one: read again it would be one everywhere."""
         if self._kind(node.id) != "Condition" and not _asks(node):
             return None
-        made = ast.Exact(node.id, node.ports, node.name, (), True, NOWHERE, self._given(node, node.ports))
+        made = ast.Exact(node.id, node.ports, node.name, (), True, NOWHERE, self._find_given(node, node.ports))
         assert self._checked.says(made, node)
         return made
 
-    def _given(self, node: Node, ports: tuple[tuple[str, str], ...]) -> tuple[str, ...]:
-        """The ports of a leaf, of these, that its model says it gives values to."""
+    def _find_given(self, node: Node, ports: tuple[tuple[str, str], ...]) -> tuple[str, ...]:
+        """Return the ports of a leaf, of these, that its model says it gives values to."""
         outputs = self._outputs.get(node.id, ()) if not node.children else ()
         return tuple(name for name, _ in ports if name in outputs)
 
@@ -256,14 +266,14 @@ class Lifter:
         return self._kind(node.id) == "Condition" or _asks(node)
 
     def _kind(self, node_id: str) -> str:
-        """The kind of a node by the tree or a keyword entry, "" for one of the language itself."""
+        """Return the kind of a node by the tree or a keyword entry, "" for one of the language itself."""
         if node_id in self._vocabulary.nodes:
             return ""
         entry = self._vocabulary.entry(node_id)
         return self._node_kinds.get(node_id) or (entry.sort.title() if entry is not None else "")
 
     def _name(self, node: Node) -> Iterator[ast.Ast]:
-        """A defined name; what else its ports hold are values that it needs."""
+        """Propose a defined name. What else its ports hold are values that it needs."""
         name = node.port("ID")
         kinds = dict(self._known.parameters(name))
         ports = dict(node.ports)
@@ -273,7 +283,7 @@ class Lifter:
                 yield ast.Name(name, said, NOWHERE)
 
     def _phrase(self, node: Node, sort: str) -> Iterator[ast.Ast]:
-        """The phrases that are read back as this leaf."""
+        """Propose the phrases that are read back as this leaf."""
         for entry in self._vocabulary.entries.get(node.id, ()):
             defaults = {slot.name: slot.default for slot in entry.slots}
             spoken = [port for port in node.ports if port[0] in defaults and defaults[port[0]] != port[1]]
@@ -283,7 +293,7 @@ class Lifter:
             if len(words) - max((len(text) for _, text in said or ()), default=0) > _MOST_WORDS:
                 continue
             if words and (not (node.name or ports) or self._ends(words)):
-                yield ast.Phrase(entry, said or (), NOWHERE, node.name, ports, self._given(node, ports))
+                yield ast.Phrase(entry, said or (), NOWHERE, node.name, ports, self._find_given(node, ports))
 
     def _words(self, node_id: str, texts: tuple[tuple[str, str], ...]) -> str:
         vocabulary = self._checked.around.vocabulary
@@ -306,13 +316,13 @@ class Lifter:
 
 
 def _first_line(said: ast.Ast) -> ast.Ast:
-    """The statement that stands first where all of it are lines."""
+    """Return the statement that stands first if all of it are lines."""
     is_chain = isinstance(said, ast.Chain) and said.operator == "sequence"
     return ast.parts(said)[0] if is_chain else said
 
 
-def _asked(tree: Tree) -> Iterator[str]:
-    """The leaves that stand where a condition does and have the name of one: `IsDoorOpen`."""
+def _find_asked(tree: Tree) -> Iterator[str]:
+    """Yield the leaves that stand where a condition does and have the name of one: `IsDoorOpen`."""
     for node in tree.walk():
         first = node.children[0] if node.children and node.id in _ASKING else None
         if first is not None and not first.children and first.id not in CATALOGUE and _QUESTION.match(first.id):

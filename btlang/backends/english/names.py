@@ -1,11 +1,11 @@
-"""What of a tree has a name that can be said: its subtrees, their parameters, loops and values."""
+"""Names in a tree that can be said: its subtrees, their parameters, loops and values."""
 
 from __future__ import annotations
 
 from collections.abc import Set
 
-from btlang.backends.english.loops import Loop, find_loops
-from btlang.backends.english.type_inference import Around, TypeInference, parameters
+from btlang.backends.english.code import Loop, find_loops
+from btlang.backends.english.type_inference import KnownTypes, TypeInference, parameters
 from btlang.frontends.mission.symbols.definitions import find_definitions
 from btlang.frontends.mission.symbols.phrases import Phrases
 from btlang.support.record import Record
@@ -20,7 +20,7 @@ from btlang.vocabulary.references import keys_set_in
 
 
 class Refused(Record):
-    """What turned out not to be said naturally: names of subtrees, and keys of values of the whole mission.
+    """What couldn't be said naturally: names of subtrees, and keys of values of the whole mission.
 
     `unset` are keys that a node sets, but nothing that is said.
     """
@@ -30,8 +30,9 @@ class Refused(Record):
     unset: Set[str] = frozenset()
 
 
-class Names:
-    """`names` are the subtrees that are said as phrases, `loops` those that are bodies of `for each`.
+class SpokenNames:
+    """The names of a tree: `names` are the subtrees that are said as phrases, `loops` those that are bodies of `for
+    each`.
 
     With `values` False there are no loops and no parameters, and values are only given to the mission; without `given`
     no value has a name, either. With `sure` no name has a parameter whose type depends on its first use.
@@ -52,7 +53,7 @@ class Names:
                 if name not in bodies:
                     self._kinds.read(root, self._owners(name))
         else:
-            self._nothing = Around({}, {}, vocabulary)
+            self._nothing = KnownTypes({}, {}, vocabulary)
         self._unsayable = {
             name for name in self.names if any(not self._has_type(name, key, sure) for key in parameters(name))
         }
@@ -65,25 +66,25 @@ class Names:
         return kind is not None and not (sure and self._kinds.is_doubtful((owner, key)))
 
     def kind(self, owner: str, key: str) -> str | None:
-        """The type of a parameter."""
+        """Return the type of a parameter."""
         return self._kinds.kind((owner, key))
 
     def parameters(self, name: str) -> tuple[tuple[str, str], ...]:
-        """The parameters of a subtree with their types."""
+        """Return the parameters of a subtree with their types."""
         return tuple((key, self.kind(name, key) or "text") for key in self._owners(name))
 
-    def around(self, name: str) -> Around:
-        """What is known in the tree of a name, "" for the main tree."""
+    def around(self, name: str) -> KnownTypes:
+        """Return what is known in the tree of a name, "" for the main tree."""
         return self._kinds.around(self._owners(name)) if self._given else self._nothing
 
-    def inside(self, around: Around, loop: Loop) -> Around:
-        """What is known in the body of a loop."""
+    def inside(self, around: KnownTypes, loop: Loop) -> KnownTypes:
+        """Return what is known in the body of a loop."""
         return self._kinds.around({**around.owners, loop.key: loop.name})
 
-    def refused_by(self, mission: ast.Program, before: Refused, loops: Set[str]) -> Refused:
-        """`before` with what in this mission could not be read: `loops`, and values with which something is wrong."""
+    def find_refused(self, mission: ast.Program, before: Refused, loops: Set[str]) -> Refused:
+        """Add to `before` what in this mission couldn't be read: `loops`, and values with which something is wrong."""
         local = {loop.key for loop in self.loops.values()} | {key for name in self.names for key in parameters(name)}
-        said = _Said(mission)
+        said = _MissionKeys(mission)
         unset = said.used.keys() - said.set - said.chosen
         outside = self.around("").outside
         wrong = (said.set | (unset & outside)) & local
@@ -92,9 +93,9 @@ class Names:
         )
 
 
-def given_keys(mission: ast.Program) -> tuple[str, ...]:
-    """The keys of the values that a mission uses and nothing in it gives, in the order of their use."""
-    said = _Said(mission)
+def find_given_keys(mission: ast.Program) -> tuple[str, ...]:
+    """Find the keys of the values that a mission uses and nothing in it sets, in the order of their use."""
+    said = _MissionKeys(mission)
     known = said.set | said.chosen | said.outputs
     return tuple(
         key
@@ -103,8 +104,9 @@ def given_keys(mission: ast.Program) -> tuple[str, ...]:
     )
 
 
-class _Said:
-    """The keys of values of the whole mission: those that are `set`, `chosen` or `outputs` of nodes, and those `used`.
+class _MissionKeys:
+    """The keys of values of the whole mission: those that are `set`, `chosen` or `outputs` of nodes, and those
+    `used`.
 
     `used` has the names of the subtrees in quotes that use a key, "" for anywhere else; `arguments` are what such
     subtrees get.

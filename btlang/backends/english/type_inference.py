@@ -1,4 +1,4 @@
-"""The types of the values of a tree: they follow from where the values stand, and from what is given to them.
+"""Type inference for the values of a tree, from where the values stand, and from what is given to them.
 
 A value is a key and its owner: "" for the whole mission, else the subtree whose parameter it is.
 """
@@ -7,12 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Container, Mapping, Set
 
-from btlang.backends.english.code import Computed, compared_by, computed, given_by
-from btlang.backends.english.loops import Loop
+from btlang.backends.english.code import Computed, Loop, read_comparison, read_computed, read_given
 from btlang.frontends.mission.symbols.given import untyped
 from btlang.frontends.mission.symbols.prefixes import find_prefixes
-from btlang.printer.naming import spelt
 from btlang.printer.phrase import value_of
+from btlang.printer.sentence import spell_key
 from btlang.support.record import Record
 from btlang.text.source import Source
 from btlang.text.words import split
@@ -36,8 +35,8 @@ _TYPES = {"rounds": "count", "time of day": "time_of_day"}
 """Those of values in ports with such units."""
 
 
-class Around(Record):
-    """What is known at a place: the types of values by key, with a vocabulary that knows them, too.
+class KnownTypes(Record):
+    """The facts that are known at a place: the types of values by key, with a vocabulary that knows them, too.
 
     `owners` are those of the keys that are not of the whole mission, `outside` the keys that nothing sets that is said.
     """
@@ -49,7 +48,7 @@ class Around(Record):
 
 
 def parameters(name: str) -> tuple[str, ...]:
-    """Those of the name of a subtree."""
+    """Return the parameters of the name of a subtree."""
     return tuple(part.name for part in name_form(name) if isinstance(part, Slot))
 
 
@@ -79,10 +78,10 @@ class TypeInference:
         self._sorts: dict[Value, set[bool]] = {}  # whether scripts work with it as a number
         self._texts: dict[Value, list[str]] = {}
         self._kinds: dict[Value, str | None] = {}
-        self._around: dict[tuple[tuple[str, str], ...], Around] = {}
+        self._around: dict[tuple[tuple[str, str], ...], KnownTypes] = {}
 
-    def around(self, owners: Mapping[str, str]) -> Around:
-        """What is known where these keys have owners; after all trees were read."""
+    def around(self, owners: Mapping[str, str]) -> KnownTypes:
+        """Return what is known where these keys have owners; after all trees were read."""
         place = tuple(owners.items())
         if place not in self._around:
             values = {key: ("", key) for owner, key in self._groups if not owner and key not in self._refused}
@@ -97,11 +96,11 @@ class TypeInference:
             vocabulary = self._vocabulary.with_known(known)
             taken = self._set | {key for owner, key in self._groups if owner}
             vocabulary.context.keys = {kind: free_key(kind, taken) for kind in WORLD}
-            self._around[place] = Around(owners, kinds, vocabulary, outside)
+            self._around[place] = KnownTypes(owners, kinds, vocabulary, outside)
         return self._around[place]
 
     def kind(self, value: Value) -> str | None:
-        """None where it can have none, or its name cannot be said."""
+        """Return the type of a value, None if it can have none, or its name can't be said."""
         if not self._kinds:
             for one, other in self._given:
                 self._join(self._first(one), self._first(other))
@@ -112,7 +111,7 @@ class TypeInference:
     # -- reading
 
     def read(self, root: Node, owners: Mapping[str, str]) -> None:
-        """Notes what a tree shows about values."""
+        """Note what a tree shows about values."""
         stack = [(root, owners)]
         while stack:
             node, own = stack.pop()
@@ -120,10 +119,10 @@ class TypeInference:
             if loop is not None:
                 for one in loop.rounds:
                     self._give((loop.name, loop.key), dict(one.node.ports)[loop.key], own, one.texts)
-                self._named((loop.name, loop.key))
+                self._type_by_name((loop.name, loop.key))
                 stack.append((loop.body, {**own, loop.key: loop.name}))
                 continue
-            made = computed(node)
+            made = read_computed(node)
             if made is not None:
                 self._leaf(made, own)
                 stack += [(child, own) for child in made.node.children]
@@ -131,7 +130,7 @@ class TypeInference:
                 self._leaf(Computed(node, {}), own)
                 stack += [(child, own) for child in node.children]
         for key, owner in owners.items():
-            self._named((owner, key))
+            self._type_by_name((owner, key))
 
     def _leaf(self, made: Computed, own: Mapping[str, str]) -> None:
         node, texts = made.node, made.texts
@@ -142,14 +141,14 @@ class TypeInference:
             self._chosen.update([choice.key] if choice is not None else ())
         for key in made.times:
             self._need(texts[key], "duration", own)
-        if node.id == "Script" and (given := given_by(node.port("code"), texts)) is not None:
+        if node.id == "Script" and (given := read_given(node.port("code"), texts)) is not None:
             value = self._value(given.key, own)
             self._set.add(given.key)
             self._sort(value, given.is_number)
             self._give(value, given.text, own, {}, given.is_number)
             if given.operation == "time":
                 self._need(given.text, "duration", own)
-        elif node.id == "ScriptCondition" and (found := compared_by(node.port("code"), texts)) is not None:
+        elif node.id == "ScriptCondition" and (found := read_comparison(node.port("code"), texts)) is not None:
             value = self._value(found.key, own)
             self._sort(value, found.is_number)
             for _, text in found.arguments:
@@ -212,8 +211,8 @@ class TypeInference:
         if key and key[0] != "_":
             self._needs.setdefault(self._value(key, own), set()).add(kind)
 
-    def _named(self, value: Value) -> None:
-        """A local value that has the name of a type is of that type."""
+    def _type_by_name(self, value: Value) -> None:
+        """Give a local value that has the name of a type that type."""
         self._groups.setdefault(value, [value])
         if value[1] in self._vocabulary.types:
             self._needs.setdefault(value, set()).add(value[1])
@@ -221,13 +220,13 @@ class TypeInference:
     # -- deciding
 
     def _first(self, value: Value) -> Value:
-        """The one that stands for all of its group."""
+        """Return the value that stands for all of its group."""
         while value in self._joined:
             value = self._joined[value]
         return value
 
     def _join(self, one: Value, other: Value) -> None:
-        """Where they can be of one type, which a text that is made of a number is not."""
+        """Join two values that can be of one type, which a text that is made of a number is not."""
         both = [*self._groups[one], *self._groups[other]]
         kind = self._common(both) if one != other else None
         texts = [text for value in both for text in self._texts.get(value, ())]
@@ -283,7 +282,7 @@ class TypeInference:
         if key[:1] == "_" or key != key.lower():
             return False
         vocabulary = self._vocabulary
-        said = f"{vocabulary.word('set')} {spelt(key, vocabulary)} {vocabulary.word('set_to')} 0"
+        said = f"{vocabulary.word('set')} {spell_key(key, vocabulary)} {vocabulary.word('set_to')} 0"
         prefixes = find_prefixes(split(Source(said), vocabulary.orthography), vocabulary)
         return [prefix.key for prefix in prefixes.values()] == [key]
 
@@ -294,6 +293,6 @@ def readable(text: str, kind: str, vocabulary: Lexicon) -> bool:
 
 
 def _reference(text: str) -> str:
-    """The key that a text is, "" for any other text."""
+    """Return the key that a text is, "" for any other text."""
     found = pieces(text)
     return found[0].key if len(found) == 1 and isinstance(found[0], Reference) else ""

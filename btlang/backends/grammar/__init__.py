@@ -1,1 +1,1 @@
-"""What missions of a vocabulary look like, for language models whose output is constrained by a grammar."""
+"""Grammars of the missions of a vocabulary, for language models whose output is constrained by one."""

@@ -1,4 +1,4 @@
-"""How the words of a mission go together: the rules of the grammar that are the same for every vocabulary.
+"""Forms of missions: the rules of the grammar that are the same for every vocabulary.
 
 The notation is that of `rules.parsed`. What isn't here is made from the vocabulary by `vocabulary_rules.py`:
 

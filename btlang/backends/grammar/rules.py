@@ -1,4 +1,7 @@
-"""Rules of a context-free grammar, and the notation in which `forms.py` writes them."""
+"""Rules of a context-free grammar, and their notations: that of `forms.py`, GBNF and EBNF.
+
+GBNF is the notation of llama.cpp, EBNF that of the W3C in the specification of XML.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +9,11 @@ import re
 from collections.abc import Callable, Iterable, Iterator
 
 from btlang.support.record import Record
+
+_PIECE = re.compile(
+    r"""\s*(?:"(?P<text>[^"]*)"|(?P<chars>\[[^\]]+\])|<(?P<words>[^>]+)>|(?P<name>[a-z][a-z0-9-]*)|(?P<mark>[|()?*+]))"""
+)
+_ESCAPES = str.maketrans({"\\": r"\\", '"': r"\"", "\n": r"\n"})
 
 
 class Text(Record):
@@ -20,47 +28,47 @@ class Chars(Record):
     written: str
 
 
-class Name(Record):
-    """What the rule of that name makes."""
+class RuleName(Record):
+    """The right-hand side of the rule of that name."""
 
     name: str
 
 
-class Choice(Record):
-    """One of these."""
+class Alternatives(Record):
+    """One of these parts."""
 
     parts: tuple[Part, ...]
 
 
 class Joined(Record):
-    """These, one after the other."""
+    """These parts, one after the other."""
 
     parts: tuple[Part, ...]
 
 
 class Repeated(Record):
-    """The part as often as the mark says: `?`, `*` or `+`."""
+    """A part as often as the mark says: `?`, `*` or `+`."""
 
     part: Part
     mark: str
 
 
-Part = Text | Chars | Name | Choice | Joined | Repeated
+Part = Text | Chars | RuleName | Alternatives | Joined | Repeated
 Rules = dict[str, Part]
 """The rules by name; the first one makes whole missions."""
 
-NOTHING = Choice(())
+NOTHING = Alternatives(())
 """What can't be said with the loaded words."""
 
 
 def choice(parts: Iterable[Part]) -> Part:
-    """One of those that can be said, each once."""
+    """Return one of the parts that can be said, each once."""
     found = tuple(dict.fromkeys(part for part in parts if part != NOTHING))
-    return found[0] if len(found) == 1 else Choice(found)
+    return found[0] if len(found) == 1 else Alternatives(found)
 
 
 def joined(parts: Iterable[Part]) -> Part:
-    """All parts in a row, with neighbouring texts as one; NOTHING if one of them can't be said."""
+    """Return all parts in a row, with neighbouring texts as one; NOTHING if one of them can't be said."""
     made: list[Part] = []
     for part in parts:
         if isinstance(part, Text) and made and isinstance(made[-1], Text):
@@ -72,24 +80,20 @@ def joined(parts: Iterable[Part]) -> Part:
     return made[0] if len(made) == 1 else Joined(tuple(made))
 
 
-def repeated(part: Part, mark: str) -> Part:
-    """The part as often as the mark says. What can't be said can be said no times."""
+def repeat(part: Part, mark: str) -> Part:
+    """Repeat the part as often as the mark says. A part that can't be said can be said no times."""
     if part == NOTHING:
         return NOTHING if mark == "+" else Joined(())
     return Repeated(part, mark)
 
 
-_PIECE = re.compile(
-    r"""\s*(?:"(?P<text>[^"]*)"|(?P<chars>\[[^\]]+\])|<(?P<words>[^>]+)>|(?P<name>[a-z][a-z0-9-]*)|(?P<mark>[|()?*+]))"""
-)
-
-
-def parsed(written: str, words: Callable[[str], Part]) -> Part:
-    """A right-hand side: `"text"`, `[1-9]`, `name`, `(a | b)`, `a?`, `a*`, `a+`, and `<what words() makes of this>`.
+def parse_rule(format_rules: str, words: Callable[[str], Part]) -> Part:
+    """Parse a right-hand side: `"text"`, `[1-9]`, `name`, `(a | b)`, `a?`, `a*`, `a+`, and `<what words() makes of
+    this>`.
 
     A backtick in a text is a double quote, `\\n` a line end.
     """
-    pieces = list(_pieces(written))
+    pieces = list(_pieces(format_rules))
 
     def alternatives() -> Part:
         found = [row()]
@@ -114,24 +118,24 @@ def parsed(written: str, words: Callable[[str], Part]) -> Part:
         elif kind == "words":
             part = words(piece)
         elif kind == "name":
-            part = Name(piece)
+            part = RuleName(piece)
         else:
             part = alternatives()
             pieces.pop(0)  # the closing bracket
         while pieces and pieces[0][0] == "mark" and pieces[0][1] in "?*+":
-            part = repeated(part, pieces.pop(0)[1])
+            part = repeat(part, pieces.pop(0)[1])
         return part
 
     return alternatives()
 
 
-def _pieces(written: str) -> Iterator[tuple[str, str]]:
-    for match in _PIECE.finditer(written):
+def _pieces(format_rules: str) -> Iterator[tuple[str, str]]:
+    for match in _PIECE.finditer(format_rules):
         yield str(match.lastgroup), str(match[match.lastgroup or 0])
 
 
-def pruned(rules: Rules) -> Rules:
-    """The rules that can make something and that the first one uses; the others, and what needs them, go."""
+def prune(rules: Rules) -> Rules:
+    """Return the rules that can make something and that the first one uses, without the others and what needs them."""
     rules = dict(rules)
     while True:
         empty = {name for name, part in rules.items() if part == NOTHING}
@@ -144,51 +148,68 @@ def pruned(rules: Rules) -> Rules:
         name = pending.pop()
         if name not in used:
             used[name] = None
-            pending += names_in(rules[name])
+            pending += find_rule_names(rules[name])
     return {name: part for name, part in rules.items() if name in used}
 
 
 def _without(part: Part, empty: set[str]) -> Part:
-    if isinstance(part, Name):
+    if isinstance(part, RuleName):
         return NOTHING if part.name in empty else part
-    if isinstance(part, Choice):
+    if isinstance(part, Alternatives):
         return choice(_without(each, empty) for each in part.parts)
     if isinstance(part, Joined):
         return joined(_without(each, empty) for each in part.parts)
     if isinstance(part, Repeated):
-        return repeated(_without(part.part, empty), part.mark)
+        return repeat(_without(part.part, empty), part.mark)
     return part
 
 
-def names_in(part: Part) -> Iterator[str]:
-    """The rules that a right-hand side uses."""
-    if isinstance(part, Name):
+def find_rule_names(part: Part) -> Iterator[str]:
+    """Yield the rules that a right-hand side uses."""
+    if isinstance(part, RuleName):
         yield part.name
     elif isinstance(part, Repeated):
-        yield from names_in(part.part)
-    elif isinstance(part, Choice | Joined):
+        yield from find_rule_names(part.part)
+    elif isinstance(part, Alternatives | Joined):
         for each in part.parts:
-            yield from names_in(each)
+            yield from find_rule_names(each)
 
 
-def written(rules: Rules, pieces_of: Callable[[str], list[str]]) -> str:
-    """One rule on each line; `pieces_of` gives a text as the notation quotes it, in a row."""
-    return "".join(f"{name} ::= {_part_written(part, pieces_of)}\n" for name, part in rules.items())
+def format_rules(rules: Rules, pieces_of: Callable[[str], list[str]]) -> str:
+    """Format one rule on each line; `pieces_of` returns a text as the notation quotes it, in a row."""
+    return "".join(f"{name} ::= {_format_part(part, pieces_of)}\n" for name, part in rules.items())
 
 
-def _part_written(part: Part, pieces_of: Callable[[str], list[str]], inside: bool = False) -> str:
-    """A part, in brackets where it is `inside` another one that binds tighter."""
+def _format_part(part: Part, pieces_of: Callable[[str], list[str]], inside: bool = False) -> str:
+    """Format a part, in brackets if it is `inside` another one that binds tighter."""
     if isinstance(part, Chars):
         return part.written
-    if isinstance(part, Name):
+    if isinstance(part, RuleName):
         return part.name
     if isinstance(part, Repeated):
-        return _part_written(part.part, pieces_of, inside=True) + part.mark
+        return _format_part(part.part, pieces_of, inside=True) + part.mark
     if isinstance(part, Text):
         pieces = pieces_of(part.text)
         text, inside = " ".join(pieces), inside and len(pieces) > 1
     elif isinstance(part, Joined):
-        text = " ".join(_part_written(each, pieces_of, isinstance(each, Choice)) for each in part.parts)
+        text = " ".join(_format_part(each, pieces_of, isinstance(each, Alternatives)) for each in part.parts)
     else:
-        text = " | ".join(_part_written(each, pieces_of) for each in part.parts)
+        text = " | ".join(_format_part(each, pieces_of) for each in part.parts)
     return f"({text})" if inside else text
+
+
+def to_ebnf(rules: Rules) -> str:
+    """Format one rule on each line; the first makes whole missions."""
+    return format_rules(rules, lambda text: [_quote_ebnf(piece) for piece in re.split(r'(\n|"+)', text) if piece])
+
+
+def _quote_ebnf(piece: str) -> str:
+    """Quote a text, which has no escapes: a line end is a code, and a double quote stands in single ones."""
+    if piece == "\n":
+        return "#xA"
+    return f"'{piece}'" if '"' in piece else f'"{piece}"'
+
+
+def to_gbnf(rules: Rules) -> str:
+    """Format one rule on each line. The first must be called "root"."""
+    return format_rules(rules, lambda text: [f'"{text.translate(_ESCAPES)}"'])

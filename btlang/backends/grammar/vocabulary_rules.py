@@ -1,4 +1,4 @@
-"""The rules of a grammar that a vocabulary makes: its phrases, the words of its roles, its values."""
+"""Rules that a vocabulary adds to the grammar: its phrases, the words of its roles, its values."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from btlang.backends.grammar.forms import FORMS
 from btlang.backends.grammar.rules import (
     NOTHING,
     Chars,
-    Name,
     Part,
+    RuleName,
     Rules,
     Text,
     choice,
     joined,
-    parsed,
-    pruned,
-    repeated,
+    parse_rule,
+    prune,
+    repeat,
 )
 from btlang.tree.catalogue import SUBTREE
 from btlang.vocabulary.correct_words import correct_words
@@ -37,12 +37,12 @@ _GIVEN = "{%s}"  # a value of the mission in the place of one that is written ou
 
 
 def grammar_of(vocabulary: Lexicon) -> Rules:
-    """The grammar of missions with the words of a vocabulary; its first rule is "root"."""
+    """Return the grammar of missions with the words of a vocabulary; its first rule is "root"."""
     return _VocabularyRules(vocabulary).made()
 
 
 class _Leaf:
-    """One phrase of an entry: the rule of its name makes every way to say it."""
+    """A phrase of an entry: the rule of its name makes every way to say it."""
 
     def __init__(self, name: str, entry: Entry, said: tuple[Form, ...], kinds: Mapping[str, str]) -> None:
         self.name, self.entry, self.forms, self.kinds = name, entry, said, kinds
@@ -63,11 +63,11 @@ class _VocabularyRules:
         self._condition_forms = {form for leaf in self._conditions for form in leaf.forms}
 
     def made(self) -> Rules:
-        rules = {name: parsed(written, self._words) for name, written in FORMS.items()}
-        rules["action"] = choice(Name(leaf.name) for leaf in self._actions)
-        rules["steady"] = choice(Name(leaf.name) for leaf in self._actions if leaf.is_steady)
-        rules["phrase"] = choice(Name(leaf.name) for leaf in self._conditions)
-        rules["denied"] = choice(self._said(form, leaf) for leaf in self._conditions for form in self._denied(leaf))
+        rules = {name: parse_rule(written, self._words) for name, written in FORMS.items()}
+        rules["action"] = choice(RuleName(leaf.name) for leaf in self._actions)
+        rules["steady"] = choice(RuleName(leaf.name) for leaf in self._actions if leaf.is_steady)
+        rules["phrase"] = choice(RuleName(leaf.name) for leaf in self._conditions)
+        rules["denied"] = choice(self._say(form, leaf) for leaf in self._conditions for form in self._deny(leaf))
         rules["quantity"] = self._quantities()
         for name, leaves in (("exact-action", self._actions), ("exact-condition", self._conditions)):
             ids = dict.fromkeys(leaf.entry.id for leaf in leaves if not leaf.entry.slots)
@@ -75,10 +75,10 @@ class _VocabularyRules:
         rules["further"] = choice(self._further(leaf) for leaf in self._actions)
         rules["exact-ports"] = choice(self._exact(leaf) for leaf in self._actions)
         for leaf in (*self._actions, *self._conditions):
-            rules[leaf.name] = choice(self._said(form, leaf) for form in leaf.forms)
+            rules[leaf.name] = choice(self._say(form, leaf) for form in leaf.forms)
         for kind in self._vocabulary.types.values():
             rules[_rule_of(kind.name)] = self._value(kind)
-        return pruned({"root": rules.pop("mission"), **rules, **self._rules})
+        return prune({"root": rules.pop("mission"), **rules, **self._rules})
 
     def _leaves(self) -> Iterator[_Leaf]:
         articles, roles = self._vocabulary.articles, self._vocabulary.roles
@@ -92,9 +92,9 @@ class _VocabularyRules:
                 if said:
                     yield _Leaf(f"{_kebab(entry.id)}-{number}", entry, said, kinds)
 
-    def _said(self, form: Form, leaf: _Leaf, given: Mapping[str, Part] = {}) -> Part:
-        """A way to say a phrase, with the values of its slots; `given` ones stand in the place of others."""
-        return self._row(form, lambda slot: given.get(slot, Name(_rule_of(leaf.kinds.get(slot, slot)))))
+    def _say(self, form: Form, leaf: _Leaf, given: Mapping[str, Part] = {}) -> Part:
+        """Return a way to say a phrase, with the values of its slots; `given` ones replace others."""
+        return self._row(form, lambda slot: given.get(slot, RuleName(_rule_of(leaf.kinds.get(slot, slot)))))
 
     def _row(self, form: Form, value: Callable[[str], Part]) -> Part:
         parts: list[Part] = []
@@ -102,8 +102,8 @@ class _VocabularyRules:
             parts += [Text(" "), value(part.name) if isinstance(part, Slot) else Text(part)]
         return joined(parts[1:])
 
-    def _denied(self, leaf: _Leaf) -> Iterator[Form]:
-        """That it is not so, in the verb or the subject."""
+    def _deny(self, leaf: _Leaf) -> Iterator[Form]:
+        """Deny a condition, in the verb or the subject."""
         tables = self._vocabulary.negations, self._vocabulary.negative_subjects
         for form in leaf.forms:
             denied = (way for way, role in variants(form, *tables, {}) if role == "negated")
@@ -114,22 +114,22 @@ class _VocabularyRules:
         for entry in chain.from_iterable(self._vocabulary.entries.values()):
             kinds = {slot.name: slot.type for slot in entry.slots}
             said = (form for pattern in entry.quantity for form in forms(pattern, self._vocabulary.articles))
-            found += [self._said(form, _Leaf("", entry, (), kinds)) for form in said]
+            found += [self._say(form, _Leaf("", entry, (), kinds)) for form in said]
         return choice(found)
 
     def _words(self, wanted: str) -> Part:
-        """What a name in angle brackets stands for."""
+        """Return what a name in angle brackets stands for."""
         head, _, rest = wanted.partition(" ")
         special = {
-            "together": self._together, "compare": self._compared, "say": self._saying, "each-type": self._by_type,
-            "keyed": self._keyed, "is-keyed": self._is_keyed,
+            "together": self._together, "compare": self._compare, "say": self._say_value, "each-type": self._by_type,
+            "keyed": self._add_key, "is-keyed": self._is_keyed,
         }  # fmt: skip
         if head in special:
             return special[head](rest)
         if wanted == "doing":
-            return self._shared(wanted, self._doing(self._actions))
+            return self._share(wanted, self._gerunds(self._actions))
         if wanted == "steady doing":
-            return self._shared("steady-doing", self._doing(leaf for leaf in self._actions if leaf.is_steady))
+            return self._share("steady-doing", self._gerunds(leaf for leaf in self._actions if leaf.is_steady))
         if wanted == "forever":
             return choice(Text(word) for word, rounds in self._vocabulary.counts.items() if rounds < 0)
         if head == "subtree":
@@ -137,19 +137,19 @@ class _VocabularyRules:
             return Text(f'{words} "{rest}"') if words else NOTHING
         if wanted == "at-fact w1":
             return self._with_value("place", Text("w1"))
-        return self._shared(f"word-{_kebab(wanted)}", self._role(head, rest))
+        return self._share(f"word-{_kebab(wanted)}", self._role(head, rest))
 
-    def _shared(self, name: str, part: Part) -> Part:
-        """The part as a rule that others use."""
+    def _share(self, name: str, part: Part) -> Part:
+        """Make the part a rule that others use."""
         self._rules[name] = part
-        return Name(name)
+        return RuleName(name)
 
     def _role(self, role: str, value: str) -> Part:
-        """Every way to say a role; a `value` stands in its slot."""
+        """Return every way to say a role; a `value` is in its slot."""
         vocabulary = self._vocabulary
 
         def in_slot(slot: str) -> Part:
-            return Text(value) if value else Name(_rule_of(slot))
+            return Text(value) if value else RuleName(_rule_of(slot))
 
         phrases = [phrase for phrase in vocabulary.roles.get(role, ()) if phrase not in vocabulary.meanings]
         ways = [self._row(form, in_slot) for phrase in phrases for form in forms(phrase, vocabulary.articles)]
@@ -158,7 +158,9 @@ class _VocabularyRules:
         return choice(ways)
 
     def _together(self, joint: str) -> Part:
-        """Two commands side by side: no grammar counts the parts of a robot, so they are sorted by those they need."""
+        """Return two commands side by side. No grammar counts the parts of a robot, so they are sorted by those they
+        need.
+        """
         by_parts: dict[frozenset[str], list[_Leaf]] = {}
         for leaf in self._actions:
             by_parts.setdefault(frozenset(leaf.entry.resources), []).append(leaf)
@@ -167,43 +169,43 @@ class _VocabularyRules:
             number = list(by_parts).index(parts) + 1
             others = [leaf for leaf in self._actions if parts.isdisjoint(leaf.entry.resources)]
             name = f"needs-{'-and-'.join(sorted(map(_kebab, parts))) or 'nothing'}"
-            first = self._shared(name, choice(Name(leaf.name) for leaf in leaves))
+            first = self._share(name, choice(RuleName(leaf.name) for leaf in leaves))
             if joint == "while doing":
-                second = self._shared(f"beside-{number}-doing", self._doing(others))
+                second = self._share(f"beside-{number}-doing", self._gerunds(others))
             else:
-                second = self._shared(f"beside-{number}", choice(Name(leaf.name) for leaf in others))
+                second = self._share(f"beside-{number}", choice(RuleName(leaf.name) for leaf in others))
             found.append(joined((first, self._joint(joint), second)))
         return choice(found)
 
     def _joint(self, joint: str) -> Part:
         if joint == "while doing":
-            return parsed('" " <while> " "', self._words)
+            return parse_rule('" " <while> " "', self._words)
         if joint.startswith(". "):
-            return parsed(f'". " <{joint[2:]}> ", "', self._words)
-        return parsed(f'" " <{joint}> " "', self._words)
+            return parse_rule(f'". " <{joint[2:]}> ", "', self._words)
+        return parse_rule(f'" " <{joint}> " "', self._words)
 
-    def _compared(self, kind: str) -> Part:
+    def _compare(self, kind: str) -> Part:
         return choice(
-            self._row(form, lambda slot: Name(_rule_of(kind))) for form in self._vocabulary.comparing_forms(kind)
+            self._row(form, lambda slot: RuleName(_rule_of(kind))) for form in self._vocabulary.comparing_forms(kind)
         )
 
-    def _saying(self, name: str) -> Part:
+    def _say_value(self, name: str) -> Part:
         return self._with_value("text", Text(f'"{_GIVEN % name}"'))
 
-    def _keyed(self, name: str) -> Part:
-        return self._shared(f"keyed-{name}", self._with_key(name, self._actions))
+    def _add_key(self, name: str) -> Part:
+        return self._share(f"keyed-{name}", self._with_key(name, self._actions))
 
     def _is_keyed(self, name: str) -> Part:
-        return self._shared(f"is-keyed-{name}", self._with_key(name, self._conditions))
+        return self._share(f"is-keyed-{name}", self._with_key(name, self._conditions))
 
     def _with_key(self, name: str, leaves: Sequence[_Leaf]) -> Part:
-        """A phrase with this value in a slot of any type."""
+        """Return a phrase with this value in a slot of any type."""
         key = _GIVEN % name
         patterns = chain.from_iterable(self._vocabulary.roles.values())
         roles = [form for pattern in patterns for form in forms(pattern, self._vocabulary.articles)]
         joining = {_head(form) for form in roles if _slots_of(form)}  # `in {n1}` may be a time
         return choice(
-            self._said(form, leaf, {slot: Text(f'"{key}"' if leaf.kinds.get(slot) == TEXT else key)})
+            self._say(form, leaf, {slot: Text(f'"{key}"' if leaf.kinds.get(slot) == TEXT else key)})
             for leaf in leaves
             for form in leaf.forms
             if _head(form) not in joining
@@ -211,23 +213,23 @@ class _VocabularyRules:
         )
 
     def _further(self, leaf: _Leaf) -> Part:
-        """The shortest way to say a command, with the ports that it leaves out."""
+        """Return the shortest way to say a command, with the ports that it leaves out."""
         form = min(leaf.forms, key=len)
         known = (other for beside in self._actions if beside.entry is leaf.entry for other in beside.forms)
         behind = {other[len(form)] for other in known if other[: len(form)] == form != other}
         if not behind.isdisjoint(self._vocabulary.roles["with"]):  # `greet Bob with "hello"`
             return NOTHING
-        return self._with_ports(self._said(form, leaf), leaf, _slots_of(form))
+        return self._with_ports(self._say(form, leaf), leaf, _slots_of(form))
 
     def _exact(self, leaf: _Leaf) -> Part:
-        """The id of a command with the ports of one way to say it."""
+        """Return the id of a command with the ports of one way to say it."""
         node_id, slots = leaf.entry.id, set(_slots_of(min(leaf.forms, key=len)))
         words = said_id(node_id, "do", self._vocabulary)
         head = choice((Text(f'"{node_id}"'), *([Text(words)] if words else [])))
         return self._with_ports(head, leaf, {slot.name for slot in leaf.entry.slots} - slots)
 
     def _with_ports(self, head: Part, leaf: _Leaf, others: Collection[str]) -> Part:
-        """A node with its ports but for the `others`; NOTHING where there are none."""
+        """Return a node with its ports but for the `others`; NOTHING if there are none."""
         ports = [slot for slot in leaf.entry.slots if slot.name not in others]
         if not ports:
             return NOTHING
@@ -235,27 +237,27 @@ class _VocabularyRules:
         inputs = [self._port(slot) for slot in ports if slot.name not in outputs]
         parts = [head]
         if inputs:
-            parts += [parsed('" " <with> " "', self._words), inputs[0]]
+            parts += [parse_rule('" " <with> " "', self._words), inputs[0]]
             parts += chain.from_iterable((Text(", "), port) for port in inputs[1:])
         for name in outputs:
-            parts += [parsed('" " <giving> " "', self._words), Text(_GIVEN % name)]
+            parts += [parse_rule('" " <giving> " "', self._words), Text(_GIVEN % name)]
         return joined(parts)
 
     def _port(self, slot: SlotSpec) -> Part:
-        """The name of a port and its text."""
+        """Return the name of a port and its text."""
         kind = self._vocabulary.types[slot.type]
         if kind.kind == "names":
             value = choice(Text(f'"{name}"') for name in self._vocabulary.values.names(kind.name))
         elif kind.kind in ("text", "time"):
             value = self._value(kind) if kind.kind == "text" else NOTHING
         else:
-            value = parsed(_WHOLE if kind.whole else _FIGURE, self._words)
+            value = parse_rule(_WHOLE if kind.whole else _FIGURE, self._words)
         return joined((Text(f'"{slot.name}" '), value))
 
     def _with_value(self, kind: str, value: Part) -> Part:
-        """A command with this value in a slot of the type."""
+        """Return a command with this value in a slot of the type."""
         return choice(
-            self._said(form, leaf, {slot: value})
+            self._say(form, leaf, {slot: value})
             for leaf in self._actions
             for form in leaf.forms
             for slot in _slots_of(form)
@@ -263,7 +265,7 @@ class _VocabularyRules:
         )
 
     def _by_type(self, statement: str) -> Part:
-        """Statements with the names of each type: `set`, `for each`, `go to every place`."""
+        """Return statements with the names of each type: `set`, `for each`, `go to every place`."""
         types = [kind for kind in self._vocabulary.types.values() if kind.kind == "names"]
         return choice(self._with_name(kind.name, f"v{number}", statement) for number, kind in enumerate(types, 1))
 
@@ -277,16 +279,18 @@ class _VocabularyRules:
         used = self._with_value(kind, Text(_GIVEN % name))
         value = _rule_of(kind)
         if statement == "set":
-            head = parsed(f'<set> " {name} " <set_to> " " {value} "; "', self._words)
+            head = parse_rule(f'<set> " {name} " <set_to> " " {value} "; "', self._words)
         elif statement == "parameter":
-            head = parsed(f'"r2 {{{name}}} " <define_strong> " "', self._words)
-            return joined((head, used, parsed(f'"\\nr2 " {value}', self._words)))
+            head = parse_rule(f'"r2 {{{name}}} " <define_strong> " "', self._words)
+            return joined((head, used, parse_rule(f'"\\nr2 " {value}', self._words)))
         else:
-            head = parsed(f'<each> " {name} " <each_in> " " {value} (", " {value})* ": "', self._words)
+            head = parse_rule(f'<each> " {name} " <each_in> " " {value} (", " {value})* ": "', self._words)
         return joined((head, used))
 
-    def _doing(self, leaves: Iterable[_Leaf]) -> Part:
-        """The leaves with the form of their verb that the table `doing` makes and the list of correct words has."""
+    def _gerunds(self, leaves: Iterable[_Leaf]) -> Part:
+        """Return the leaves with the form of their verb that the table `doing` makes and the list of correct words
+        has.
+        """
         known = correct_words(self._vocabulary.word_list)
         known -= {str(form[0]) for leaf in self._conditions for form in leaf.forms}  # `if charging`
         found = []
@@ -300,11 +304,11 @@ class _VocabularyRules:
                         for bare in endings
                         if verb.endswith(bare)
                     }
-                    found += [self._said((way, *rest), leaf) for way in sorted(ways & known)]
+                    found += [self._say((way, *rest), leaf) for way in sorted(ways & known)]
         return choice(found)
 
     def _value(self, kind: ValueType) -> Part:
-        """What a slot of the type takes."""
+        """Return what a slot of the type takes."""
         if kind.kind == "names":
             return choice(map(Text, self._vocabulary.values.said_names(kind.name)))
         if kind.kind == "quantity":
@@ -313,16 +317,16 @@ class _VocabularyRules:
                 for unit in kind.units
             )
         if kind.kind == "time":
-            return choice((parsed(_CLOCK, self._words), *self._times()))
+            return choice((parse_rule(_CLOCK, self._words), *self._times()))
         if kind.kind == "text":
-            return parsed(_TEXT, self._words)
-        return parsed(_WHOLE if kind.whole else _FIGURE, self._words)
+            return parse_rule(_TEXT, self._words)
+        return parse_rule(_WHOLE if kind.whole else _FIGURE, self._words)
 
     def _figure(self, unit: Unit, kind: ValueType) -> Part:
-        """A number that with the unit isn't below the least of its type, or too small to matter."""
+        """Return a number that with the unit isn't below the least of its type, or too small to matter."""
         factor = unit.numerator / unit.denominator
         is_small = factor < _SMALL or 0.1 * factor < (kind.least or 0)
-        return self._shared("whole" if is_small else "figure", parsed(_WHOLE if is_small else _FIGURE, self._words))
+        return self._share("whole" if is_small else "figure", parse_rule(_WHOLE if is_small else _FIGURE, self._words))
 
     def _times(self) -> Iterator[Part]:
         values = self._vocabulary.values
@@ -331,7 +335,7 @@ class _VocabularyRules:
                 yield Text(word)
         for half in values.halves_of_day:
             yield joined(
-                (Chars("[1-9]"), repeated(joined((Text(":"), Chars("[0-5]"), Chars("[0-9]"))), "?"), Text(f" {half}"))
+                (Chars("[1-9]"), repeat(joined((Text(":"), Chars("[0-5]"), Chars("[0-9]"))), "?"), Text(f" {half}"))
             )
 
 
@@ -340,16 +344,16 @@ def _slots_of(form: Form) -> tuple[str, ...]:
 
 
 def _head(form: Form) -> tuple[str, ...]:
-    """The words before the first slot."""
+    """Return the words before the first slot."""
     return tuple(map(str, takewhile(lambda part: isinstance(part, str), form)))
 
 
 def _rule_of(kind: str) -> str:
-    """The rule of the values of a type."""
+    """Return the rule of the values of a type."""
     return f"value-{_kebab(kind)}"
 
 
 def _kebab(name: str) -> str:
-    """A name as rules have them: `MoveForward` is `move-forward`."""
+    """Return a name as rules have them: `MoveForward` is `move-forward`."""
     apart = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "-", name).lower()
     return re.sub(r"[^a-z0-9]+", "-", apart).strip("-")

@@ -1,4 +1,4 @@
-"""Trees as trees of py_trees."""
+"""Building trees of py_trees in this process."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from py_trees import behaviours, common, composites, decorators
 from py_trees.behaviour import Behaviour
 
 from btlang.backends.engine import bind_leaf
-from btlang.backends.py_trees import choosing, decorating, in_order, node
-from btlang.backends.py_trees.plan import ON_COMPLETION, Name, Part, plan_of
+from btlang.backends.py_trees import control_nodes, node, sequences
+from btlang.backends.py_trees import decorators as own_decorators
+from btlang.backends.py_trees.plan import ON_COMPLETION, Part, Variable, plan_of
 from btlang.backends.py_trees.values import engine_leaf, values_of
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.instance import EngineError
 from btlang.text.source import NOWHERE
@@ -37,7 +37,7 @@ def to_py_trees(
     services: Mapping[str, Any] = {},
     values: Blackboard | None = None,
 ) -> Behaviour:
-    """The root of a tree of py_trees 2.6 that has the statuses of btlang's engine; SKIPPED is INVALID there.
+    """Return the root of a tree of py_trees 2.6 that has the statuses of btlang's engine; SKIPPED is INVALID there.
 
     `bind` makes the leaves, by default such that do what the `call` of their keyword entry names; those may ask for
     `services`, such as {"robot": robot}. KeepOut and KeepIn use the `zones` of that robot. A leaf of `bind` may not be
@@ -60,7 +60,7 @@ def to_py_trees(
     bound = cache(lambda id: bind_leaf(id, vocabulary))
 
     def made(part: Part, children: list[Behaviour]) -> Behaviour:
-        arguments = {key: known[value.text] if isinstance(value, Name) else value for key, value in part.arguments}
+        arguments = {key: known[value.text] if isinstance(value, Variable) else value for key, value in part.arguments}
         if part.make == "engine_leaf" or (part.make == "leaf" and bind is None):
             arguments = {"now": now, **arguments}
             leaf: Behaviour = engine_leaf(part.name, bind=bound, services=services, **arguments)
@@ -84,7 +84,7 @@ def to_py_trees(
 CLASSES: dict[str, Callable[..., Behaviour]] = {
     **{
         name: made
-        for module in (node, in_order, choosing, decorating)
+        for module in (node, sequences, control_nodes, own_decorators)
         for name, made in vars(module).items()
         if isinstance(made, type) and issubclass(made, Behaviour)
     },

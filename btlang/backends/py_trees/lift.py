@@ -1,4 +1,4 @@
-"""Trees of btlang made of live trees of py_trees: the tables of plan.py in the other direction."""
+"""Lifting of live trees of py_trees to trees of btlang, by the tables of plan.py in the other direction."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from collections.abc import Callable, Mapping
 from py_trees import common, composites, decorators, trees
 from py_trees.behaviour import Behaviour
 
-from btlang.backends.py_trees import decorating, node
+from btlang.backends.py_trees import decorators as own_decorators
+from btlang.backends.py_trees import node
 from btlang.backends.py_trees.build import CLASSES
-from btlang.backends.py_trees.plan import NUMBERS, ON_COMPLETION, OURS, THEIRS, Name
+from btlang.backends.py_trees.plan import NUMBERS, ON_COMPLETION, OURS, THEIRS, Variable
 from btlang.backends.py_trees.values import EngineLeaf
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.engine.leaves.leaf import REFUSED, ActionFailed, Failed
 from btlang.text.source import NOWHERE, Span
 from btlang.tree.catalogue import CATALOGUE, SUBTREE, Port
@@ -33,8 +33,8 @@ _STEPS = ("tick", "stop", "initialise", "update", "terminate")
 """The methods that make a node of py_trees what it is."""
 
 
-class _Inexpressible(Exception):
-    """Why btlang has no counterpart of a node."""
+class _NoCounterpart(Exception):
+    """An error that says why btlang has no counterpart of a node."""
 
 
 def read_py_trees(
@@ -57,13 +57,13 @@ def read_py_trees(
         try:
             if isinstance(behaviour, EngineLeaf):
                 return _engine_leaf(behaviour, scopes)
-            found = _known(behaviour)
+            found = _find_counterpart(behaviour)
             if found is None:
-                leaf_id = _unused(behaviour.name, leaves)
+                leaf_id = _find_unused_id(behaviour.name, leaves)
                 leaves[leaf_id] = behaviour_leaf(behaviour, leaf_id)
                 return Node(leaf_id, name=behaviour.name if names else "")
             node_id, ports = found
-        except _Inexpressible as problem:
+        except _NoCounterpart as problem:
             kind = f"{type(behaviour).__module__}.{type(behaviour).__qualname__}"
             reason = f"it is a {kind}, {problem}"
             problems.append(diagnostic("BT134", span or NOWHERE, id=behaviour.name, target="btlang", reason=reason))
@@ -82,7 +82,7 @@ def read_py_trees(
 
 
 def behaviour_leaf(behaviour: Behaviour, leaf_id: str) -> Callable[..., Any]:
-    """A leaf class that ticks a behaviour: `initialise`, `update` and `terminate` are called as py_trees does."""
+    """Make a leaf class that ticks a behaviour: `initialise`, `update` and `terminate` are called as py_trees does."""
 
     class BehaviourLeaf:
         interrupts = False  # it may only be asked something: py_trees doesn't say
@@ -108,8 +108,8 @@ def behaviour_leaf(behaviour: Behaviour, leaf_id: str) -> Callable[..., Any]:
     return leaf  # type: ignore[no-any-return]
 
 
-def _unused(name: str, leaves: Mapping[str, object]) -> str:
-    """An id for a behaviour that no word and no other leaf has."""
+def _find_unused_id(name: str, leaves: Mapping[str, object]) -> str:
+    """Return an id for a behaviour that no word and no other leaf has."""
     words = "".join(letter if letter.isascii() and letter.isalnum() else " " for letter in name).split()
     made = "".join(["Behaviour", *(word[0].upper() + word[1:] for word in words)])
     return next(found for found in (made, *(f"{made}_{at}" for at in range(2, len(leaves) + 3))) if found not in leaves)
@@ -121,21 +121,21 @@ def _engine_leaf(leaf: EngineLeaf, scopes: set[int]) -> Node:
     if found.id in CATALOGUE or any("{" in text for text in texts):
         scopes.add(id(values if any(map(_PRIVATE.search, texts)) else values.shared))
         if len(scopes) > 1:
-            raise _Inexpressible("and its values are those of a subtree")
+            raise _NoCounterpart("and its values are those of a subtree")
     return found
 
 
-def _known(behaviour: Behaviour) -> tuple[str, dict[str, str]] | None:
-    """The id and the ports of a node that has a counterpart; None for a plain behaviour."""
+def _find_counterpart(behaviour: Behaviour) -> tuple[str, dict[str, str]] | None:
+    """Return the id and the ports of a node that has a counterpart; None for a plain behaviour."""
     kinds = type(behaviour).__mro__
     at = next((at for at, kind in enumerate(kinds) if kind in _MAKES), len(kinds))
     is_leaf = not behaviour.children and not isinstance(behaviour, _BASES[1:])
     if at == len(kinds) or (is_leaf and (at or _MAKES[kinds[at]] not in _LEAVES)):
         if not is_leaf:
-            raise _Inexpressible("which isn't a node of py_trees itself")
+            raise _NoCounterpart("which isn't a node of py_trees itself")
         return None
     if any(step in vars(kind) for kind in kinds[:at] for step in _STEPS):
-        raise _Inexpressible(f"which changes what a {kinds[at].__name__} does")
+        raise _NoCounterpart(f"which changes what a {kinds[at].__name__} does")
     return _counterpart(_MAKES[kinds[at]], behaviour)
 
 
@@ -148,7 +148,7 @@ def _counterpart(make: str, behaviour: Any) -> tuple[str, dict[str, str]]:
         if theirs == make and all(_holds(behaviour, *argument) for argument in arguments):
             return node_id, {"then_skip": "false"} if node_id == "RunOnce" else {}
     if "." in make or make == "Skipped":
-        raise _Inexpressible("which has no counterpart")
+        raise _NoCounterpart("which has no counterpart")
     node_id = next((ours for ours, name in OURS.items() if name == make), "")
     node_id = node_id or next((ours for ours, (name, _) in NUMBERS.items() if name == make), make)
     names = NUMBERS[node_id][1] if node_id in NUMBERS else ()
@@ -162,7 +162,7 @@ def _counterpart(make: str, behaviour: Any) -> tuple[str, dict[str, str]]:
 
 
 def _holds(behaviour: object, attribute: str, value: object) -> bool:
-    wanted = _CONSTANTS[value.text] if isinstance(value, Name) else value
+    wanted = _CONSTANTS[value.text] if isinstance(value, Variable) else value
     return bool(getattr(behaviour, attribute) == wanted)
 
 
@@ -186,9 +186,9 @@ def _parallel(behaviour: composites.Parallel) -> tuple[str, dict[str, str]]:
         return "Parallel", {"success_count": "1", "failure_count": "1"}
     selected = getattr(policy, "children", behaviour.children)
     if len(selected) < len(behaviour.children):
-        raise _Inexpressible("and btlang can't select the children that must succeed")
+        raise _NoCounterpart("and btlang can't select the children that must succeed")
     if not policy.synchronise and len(selected) > 1:
-        raise _Inexpressible("and btlang doesn't tick children again that have succeeded: set synchronise=True")
+        raise _NoCounterpart("and btlang doesn't tick children again that have succeeded: set synchronise=True")
     return "Parallel", {"success_count": "-1", "failure_count": "1"}
 
 
@@ -209,7 +209,7 @@ _LEAVES: dict[str, Callable[[Any], tuple[str, dict[str, str]]]] = {
     "behaviours.Success": lambda behaviour: ("AlwaysSuccess", {}),
     "behaviours.Failure": lambda behaviour: ("AlwaysFailure", {}),
     node.Skipped.__name__: lambda behaviour: ("AlwaysSuccess", {"_skipIf": "true"}),
-    decorating.Sleep.__name__: lambda behaviour: ("Sleep", {"msec": str(round(behaviour.seconds * 1000))}),
+    own_decorators.Sleep.__name__: lambda behaviour: ("Sleep", {"msec": str(round(behaviour.seconds * 1000))}),
 }
 _NEAR: dict[str, Callable[[Any], tuple[str, dict[str, str]]]] = {
     "composites.Parallel": _parallel,

@@ -7,14 +7,14 @@ import pkgutil
 import re
 from collections.abc import Iterable
 
-from btlang.backends.py_trees.plan import Name, Part, Plan, plan_of
-from btlang.backends.python_source import Source, Statements, called, literal
+from btlang.backends.py_trees.plan import Part, Plan, Variable, plan_of
+from btlang.backends.python_module import SourceLines, Statements, format_call, format_literal
 from btlang.tree.node import Tree
 from btlang.tree.visit import fold
 from btlang.vocabulary.lexicon import Lexicon
 
 # Their text is copied: imports would make a module some 200 lines shorter, but it would need btlang to run.
-_MODULES = ("node", "in_order", "choosing", "decorating")
+_MODULES = ("node", "sequences", "control_nodes", "decorators")
 _HEAD = '''"""A behavior tree for py_trees 2.6; needs {needs}.
 
 `create_root` makes the tree. Its leaves are made by a function that you give: leaf(name, id, ports) returns a
@@ -102,7 +102,7 @@ _INDENT = "    "
 
 
 def to_module(tree: Tree, vocabulary: Lexicon) -> str:
-    """The text of the module; errors as for `plan_of`. It has the statuses that to_py_trees has (build.py)."""
+    """Return the text of the module; errors as for `plan_of`. It has the statuses that to_py_trees has (build.py)."""
     plan = plan_of(tree, vocabulary)
     with_values = "engine_leaf" in plan.uses
     body = "\n".join([_INDENT + line for line in _body(plan, with_values)])
@@ -122,9 +122,9 @@ def to_module(tree: Tree, vocabulary: Lexicon) -> str:
 
 
 def _body(plan: Plan, with_values: bool) -> list[str]:
-    """The lines of `create_root`."""
+    """Return the lines of `create_root`."""
     lines = []
-    if any(argument == Name("interrupts") for part in _parts(plan.root) for _, argument in part.arguments) or (
+    if any(argument == Variable("interrupts") for part in _parts(plan.root) for _, argument in part.arguments) or (
         "interrupting" in plan.uses
     ):
         lines.append("interrupts: list[Callable[[], None]] = []")
@@ -133,34 +133,34 @@ def _body(plan: Plan, with_values: bool) -> list[str]:
         lines += [f"{s.name} = values_of({_literal(dict(s.ports))}, {s.around})" for s in plan.scopes]
     statements = Statements()
 
-    def combine(part: Part, children: list[Source]) -> Source:
+    def combine(part: Part, children: list[SourceLines]) -> SourceLines:
         return statements.named_if_deep(_call(part, children))
 
     root = fold(plan.root, lambda part: part.children, combine)
     return [*lines, *statements.lines, f"return {root.lines[0]}", *root.lines[1:]]
 
 
-def _call(part: Part, children: list[Source]) -> Source:
+def _call(part: Part, children: list[SourceLines]) -> SourceLines:
     if part.make == "leaf":
         values = dict(part.arguments)
-        made = called("leaf", [literal(part.name), literal(values["id"]), _literal(values["ports"])])
+        made = format_call("leaf", [format_literal(part.name), format_literal(values["id"]), _literal(values["ports"])])
     else:
-        arguments: list[str | Source] = [literal(part.name)]
+        arguments: list[str | SourceLines] = [format_literal(part.name)]
         if part.make.startswith("decorators."):
             arguments += children
         elif children:
-            listed = called("", children, "[]")
-            arguments.append(Source((f"children={listed.lines[0]}", *listed.lines[1:]), listed.depth))
-        made = called(part.make, [*arguments, *(f"{key}={_literal(value)}" for key, value in part.arguments)])
-    return called("interrupting", [made, "interrupts"]) if part.starts else made
+            listed = format_call("", children, "[]")
+            arguments.append(SourceLines((f"children={listed.lines[0]}", *listed.lines[1:]), listed.depth))
+        made = format_call(part.make, [*arguments, *(f"{key}={_literal(value)}" for key, value in part.arguments)])
+    return format_call("interrupting", [made, "interrupts"]) if part.starts else made
 
 
 def _literal(value: object) -> str:
-    if isinstance(value, Name):
+    if isinstance(value, Variable):
         return value.text
     if isinstance(value, dict):
-        return "{" + ", ".join(f"{literal(key)}: {literal(text)}" for key, text in value.items()) + "}"
-    return literal(value)
+        return "{" + ", ".join(f"{format_literal(key)}: {format_literal(text)}" for key, text in value.items()) + "}"
+    return format_literal(value)
 
 
 def _parts(root: Part) -> Iterable[Part]:
@@ -172,7 +172,7 @@ def _parts(root: Part) -> Iterable[Part]:
 
 
 def _definitions(used: Iterable[str]) -> str:
-    """The text of our classes and functions of these names, and of what they use; "" where none is ours."""
+    """Return the text of our classes and functions of these names, and of what they use; "" if none is ours."""
     texts: dict[str, str] = {}
     needs: dict[str, set[str]] = {}
     constants: list[str] = []

@@ -1,4 +1,4 @@
-"""The base of nodes that py_trees has not, or that do not do there what they do here.
+"""The base of nodes that py_trees doesn't have, or that do something else there.
 
 They do what the nodes of btlang's engine do (docs/engine.md). Where one is SKIPPED there, its status here is INVALID.
 So only these nodes, and none of py_trees, may stand around one that can be skipped. `btc compile --to py_trees` copies
@@ -22,7 +22,7 @@ SKIPPED = common.Status.INVALID
 
 
 def halt(child: Behaviour, keep: bool = False) -> None:
-    """Stops what runs in a node, and resets it; one of ours can keep positions, counts and times for its next tick."""
+    """Stop what runs in a node, and reset it; one of ours can keep positions, counts and times for its next tick."""
     if isinstance(child, Node):
         child.halt(keep)
         child.status = common.Status.INVALID
@@ -38,21 +38,21 @@ class Node(composites.Composite):
 
     @abstractmethod
     def run(self) -> Asking:
-        """A tick; yields the nodes that are ticked below."""
+        """Tick once; yield the nodes that are ticked below."""
 
     def halt(self, keep: bool) -> None:
-        """Stops what runs below; resets where nothing is kept."""
+        """Stop what runs below; reset if nothing is kept."""
         for child in self.children:
             halt(child, keep)
 
     def ask(self, child: Behaviour) -> Asking:
-        """Ticks a child and returns its status."""
+        """Tick a child and return its status."""
         self.current_child = child
         yield from child.tick()
         return child.status
 
     def answer(self, child: Behaviour) -> Answering:
-        """Ticks a child and returns its status, or UNKNOWN for a FAILURE if a leaf below it could not know its answer.
+        """Tick a child and return its status, or UNKNOWN for a FAILURE if a leaf below it couldn't know its answer.
 
         Such a leaf says so by an attribute `known` that is False.
         """
@@ -64,7 +64,7 @@ class Node(composites.Composite):
         return UNKNOWN if child.status == FAILURE and not known else child.status
 
     def tick(self) -> Iterator[Behaviour]:
-        """A tick of py_trees."""
+        """Tick as py_trees does."""
         if self.status != RUNNING:
             self.initialise()
         status = yield from self.run()
@@ -74,7 +74,7 @@ class Node(composites.Composite):
         yield self
 
     def stop(self, new_status: common.Status = common.Status.INVALID) -> None:
-        """Halts where py_trees stops it from outside."""
+        """Halt if py_trees stops it from outside."""
         if new_status == common.Status.INVALID:
             self.halt(False)
         self.terminate(new_status)
@@ -83,7 +83,9 @@ class Node(composites.Composite):
 
 
 def interrupting(leaf: Behaviour, interrupts: list[Callable[[], None]]) -> Behaviour:
-    """An action that stands before others in a reactive node: before it starts, those that it replaces are stopped."""
+    """Wrap an action that stands before others in a reactive node: before it starts, those that it replaces are
+    stopped.
+    """
     begin: Callable[[], None] = leaf.initialise
 
     def initialise() -> None:

@@ -1,16 +1,15 @@
-"""How py_trees expresses each node of a tree: as its own node if that means the same, else as one of ours."""
+"""Plans for py_trees: each node of a tree becomes its own node if that means the same, else one of ours."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
-from btlang.backends.checking import anything, tree_problems
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.backends.checking import accept_anything, tree_problems
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.clock import Clock
 from btlang.engine.compile import expand
-from btlang.engine.conditions import is_of_editors
+from btlang.engine.conditions import is_editor_attribute
 from btlang.engine.instance import EngineState, NodeInstance
 from btlang.engine.leaves.leaf import LeafBinding
 from btlang.printer.phrase import phrase_of
@@ -29,7 +28,7 @@ DEEPEST = 250
 """Levels of a tree; py_trees calls itself at each one."""
 
 
-class Name(Record):
+class Variable(Record):
     """An argument that is a variable."""
 
     text: str
@@ -49,7 +48,7 @@ class Part(Record):
     starts: bool = False
 
 
-class Scope(Record):
+class SubtreeValues(Record):
     """The values of a subtree: the variable that holds them, its ports, and the variable of those around it."""
 
     name: str
@@ -58,23 +57,23 @@ class Scope(Record):
 
 
 class Plan(Record):
-    """`scopes` come before those within them."""
+    """A plan of a tree; `scopes` come before those within them."""
 
     root: Part
-    scopes: tuple[Scope, ...]
+    scopes: tuple[SubtreeValues, ...]
     uses: frozenset[str]  # what is called
 
 
 class _Inexpressible(Exception):
-    """Why py_trees can't express a node."""
+    """An error that says why py_trees can't express a node."""
 
 
 def plan_of(tree: Tree, vocabulary: Lexicon, is_action: Callable[[Node], bool] | None = None) -> Plan:
-    """The plan of a tree, each use of a subtree for itself. `is_action` says which leaves take more than one tick.
+    """Plan a tree, each use of a subtree for itself. `is_action` says which leaves take more than one tick.
 
     Raises MissionError with all errors of the tree (BT126, BT131, BT132), or all that py_trees can't express (BT134).
     """
-    problems = tree_problems(tree, vocabulary, lambda id: LeafBinding(anything))
+    problems = tree_problems(tree, vocabulary, lambda id: LeafBinding(accept_anything))
     if problems:
         raise MissionError(problems)
     instances = expand(tree, Blackboard(), EngineState(lambda id: None, Clock(), {}, {}, None))
@@ -112,8 +111,8 @@ class _Planner:
             raise MissionError(self._problems)
         return Plan(waiting[0][1], tuple(scopes), frozenset(self._uses))
 
-    def _look_down(self, instance: NodeInstance) -> Scope | None:
-        """What holds for a node because of those around it."""
+    def _look_down(self, instance: NodeInstance) -> SubtreeValues | None:
+        """Return the scope that a node has because of those around it."""
         index, above = instance.index, instance.above
         around = "values"
         if above is not None:
@@ -131,7 +130,7 @@ class _Planner:
         if instance.node.id != SUBTREE:
             return None
         self._scopes[index] = f"values_{index}"
-        return Scope(self._scopes[index], instance.node.ports, around)
+        return SubtreeValues(self._scopes[index], instance.node.ports, around)
 
     def _part(self, instance: NodeInstance, below: list[int], children: tuple[Part, ...]) -> Part:
         node, index = instance.node, instance.index
@@ -143,7 +142,7 @@ class _Planner:
             if self._always_skipped(node):
                 self._skips[index] = True
             else:
-                part = self._expressed(instance, below, children)
+                part = self._express(instance, below, children)
         except _Inexpressible as problem:
             span = node.span or NOWHERE
             self._problems.append(diagnostic("BT134", span, id=node.id, target="py_trees", reason=str(problem)))
@@ -152,7 +151,7 @@ class _Planner:
             self._uses.add("interrupting")
         return part
 
-    def _expressed(self, instance: NodeInstance, below: list[int], children: tuple[Part, ...]) -> Part:
+    def _express(self, instance: NodeInstance, below: list[int], children: tuple[Part, ...]) -> Part:
         node, index = instance.node, instance.index
         if not children:
             return self._leaf(instance)
@@ -170,15 +169,15 @@ class _Planner:
     def _leaf(self, instance: NodeInstance) -> Part:
         node, index = instance.node, instance.index
         ports = tuple((port, text) for port, text in node.ports if port != "_skipIf")
-        scope = Name(self._scopes[index])
+        scope = Variable(self._scopes[index])
         if node.id == "Sleep" and "{" not in node.port("msec"):
             seconds = int(node.port("msec")) / 1000
-            return Part("Sleep", self._name(node), (), (("seconds", seconds), ("now", Name("now"))))
+            return Part("Sleep", self._name(node), (), (("seconds", seconds), ("now", Variable("now"))))
         if node.id in ("AlwaysSuccess", "AlwaysFailure"):
             return Part(f"behaviours.{node.id.removeprefix('Always')}", self._name(node))
         starts = self._asked[index] and self._acts[index]
         if node.id in CATALOGUE:
-            given = (("id", node.id), ("ports", dict(ports)), ("values", scope), ("now", Name("now")))
+            given = (("id", node.id), ("ports", dict(ports)), ("values", scope), ("now", Variable("now")))
             return Part("engine_leaf", self._name(node), (), given, starts)
         return Part("leaf", self._name(node), (), (("id", node.id), ("ports", dict(ports)), ("values", scope)), starts)
 
@@ -190,7 +189,7 @@ class _Planner:
 
     def _always_skipped(self, node: Node) -> bool:
         for port, text in node.ports:
-            if port[:1] != "_" or port == "_autoremap" or is_of_editors(port):
+            if port[:1] != "_" or port == "_autoremap" or is_editor_attribute(port):
                 continue
             if port != "_skipIf" or text not in ("true", "false"):
                 raise _Inexpressible(f"py_trees has no {port}")
@@ -213,7 +212,7 @@ _SKIPPED: dict[str, Callable[[list[bool]], bool]] = {
 }
 """Whether a node can be skipped, by whether its children can be, for each way of NodeKind.skipped."""
 
-_INTERRUPTS = (("interrupts", Name("interrupts")),)
+_INTERRUPTS = (("interrupts", Variable("interrupts")),)
 OURS = {
     "Sequence": "SkippableSequence",
     "Fallback": "SkippableFallback",
@@ -229,7 +228,7 @@ THEIRS: dict[str, tuple[str, tuple[tuple[str, Any], ...]]] = {
     "ForceSuccess": ("decorators.FailureIsSuccess", ()),
     "ForceFailure": ("decorators.SuccessIsFailure", ()),
     "KeepRunningUntilFailure": ("decorators.SuccessIsRunning", ()),
-    "RunOnce": ("decorators.OneShot", (("policy", Name(ON_COMPLETION)),)),
+    "RunOnce": ("decorators.OneShot", (("policy", Variable(ON_COMPLETION)),)),
     SUBTREE: ("decorators.PassThrough", ()),
 }
 """The nodes of py_trees that mean the same where no child can be skipped, and nothing has to be suspended.
@@ -239,7 +238,7 @@ Its Inverter does not: it makes a SUCCESS of a condition that could not know.
 
 
 def _ours(node: Node) -> tuple[str, tuple[tuple[str, Any], ...]]:
-    """Our class for a node, and its arguments."""
+    """Return our class for a node, and its arguments."""
     if node.id in OURS:
         return OURS[node.id], ()
     if node.id == "Whenever":
@@ -249,7 +248,7 @@ def _ours(node: Node) -> tuple[str, tuple[tuple[str, Any], ...]]:
     if node.id == "RunOnce":
         return node.id, (("then_skip", _truth(node, "then_skip")),)
     if node.id in ("KeepOut", "KeepIn"):
-        return node.id, (("names", zone_names(_constant(node, "zones"))), ("zones", Name("zones")))
+        return node.id, (("names", zone_names(_constant(node, "zones"))), ("zones", Variable("zones")))
     if node.id == "TryCatch" and not _truth(node, "catch_on_halt"):
         return node.id, ()
     if node.id not in NUMBERS:
@@ -263,14 +262,14 @@ def _ours(node: Node) -> tuple[str, tuple[tuple[str, Any], ...]]:
 
 
 def _argument(node: Node, name: str, port: str, kind: Port) -> list[tuple[str, Any]]:
-    """A port of numbers as an argument of our class; times are in seconds there, and need a clock."""
+    """Return a port of numbers as an argument of our class; times are in seconds there, and need a clock."""
     text = node.port(port) or kind.default or ""
     if "{" in text:
         raise _Inexpressible(f"its {port} is a value of the mission, and py_trees needs a number")
     if kind.unit == "ms":
-        return [(name, float(text) * 0.001), ("now", Name("now"))]
+        return [(name, float(text) * 0.001), ("now", Variable("now"))]
     if kind.unit == "Hz":
-        return [(name, 1 / float(text)), ("now", Name("now"))]
+        return [(name, 1 / float(text)), ("now", Variable("now"))]
     return [(name, int(text))]
 
 

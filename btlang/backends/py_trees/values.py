@@ -9,9 +9,9 @@ from py_trees.common import Status
 
 from btlang.backends.py_trees.node import SKIPPED, Asking, Node
 from btlang.engine.blackboard import Blackboard
+from btlang.engine.compile import child_scope
 from btlang.engine.engine import Engine
 from btlang.engine.leaves.leaf import LeafBinding
-from btlang.engine.nodes.subtree import child_scope
 from btlang.engine.status import FAILURE, RUNNING, SUCCESS
 from btlang.text.time_of_day import local
 from btlang.tree import node as btlang_node
@@ -25,7 +25,7 @@ _STATUSES = {RUNNING: Status.RUNNING, SUCCESS: Status.SUCCESS, FAILURE: Status.F
 
 
 class _Clock:
-    """Time as the engine asks for it. Whoever ticks the tree knows nothing of when it is due.
+    """A clock as the engine asks for it. Whoever ticks the tree doesn't know when it is due.
 
     The time of day is that of the robot, else of this computer.
     """
@@ -42,13 +42,13 @@ class _Clock:
         return float(self._robot.time_of_day) if hasattr(self._robot, "time_of_day") else local(time.time())
 
     def wake_at(self, time: float) -> None:
-        """Does nothing."""
+        """Do nothing."""
 
     leaf_wake_at = wake_at
 
 
 class EngineLeaf(Node):
-    """A leaf of btlang's engine. Why it failed is in `feedback_message`."""
+    """A leaf of btlang's engine. `feedback_message` says why it failed."""
 
     def __init__(self, name: str, engine: Engine) -> None:
         super().__init__(name)
@@ -75,12 +75,12 @@ def engine_leaf(
     bind: Callable[[str], LeafBinding | None] = lambda id: None,
     services: Mapping[str, Any] = {},
 ) -> EngineLeaf:
-    """A leaf with the values of its subtree. Raises EngineError where it cannot be bound so."""
+    """Make a leaf with the values of its subtree. Raises EngineError if it can't be bound so."""
     tree = btlang_node.Tree(btlang_node.Node(id, ports=tuple(ports.items())))
     clock: Any = _Clock(now, services.get("robot"))
     return EngineLeaf(name, Engine(tree, bind, clock=clock, services=services, blackboard=values))
 
 
 def values_of(ports: Mapping[str, str], values: Blackboard) -> Blackboard:
-    """The values that a subtree with these ports sees."""
+    """Return the values that a subtree with these ports sees."""
     return child_scope(btlang_node.Node(SUBTREE, ports=tuple(ports.items())), values)

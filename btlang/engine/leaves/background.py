@@ -1,4 +1,4 @@
-"""Leaves that work beside the tick: plain functions in threads, and `async def` functions on an event loop.
+"""Leaves that run concurrently with ticks: plain functions in threads, and `async def` functions on an event loop.
 
 To the rest of the engine such a leaf is a class leaf whose `tick` looks whether its work is over. The end of the work
 wakes the run. A halt asks the work to end and does not wait: until it has, the leaf is RUNNING when it is ticked and
@@ -13,7 +13,7 @@ from threading import Thread
 from typing import cast
 
 from btlang.engine.instance import EngineState, Fault, NodeInstance
-from btlang.engine.leaves.leaf import ActionFailed, described
+from btlang.engine.leaves.leaf import ActionFailed, describe_exception
 from btlang.engine.leaves.work import Work
 
 TYPE_CHECKING = False
@@ -28,7 +28,7 @@ _CLOSING = 0.5  # seconds that an event loop gets to end when nothing works on i
 
 
 class Background:
-    """What the background leaves of one engine share. All of it is for the thread that ticks, but `over`."""
+    """The background leaves of one engine. Only `over` may be called by other threads than the one that ticks."""
 
     def __init__(self, shared: EngineState) -> None:
         self._wake: Callable[[], object] = shared.services["wake"]
@@ -38,14 +38,14 @@ class Background:
         self._going: set[Work] = set()
 
     def work(self, services: Mapping[str, Any]) -> Work:
-        """What is about to begin, with proxies of services that have one."""
+        """Make the work that is about to begin, with proxies of the services that have one."""
         work, made = Work(self._wake), self._proxies
         self._going.add(work)
         work.proxies = {name: made[name](service, work.in_tick) for name, service in services.items()}
         return work
 
     def start_thread(self, work: Work, call: Callable[[], object]) -> None:
-        """Calls a function in a thread of its own."""
+        """Call a function in a separate thread."""
 
         def run() -> None:
             try:
@@ -57,7 +57,7 @@ class Background:
         Thread(target=run, name="btlang leaf", daemon=True).start()
 
     def start_async(self, work: Work, call: Callable[[], Any]) -> None:
-        """Awaits what an `async def` function gives, on the event loop of this engine."""
+        """Await the coroutine of an `async def` function on the event loop of this engine."""
         from btlang.engine.leaves.event_loop import EventLoop
 
         if self._loop is None:
@@ -65,7 +65,7 @@ class Background:
         self._loop.start(call, work, self.over)
 
     def over(self, work: Work) -> None:
-        """The work has ended; from any thread."""
+        """Note that the work has ended. Any thread may call it."""
         work.ended.set()
         self._going.discard(work)
         work.refuse()
@@ -77,25 +77,25 @@ class Background:
         return any(not work.halted.is_set() for work in tuple(self._going))
 
     def halt(self, index: int, work: Work) -> None:
-        """Asks the work of a leaf to end, and ends what it has set about."""
+        """Ask the work of a leaf to end, and end the calls that it has made with its services."""
         self._halted.append((index, work))
         work.cancel()
         work.refuse()
         work.let_go()
 
     def take_faults(self) -> list[Fault]:
-        """What works that were halted have raised since; ActionFailed is a way to end."""
+        """Return what halted works have raised since the last call, but for ActionFailed, which is a way to end."""
         faults, going = [], []
         for index, work in self._halted:
             if not work.ended.is_set():
                 going.append((index, work))
             elif work.problem is not None and not isinstance(work.problem, ActionFailed):
-                faults.append(Fault(index, described(work.problem), work.problem))
+                faults.append(Fault(index, describe_exception(work.problem), work.problem))
         self._halted = going
         return faults
 
     def close(self, patience: float) -> list[int]:
-        """Ends the event loop. Waits at most so many real seconds for works that were halted first.
+        """End the event loop. First wait at most so many real seconds for works that were halted.
 
         Returns the leaves whose work goes on.
         """
@@ -108,7 +108,7 @@ class Background:
 
 
 class BackgroundLeaf:
-    """The class leaf that a background leaf is. `launch` begins its work with the values of the ports."""
+    """A class leaf that does the work of a background leaf. `launch` begins it with the values of the ports."""
 
     def __init__(self, index: int, background: Background, launch: Callable[[dict[str, Any]], Work]) -> None:
         self._index = index
@@ -118,12 +118,12 @@ class BackgroundLeaf:
         self._work: Work | None = None
 
     def start(self, **values: Any) -> object:
-        """Begins the work, once that of a former run is over."""
+        """Begin the work, once that of a former run is over."""
         self._values = values
         return self.tick()
 
     def tick(self) -> object:
-        """None while it works; then what it returned, or raises what it raised."""
+        """Return None while it works, then what it returned; or raise what it raised."""
         work = self._work
         if work is None or (work.halted.is_set() and work.ended.is_set()):
             self._work = self._launch(self._values)
@@ -140,7 +140,7 @@ class BackgroundLeaf:
         return True if work.result is None else work.result
 
     def halt(self) -> None:
-        """Asks the work to end."""
+        """Ask the work to end."""
         if self._work is not None and not self._work.halted.is_set():
             self._background.halt(self._index, self._work)
 
@@ -148,8 +148,9 @@ class BackgroundLeaf:
 def background_leaf(
     instance: NodeInstance, call: Callable[..., Any], in_thread: bool, takes_halted: bool, services: Mapping[str, Any]
 ) -> BackgroundLeaf:
-    """`call` takes the values of the ports that are read at each start, the event `halted` where it asks for it, and
-    proxies of the services."""
+    """Make the leaf. `call` gets the values of the ports that are read at each start, the event `halted` if it asks for
+    it, and proxies of the services.
+    """
     background = cast("Background | None", instance.state.background)
     if background is None:
         background = instance.state.background = Background(instance.state)

@@ -1,4 +1,4 @@
-"""Binds a leaf of a tree to the Python object that does its work (see leaf.py): fills its parameters by name."""
+"""Binding of leaves to the Python objects that do their work (see leaf.py), whose parameters are filled by name."""
 
 from __future__ import annotations
 
@@ -7,9 +7,8 @@ from functools import partial
 from weakref import WeakKeyDictionary
 
 from btlang.engine.instance import NodeInstance, blackboard_key
-from btlang.engine.leaves.callables import KEPT, GeneratorLeaf, class_leaf, function_leaf, keeping_leaf
-from btlang.engine.leaves.leaf import LeafBinding, described
-from btlang.engine.leaves.signature import LeafSignature
+from btlang.engine.leaves.callables import KEPT, GeneratorLeaf, class_leaf, function_leaf, resumable_leaf
+from btlang.engine.leaves.leaf import LeafBinding, LeafSignature, describe_exception
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -26,13 +25,13 @@ _OWN: dict[str, set[str]] = {"thread": {"halted"}, "generator": {KEPT}}
 _signatures: WeakKeyDictionary[Callable[..., Any], tuple[Parameter, ...]] = WeakKeyDictionary()
 
 
-def bound_leaf(instance: NodeInstance, signature: LeafSignature) -> Compiled:
-    """A leaf that is a Python object; raises EngineError where its parameters do not fit its ports."""
+def bind_leaf(instance: NodeInstance, signature: LeafSignature) -> Compiled:
+    """Compile a leaf that is a Python object. Raises EngineError if its parameters don't fit its ports."""
     binding, kind = signature.binding, signature.kind
     if binding.thread and kind != "thread":
         raise instance.error(f"{instance.node.id} can't run in a thread: only a plain function can")
     if kind == "class":
-        leaf, ports = _make(instance, signature), _ports(instance, binding)
+        leaf, ports = _make_object(instance, signature), _ports(instance, binding)
         names = tuple(ports)
         if names not in signature.given:
             signature.given[names] = _fill(instance, leaf.start, names, ())
@@ -41,11 +40,11 @@ def bound_leaf(instance: NodeInstance, signature: LeafSignature) -> Compiled:
         return class_leaf(instance, leaf, start, stored)
     key = instance.node.ports, instance.scope
     if key not in signature.calls:
-        signature.calls[key] = _call(instance, signature)
+        signature.calls[key] = _find_call(instance, signature)
     call, stored, given = signature.calls[key]
     if kind == "generator":
         if KEPT in given:
-            return keeping_leaf(instance, call, stored)
+            return resumable_leaf(instance, call, stored)
         generator = GeneratorLeaf(instance, call, stored)
         return generator.tick, generator.halt
     if kind == "function":
@@ -61,8 +60,8 @@ def _ports(instance: NodeInstance, binding: LeafBinding) -> dict[str, str]:
     return {**binding.defaults, **{port: text for port, text in instance.node.ports if port[:1] != "_"}}
 
 
-def _call(instance: NodeInstance, signature: LeafSignature) -> tuple[Callable[..., Any], Stored, list[str]]:
-    """The callable with its constant values, what reads the others, and the names of the services that it gets."""
+def _find_call(instance: NodeInstance, signature: LeafSignature) -> tuple[Callable[..., Any], Stored, list[str]]:
+    """Return the callable with its constant values, a function that reads the others, and the services that it gets."""
     binding, ports = signature.binding, _ports(instance, signature.binding)
     names = tuple(ports)
     given = signature.given.get(names)
@@ -78,7 +77,7 @@ def _call(instance: NodeInstance, signature: LeafSignature) -> tuple[Callable[..
 
 
 def _arguments(instance: NodeInstance, ports: dict[str, str], binding: LeafBinding) -> tuple[dict[str, Any], Stored]:
-    """As NodeInstance.arguments, with a function that writes for each output port."""
+    """Return the arguments as NodeInstance.arguments does, with a function that writes for each output port."""
     if not binding.outputs:
         return instance.arguments(ports, binding.converters)
     constants, stored = instance.arguments(
@@ -93,7 +92,7 @@ def _arguments(instance: NodeInstance, ports: dict[str, str], binding: LeafBindi
     return constants, stored
 
 
-def _make(instance: NodeInstance, signature: LeafSignature) -> Any:
+def _make_object(instance: NodeInstance, signature: LeafSignature) -> Any:
     cls: Any = signature.binding.call
     if signature.made_with is None:
         missing = [method for method in ("start", "tick", "halt") if not callable(getattr(cls, method, None))]
@@ -105,13 +104,13 @@ def _make(instance: NodeInstance, signature: LeafSignature) -> Any:
     except KeyboardInterrupt:
         raise
     except BaseException as problem:
-        raise instance.error(f"{cls.__name__} cannot be made: {described(problem)}") from problem
+        raise instance.error(f"{cls.__name__} cannot be made: {describe_exception(problem)}") from problem
 
 
 def _fill(
     instance: NodeInstance, call: Callable[..., Any], ports: Collection[str], services: Collection[str]
 ) -> list[str]:
-    """Checks that ports and services fill the parameters; returns the names of the services that do."""
+    """Check that ports and services fill the parameters; return the names of the services that do."""
     try:
         parameters = _parameters(call)
     except (TypeError, ValueError) as problem:
@@ -120,7 +119,7 @@ def _fill(
     takes_any = any(p.kind == p.VAR_KEYWORD for p in parameters)
     unknown = [port for port in ports if port not in named]
     if unknown and not takes_any:
-        raise instance.error(f"{instance.node.id} takes no port {unknown[0]}" + _known(named, services))
+        raise instance.error(f"{instance.node.id} takes no port {unknown[0]}" + _list_ports(named, services))
     for p in parameters:
         required = p.default is p.empty and p.kind not in (p.VAR_POSITIONAL, p.VAR_KEYWORD)
         if required and (p.name not in named or (p.name not in ports and p.name not in services)):
@@ -140,6 +139,6 @@ def _parameters(call: Callable[..., Any]) -> tuple[Parameter, ...]:
     return found
 
 
-def _known(named: Collection[str], services: Collection[str]) -> str:
+def _list_ports(named: Collection[str], services: Collection[str]) -> str:
     ports = [name for name in named if name not in services]
     return f"; it takes {', '.join(ports)}" if ports else ""

@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from functools import partial
 
 from btlang.engine.instance import Fault, NodeInstance, halt_nothing
-from btlang.engine.leaves.leaf import ActionFailed, Failed, NotThere, Unknown, described
+from btlang.engine.leaves.leaf import ActionFailed, Failed, NotThere, Unknown, describe_exception
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
 
 TYPE_CHECKING = False
@@ -30,7 +30,7 @@ _TRUTHS = ("bool", "bool_")  # what numpy's comparisons give goes by these names
 
 
 class FunctionLeaf:
-    """A function that is called as it is: none of its values come from the blackboard.
+    """A leaf that calls a function as it is: none of its values come from the blackboard.
 
     What ticks many children calls such a function itself (see fused.py) and hands on here what is no plain answer.
     """
@@ -47,18 +47,18 @@ class FunctionLeaf:
         except KeyboardInterrupt:
             raise
         except BaseException as problem:
-            return failed(self.instance, problem)
+            return fail_with(self.instance, problem)
         return SUCCESS if result is True else status_of(self.instance, result)
 
 
-def as_function(tick: Any) -> FunctionLeaf | None:
-    """The leaf that a tick belongs to, where that is a function that is called as it is."""
+def find_function(tick: Any) -> FunctionLeaf | None:
+    """Return the leaf that a tick belongs to if it is a function that is called as it is."""
     leaf = getattr(tick, "__self__", None)
     return leaf if leaf.__class__ is FunctionLeaf else None
 
 
 def function_leaf(instance: NodeInstance, call: Callable[..., Any], stored: Stored) -> Compiled:
-    """A function; `stored` gives the values that are read at each call."""
+    """Compile a function; `stored` returns the values that are read at each call."""
     if stored is None:
         return FunctionLeaf(instance, call).tick, halt_nothing
 
@@ -68,14 +68,14 @@ def function_leaf(instance: NodeInstance, call: Callable[..., Any], stored: Stor
         except KeyboardInterrupt:
             raise
         except BaseException as problem:
-            return failed(instance, problem)
+            return fail_with(instance, problem)
         return status_of(instance, result)
 
     return tick, halt_nothing
 
 
 class GeneratorLeaf:
-    """A generator function; `stored` gives the values that are read at each start.
+    """A leaf that runs a generator function; `stored` returns the values that are read at each start.
 
     A class and not two closures as most nodes are: there are many of them, and each would need six cells.
     """
@@ -106,7 +106,7 @@ class GeneratorLeaf:
             raise
         except BaseException as problem:
             self.generator = None
-            status = failed(self.instance, problem)
+            status = fail_with(self.instance, problem)
         return status if self.trace is None else self.trace.ended(status)
 
     def halt(self, keep: bool) -> None:
@@ -115,22 +115,22 @@ class GeneratorLeaf:
             _stop(self.instance, running.close)
 
 
-class Kept(dict[str, "Any"]):
-    """What a generator keeps while it is suspended."""
+class KeptValues(dict[str, "Any"]):
+    """The values that a generator keeps while it is suspended."""
 
     def saved(self) -> dict[str, Any]:
-        """As JSON."""
+        """Return them as JSON."""
         return dict(self)
 
     def restore(self, saved: Mapping[str, Any]) -> None:
-        """What `saved` gave."""
+        """Take back what `saved` returned."""
         self.clear()
         self.update(saved)
 
 
-def keeping_leaf(instance: NodeInstance, call: Callable[..., Any], stored: Stored) -> Compiled:
-    """As GeneratorLeaf, for a function that takes what it kept when it was suspended."""
-    kept = Kept()
+def resumable_leaf(instance: NodeInstance, call: Callable[..., Any], stored: Stored) -> Compiled:
+    """Compile a generator function that takes what it kept when it was suspended."""
+    kept = KeptValues()
     leaf = GeneratorLeaf(instance, partial(call, **{KEPT: kept}), stored)
 
     def tick() -> int:
@@ -149,7 +149,7 @@ def keeping_leaf(instance: NodeInstance, call: Callable[..., Any], stored: Store
 
 
 def class_leaf(instance: NodeInstance, leaf: Any, start: Callable[..., Any], stored: Stored) -> Compiled:
-    """An object with `tick` and `halt`, and what starts it; `stored` gives the values that are read at each start."""
+    """Compile an object with `tick` and `halt`, and what starts it; `stored` returns what is read at each start."""
     go_on = leaf.tick
     trace = _trace_of(instance)
     interrupts = instance.state.interrupts if getattr(leaf, "interrupts", True) else []
@@ -172,12 +172,12 @@ def class_leaf(instance: NodeInstance, leaf: Any, start: Callable[..., Any], sto
             status = SUCCESS if result is True else status_of(instance, result)
         except ActionFailed as problem:
             running = False
-            status = failed(instance, problem)
+            status = fail_with(instance, problem)
         except KeyboardInterrupt:
             raise
         except BaseException as problem:
             halt(False)
-            status = failed(instance, problem)
+            status = fail_with(instance, problem)
         return status if trace is None else trace.ended(status)
 
     def halt(keep: bool) -> None:
@@ -190,7 +190,7 @@ def class_leaf(instance: NodeInstance, leaf: Any, start: Callable[..., Any], sto
 
 
 def _trace_of(instance: NodeInstance) -> LeafTrace | None:
-    """Its trace; the leaf itself reports how it ended, unless conditions around it may change that."""
+    """Return its trace. The leaf itself reports how it ended, unless conditions around it may change that."""
     trace = instance.state.node_trace
     if trace is not None and trace.index and not any(port[:1] == "_" for port, _ in instance.node.ports):
         trace.reported_by_leaf = True
@@ -198,7 +198,7 @@ def _trace_of(instance: NodeInstance) -> LeafTrace | None:
 
 
 def _begin(interrupts: list[Callable[[], None]], trace: LeafTrace | None) -> None:
-    """To be called before a generator or class leaf starts: running actions that it replaces are halted first."""
+    """Halt the running actions that a generator or class leaf replaces. Called before it starts."""
     while interrupts:
         interrupts.pop()()
     if trace is not None:
@@ -212,13 +212,13 @@ def _stop(instance: NodeInstance, halt: Callable[[], object]) -> None:
     except KeyboardInterrupt:
         raise
     except BaseException as problem:
-        instance.state.halt_faults.append(Fault(instance.index, described(problem), problem))
+        instance.state.halt_faults.append(Fault(instance.index, describe_exception(problem), problem))
 
 
-def failed(instance: NodeInstance, problem: BaseException) -> int:
-    """FAILURE, for the reason that the leaf gave, or with the exception that it should not have raised."""
+def fail_with(instance: NodeInstance, problem: BaseException) -> int:
+    """Return FAILURE, for the reason that the leaf gave, or with the exception that it shouldn't have raised."""
     if not isinstance(problem, ActionFailed):
-        return instance.cannot_know(described(problem), problem)
+        return instance.cannot_know(describe_exception(problem), problem)
     fail = instance.cannot_know if _is_question(instance, problem) else instance.fail
     return fail(_reason(problem))
 
@@ -231,13 +231,15 @@ def _reason(problem: ActionFailed) -> str:
 
 
 def _is_question(instance: NodeInstance, problem: ActionFailed) -> bool:
-    """Whether a leaf was asked something: also a function that isn't declared a condition, but raises Unknown."""
+    """Whether a leaf was asked something. A function that raises Unknown counts even if it isn't a declared
+    condition.
+    """
     signature = instance.state.signatures[instance.node.id]
     return signature.binding.condition or (isinstance(problem, Unknown) and signature.kind == "function")
 
 
 def status_of(instance: NodeInstance, result: object) -> int:
-    """The status that a returned value stands for; a FAILURE is recorded as that of the leaf."""
+    """Return the status of a returned value; a FAILURE is recorded as that of the leaf."""
     if result is True or result is None:
         return SUCCESS
     if result is False:

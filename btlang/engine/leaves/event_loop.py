@@ -1,4 +1,4 @@
-"""An asyncio event loop in a thread of its own, for the `async def` leaves of one engine."""
+"""An asyncio event loop in a separate thread, for the `async def` leaves of one engine."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
 from threading import Thread
 
-from btlang.engine.leaves.leaf import ActionFailed, described
+from btlang.engine.leaves.leaf import ActionFailed, describe_exception
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class EventLoop:
-    """Runs from when it is made until it is closed."""
+    """An asyncio event loop that runs from when it is made until it is closed."""
 
     def __init__(self) -> None:
         self._loop = asyncio.new_event_loop()
@@ -30,7 +30,7 @@ class EventLoop:
         self._thread.start()
 
     def start(self, call: Callable[[], Any], work: Work, over: Callable[[Work], object]) -> None:
-        """Awaits what `call` gives, and calls `over` when it has ended. Cancelling the work cancels the task."""
+        """Await what `call` returns, and call `over` when it has ended. Cancelling the work cancels the task."""
         loop = self._loop
         tasks: list[asyncio.Task[None]] = []
 
@@ -47,7 +47,7 @@ class EventLoop:
         loop.call_soon_threadsafe(begin)
 
     def close(self, patience: float) -> None:
-        """Cancels what is left on the loop, which ends after it; waits for that at most so many seconds."""
+        """Cancel what is left on the loop, which then ends, and wait for that at most so many seconds."""
         self._loop.call_soon_threadsafe(self._closing.set)
         self._thread.join(patience)
 
@@ -62,7 +62,9 @@ class EventLoop:
 
 
 class _Daemons(ThreadPoolExecutor):
-    """The threads of `asyncio.to_thread`, as daemons: Python waits at its end for those of its own executors."""
+    """An executor for `asyncio.to_thread` with daemon threads. At its end, Python waits for those of its own
+    executors.
+    """
 
     def submit(self, call: Callable[..., Any], /, *args: Any, **named: Any) -> Future[Any]:
         future: Future[Any] = Future()
@@ -83,12 +85,12 @@ async def _awaited(call: Callable[[], Any], work: Work) -> None:
     try:
         work.result = await call()
     except asyncio.CancelledError as problem:  # a way to end
-        work.problem = ActionFailed(described(problem))
+        work.problem = ActionFailed(describe_exception(problem))
     except BaseException as problem:
         work.problem = problem
 
 
 def _in_one_line(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
-    """What a task raised that a leaf left to itself, without the traceback that asyncio would print."""
+    """Log what an abandoned task of a leaf raised, without the traceback that asyncio would print."""
     problem = context.get("exception")
     logging.getLogger("asyncio").error("%s%s", context["message"], f": {problem!r}" if problem is not None else "")

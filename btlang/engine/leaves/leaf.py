@@ -1,4 +1,4 @@
-"""What a leaf can be, and how it is bound to the Python object that does its work.
+"""Leaves: what a leaf can be, and how it is bound to the Python object that does its work.
 
 A leaf is one of
 - a function: called at a tick; returns True or None (SUCCESS), False (FAILURE) or a status integer;
@@ -45,6 +45,9 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, TypeAlias
 
+    Ports: TypeAlias = tuple[tuple[str, str], ...]
+    Call: TypeAlias = tuple[Callable[..., Any], Callable[[], Mapping[str, Any]] | None, list[str]]
+
 Reason: TypeAlias = "str | Callable[[], str]"
 """Why something failed, for people: a text, or what gives it when somebody asks."""
 
@@ -58,23 +61,23 @@ class NotThere(str):
     __slots__ = ()
 
 
-def unheard(share: float, state: str = "") -> None:
-    """The service `progress` if nobody listens."""
+def ignore_progress(share: float, state: str = "") -> None:
+    """Do nothing: the service `progress` if nobody listens."""
 
 
 class ActionFailed(Exception):
-    """A leaf raises it to FAIL with a reason for people: `raise ActionFailed("nothing within reach")`."""
+    """An exception that makes a leaf FAIL with a reason for people: `raise ActionFailed("nothing within reach")`."""
 
 
 class Unknown(ActionFailed):
-    """A condition raises it if it can't know: `raise Unknown("the scanner is silent")`.
+    """An exception of a condition that can't know its answer: `raise Unknown("the scanner is silent")`.
 
     The condition FAILS, and so do an Inverter, an IfThenElse and a WhileDoElse above it: unknown doesn't mean false.
     """
 
 
 class Failed(Record):
-    """What a leaf can return instead of False: FAILURE with a reason."""
+    """A FAILURE with a reason, which a leaf can return instead of False."""
 
     reason: Reason
 
@@ -83,7 +86,7 @@ class Failed(Record):
 
 
 def reason_text(reason: Reason) -> str:
-    """The text of a reason. If a function can't compute it, it is the text of the exception."""
+    """Return the text of a reason. If a function can't compute it, it is the text of the exception."""
     if isinstance(reason, str):
         return str(reason)
     try:
@@ -91,17 +94,17 @@ def reason_text(reason: Reason) -> str:
     except KeyboardInterrupt:
         raise
     except BaseException as problem:
-        return described(problem)
+        return describe_exception(problem)
 
 
-def described(problem: BaseException) -> str:
-    """An exception as the reason of a failure."""
+def describe_exception(problem: BaseException) -> str:
+    """Describe an exception as the reason of a failure."""
     name, text = type(problem).__name__, str(problem)
     return f"{name}: {text}" if text else name
 
 
-def raised_in(problem: BaseException | None) -> str:
-    """The line of Python that raised an exception, for people; "" where it isn't known."""
+def find_raising_line(problem: BaseException | None) -> str:
+    """Return the line of Python that raised an exception, for people; "" if it isn't known."""
     if problem is None or problem.__traceback__ is None:
         return ""
     import os
@@ -111,9 +114,9 @@ def raised_in(problem: BaseException | None) -> str:
     return f"{frame.name}, {os.path.basename(frame.filename)}:{frame.lineno}"
 
 
-def reason_of(problem: BaseException) -> str:
-    """Why something failed: what an ActionFailed says, else the exception."""
-    return str(problem) if isinstance(problem, ActionFailed) else described(problem)
+def failure_reason(problem: BaseException) -> str:
+    """Return why something failed: the message of an ActionFailed, else the description of the exception."""
+    return str(problem) if isinstance(problem, ActionFailed) else describe_exception(problem)
 
 
 class LeafBinding(Record):
@@ -131,3 +134,31 @@ class LeafBinding(Record):
     refusal: str = REFUSED
     thread: bool = False
     condition: bool = False
+
+
+class LeafSignature:
+    """The part of a binding that the leaves of one engine with the same id share, found once.
+
+    `kind` is "class", "async", "generator", "thread" or "function"; `given` keeps the names of the services that the
+    call gets, by the names of the ports that a node has; for a class `made_with` keeps those of its constructor.
+    `calls` are shared by equal leaves: what `binding` makes of the ports and the blackboard of a node.
+    """
+
+    __slots__ = ("binding", "calls", "given", "kind", "made_with")
+
+    def __init__(self, binding: LeafBinding) -> None:
+        from inspect import isclass, iscoroutinefunction, isgeneratorfunction
+
+        call = binding.call
+        self.binding = binding
+        self.given: dict[tuple[str, ...], list[str]] = {}
+        self.calls: dict[tuple[Ports, object], Call] = {}
+        self.made_with: list[str] | None = None
+        if isclass(call):
+            self.kind = "class"
+        elif iscoroutinefunction(call) or iscoroutinefunction(type(call).__call__):
+            self.kind = "async"
+        elif isgeneratorfunction(call) or isgeneratorfunction(type(call).__call__):
+            self.kind = "generator"
+        else:
+            self.kind = "thread" if binding.thread else "function"

@@ -1,4 +1,4 @@
-"""The work of one background leaf, between the thread that does it and the one that ticks."""
+"""The work of one background leaf, shared by the thread that does it and the one that ticks."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from typing import Any
 
 
-class Request:
+class TickCall:
     """A call that the thread of a work hands over to the one that ticks."""
 
     __slots__ = ("call", "done", "problem", "result")
@@ -26,7 +26,7 @@ class Request:
 
 
 class Work:
-    """One run of a background leaf. `ended` is set when it is over; its `result` or its `problem` is there by then.
+    """A run of a background leaf. `ended` is set when it is over; its `result` or its `problem` is set by then.
 
     `proxies` are what it got in place of services that are not safe beside the tick.
     """
@@ -35,7 +35,7 @@ class Work:
 
     def __init__(self, wake: Callable[[], object]) -> None:
         self._wake = wake
-        self._requests: deque[Request] = deque()
+        self._requests: deque[TickCall] = deque()
         self.proxies: dict[str, Any] = {}
         self.halted = Event()
         self.ended = Event()
@@ -45,11 +45,12 @@ class Work:
         """Asks it to end, from the thread that ticks."""
 
     def in_tick(self, call: Callable[[], Any]) -> Any:
-        """What `call` gives or raises in the thread that ticks, which the next tick of the leaf calls at once.
+        """Call something in the thread that ticks, at the next tick of the leaf, which comes at once. Returns or raises
+        as it does.
 
         For the threads of the work. Raises ActionFailed once the work was halted or is over.
         """
-        request = Request(call)
+        request = TickCall(call)
         self._requests.append(request)
         self._wake()
         if self.halted.is_set() or self.ended.is_set():
@@ -60,7 +61,7 @@ class Work:
         return request.result
 
     def serve(self) -> None:
-        """Does what was handed over before now."""
+        """Make the calls that were handed over before now."""
         for _ in range(len(self._requests)):
             request = self._requests.popleft()
             try:
@@ -73,7 +74,7 @@ class Work:
             request.done.set()
 
     def refuse(self) -> None:
-        """Does nothing of what was handed over, from any thread."""
+        """Refuse all calls that were handed over. Any thread may call it."""
         while True:
             try:
                 request = self._requests.popleft()
@@ -83,6 +84,6 @@ class Work:
             request.done.set()
 
     def let_go(self) -> None:
-        """Ends what it has set about with its services."""
+        """End what it has begun with its services."""
         for proxy in self.proxies.values():
             proxy.let_go()

@@ -1,1 +1,1 @@
-"""Control nodes, decorators and built-in leaves: what each does, as in BehaviorTree.CPP 4.10."""
+"""The built-in nodes: control nodes, decorators and leaves, each as in BehaviorTree.CPP 4.10."""

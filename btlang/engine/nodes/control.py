@@ -1,10 +1,15 @@
-"""Nodes that tick their children in order or side by side; controls/*.cpp of BehaviorTree.CPP 4.10."""
+"""Nodes that tick their children in order or at the same time, as controls/*.cpp of BehaviorTree.CPP 4.10.
+
+One difference: in C++ a reactive node halts its running child after another one has become RUNNING, so for a moment two
+actions drive the robot. Here the child is halted before a generator or class leaf starts under another child. Functions
+run without halting anything.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from btlang.engine.instance import NodeInstance, apart
+from btlang.engine.instance import NodeInstance, split_children
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
 
 TYPE_CHECKING = False
@@ -15,36 +20,40 @@ if TYPE_CHECKING:
 
 
 def sequence(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
-    """One child after the other until one fails; a running one is resumed. SKIPPED if all (sequence_node.cpp)."""
+    """Tick one child after the other until one fails; a running one is resumed. SKIPPED if all are
+    (sequence_node.cpp).
+    """
     return _in_order(children, SUCCESS)
 
 
 def fallback(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
-    """One child after the other until one succeeds; a running one is resumed. SKIPPED if all (fallback_node.cpp)."""
+    """Tick one child after the other until one succeeds; a running one is resumed. SKIPPED if all are
+    (fallback_node.cpp).
+    """
     return _in_order(children, FAILURE)
 
 
 def sequence_with_memory(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
-    """An AsyncSequence that, after a failure or a halt, starts again at the child it had reached.
+    """Run an AsyncSequence that, after a failure or a halt, starts again at the child it had reached.
 
     Only its own success starts it at the first child (sequence_with_memory_node.cpp).
     """
-    return _breathing(instance, children, SUCCESS, remember=True)
+    return _in_steps(instance, children, SUCCESS, remember=True)
 
 
 def async_sequence(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
-    """A Sequence that returns RUNNING after each child that succeeded within one tick: it can be interrupted."""
-    return _breathing(instance, children, SUCCESS)
+    """Run a Sequence that returns RUNNING after each child that succeeded within one tick: it can be interrupted."""
+    return _in_steps(instance, children, SUCCESS)
 
 
 def async_fallback(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
-    """A Fallback that returns RUNNING after each child that failed within one tick."""
-    return _breathing(instance, children, FAILURE)
+    """Run a Fallback that returns RUNNING after each child that failed within one tick."""
+    return _in_steps(instance, children, FAILURE)
 
 
 def _in_order(children: Sequence[Compiled], passes: int) -> Compiled:
-    """Goes on to the next child at the status `passes`, and returns it after the last child."""
-    ticks, halts = apart(children)
+    """Go on to the next child at the status `passes`, and return it after the last child."""
+    ticks, halts = split_children(children)
     index = skipped = 0
 
     # what does not change are defaults: a cell for each would be a third of the memory of a tree
@@ -75,18 +84,18 @@ def _in_order(children: Sequence[Compiled], passes: int) -> Compiled:
     return tick, halt
 
 
-def _breathing(instance: NodeInstance, children: Sequence[Compiled], passes: int, remember: bool = False) -> Compiled:
-    """As `_in_order`, but RUNNING between two children if the first took no longer than its tick.
+def _in_steps(instance: NodeInstance, children: Sequence[Compiled], passes: int, remember: bool = False) -> Compiled:
+    """Run as `_in_order` does, but return RUNNING between two children if the first took no longer than its tick.
 
     The next tick comes at once then; but not in a second run at the same time, so that no loop holds the time.
     """
-    ticks, halts = apart(children)
+    ticks, halts = split_children(children)
     count = len(ticks)
     clock = instance.state.clock
     index = skipped = 0
     waiting = -1  # the child that was RUNNING at the last tick
     began: float | None = None  # when the first child was last started
-    hurries = True
+    hurries = True  # the names of these variables are in saved runs
 
     def tick() -> int:
         nonlocal index, skipped, waiting, began, hurries
@@ -130,12 +139,12 @@ def _breathing(instance: NodeInstance, children: Sequence[Compiled], passes: int
 
 
 def parallel(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
-    """Ticks all children that have not completed; ends as soon as enough succeeded or failed, and halts the others.
+    """Tick all children that haven't completed; end as soon as enough succeeded or failed, and halt the others.
 
     Ports success_count (all by default) and failure_count (1); -1 is all, -2 all but one. It fails also when too few
     are left to succeed. With a negative success_count a skipped child counts as a success (parallel_node.cpp).
     """
-    ticks, halts = apart(children)
+    ticks, halts = split_children(children)
     count = len(ticks)
     success_count = instance.number("success_count", -count - 1, count)
     failure_count = instance.number("failure_count", -count - 1, count)
@@ -195,8 +204,8 @@ def parallel(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
 
 
 def parallel_all(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
-    """Ticks all until each has completed; FAILURE if max_failures (1) or more failed (parallel_all_node.cpp)."""
-    ticks, halts = apart(children)
+    """Tick all until each has completed; FAILURE if max_failures (1) or more failed (parallel_all_node.cpp)."""
+    ticks, halts = split_children(children)
     count = len(ticks)
     max_failures = instance.number("max_failures", -count - 1, count)
     completed = [False] * count
@@ -242,5 +251,64 @@ def parallel_all(instance: NodeInstance, children: Sequence[Compiled]) -> Compil
         if not keep:
             completed[:] = [False] * count
             failures = 0
+
+    return tick, halt
+
+
+def reactive_sequence(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
+    """Tick from the first child each time, until one fails; a child that is RUNNING or fails halts the others."""
+    return _reactive(instance, children, SUCCESS)
+
+
+def reactive_fallback(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
+    """Tick from the first child each time, until one succeeds; one that is RUNNING or succeeds halts the others."""
+    return _reactive(instance, children, FAILURE)
+
+
+def _reactive(instance: NodeInstance, children: Sequence[Compiled], passes: int) -> Compiled:
+    """Go on to the next child at the status `passes`, and return it after the last child. SKIPPED if all are."""
+    ticks, halts = split_children(children)
+    pairs, count = tuple(enumerate(ticks)), len(ticks)
+    interrupts = instance.state.interrupts
+    running = -1  # the child that was RUNNING at the last tick
+    asked = 0  # the child that is being ticked
+
+    def interrupt() -> None:
+        nonlocal running
+        if asked < running:
+            child, running = running, -1
+            halts[child](False)
+
+    def tick() -> int:
+        nonlocal running, asked
+        if running > 0:
+            interrupts.append(interrupt)
+        skipped = 0
+        status = passes
+        for asked, child in pairs:
+            status = child()
+            if status == SKIPPED:
+                halts[asked](False)
+                skipped += 1
+            elif status is not passes:
+                break
+        if interrupts and interrupts[-1] is interrupt:
+            interrupts.pop()
+        if status is not passes and status != SKIPPED:
+            if asked < running:
+                if status is FAILURE:
+                    instance.pass_on("its guard failed on the way")
+                halts[running](False)
+            running = asked if status == RUNNING else -1
+            return status
+        running = -1
+        return SKIPPED if skipped == count else passes
+
+    def halt(keep: bool) -> None:
+        nonlocal running
+        for stop in halts:
+            stop(keep)
+        if not keep:
+            running = -1
 
     return tick, halt

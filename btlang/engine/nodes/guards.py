@@ -1,19 +1,22 @@
-"""Nodes that decide whether their one child runs, or runs again; decorators/*.h of BehaviorTree.CPP 4.10.
+"""Nodes that decide whether their one child runs, or runs again, and nodes that ask for news on the blackboard.
 
-One difference: a Precondition whose child was SKIPPED or halted asks its condition again. There it remembers that the
-condition once held until the child completes.
+They follow decorators/*.h, updated_decorator.cpp and updated_action.cpp of BehaviorTree.CPP 4.10. When a node first
+asks for news, an entry that has a value counts as new; setting the value that it has counts too. No halt makes a node
+forget what it has seen. Differences:
+- a Precondition whose child was SKIPPED or halted asks its condition again. There it remembers that the condition
+  once held until the child completes;
+- halting a decorator that asks for news halts its child; there the child is left alone.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
-from btlang.engine.instance import NodeInstance
+from btlang.engine.instance import NodeInstance, halt_nothing
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.engine.nodes.ports import STATUSES, TRUTHS, choice_port
-from btlang.engine.nodes.script_nodes import not_true, script_of
-from btlang.engine.nodes.start_guard import start_guarded
-from btlang.engine.script.script import truth
+from btlang.engine.nodes.built_in_leaves import refusal_text, script_port
+from btlang.engine.nodes.ports import STATUSES, TRUTHS, choice_port, key_port
+from btlang.engine.script.values import truth
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 
 TYPE_CHECKING = False
@@ -22,7 +25,7 @@ if TYPE_CHECKING:
 
 
 def keep_running_until_failure(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
-    """RUNNING until its child fails: FAILURE (keep_running_until_failure_node.h). SKIPPED is RUNNING too."""
+    """Return RUNNING until its child fails: FAILURE (keep_running_until_failure_node.h). SKIPPED is RUNNING too."""
     [(child, halt)] = children
 
     def tick() -> int:
@@ -32,7 +35,7 @@ def keep_running_until_failure(instance: NodeInstance, children: Sequence[Compil
 
 
 def run_once(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
-    """Runs its child until it completes, once for as long as the tree exists: no halt makes it run again.
+    """Run its child until it completes, once for as long as the tree exists: no halt makes it run again.
 
     From then on SKIPPED, or with then_skip="false" the status of that one run (run_once_node.h).
     """
@@ -61,9 +64,9 @@ def run_once(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
 
 
 def precondition(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
-    """Its child where the script `if` holds when it starts, else the status in `else` (script_precondition.h)."""
-    condition, scope = script_of(instance, "if"), instance.scope
-    refusal = not_true(instance, "if")
+    """Run its child if the script `if` holds at the start, else return the status in `else` (script_precondition.h)."""
+    condition, scope = script_port(instance, "if"), instance.scope
+    refusal = refusal_text(instance, "if")
     otherwise = choice_port(instance, "else", STATUSES)
 
     def ask() -> int:
@@ -76,4 +79,70 @@ def precondition(instance: NodeInstance, children: Sequence[Compiled]) -> Compil
         status = otherwise()
         return instance.fail(refusal) if status == FAILURE else status
 
-    return start_guarded(children, ask)
+    return guard_start(children, ask)
+
+
+def guard_start(children: Sequence[Compiled], ask: Callable[[], int]) -> Compiled:
+    """Run the one child if `ask` returns IDLE when it is to start; else return the status from `ask`."""
+    [(child, halt_child)] = children
+    running = False  # whether the child was RUNNING at the last tick
+
+    def tick() -> int:
+        nonlocal running
+        if not running:
+            status = ask()
+            if status != IDLE:
+                return status
+        status = child()
+        running = status == RUNNING
+        return status
+
+    def halt(keep: bool) -> None:
+        nonlocal running
+        halt_child(keep)
+        if not keep:
+            running = False
+
+    return tick, halt
+
+
+def skip_unless_updated(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
+    """Run its child if the entry is new, else return SKIPPED; a RUNNING child is ticked on without asking."""
+    return guard_start(children, _EntryUpdates(instance, SKIPPED))
+
+
+def wait_value_update(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
+    """Return RUNNING until the entry is new, then run its child."""
+    return guard_start(children, _EntryUpdates(instance, RUNNING))
+
+
+def was_entry_updated(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
+    """Return SUCCESS if the entry is new, else FAILURE."""
+    news = _EntryUpdates(instance, FAILURE)
+    refusal = f"nothing has been written to {{{key_port(instance, 'entry')}}} since the last check"
+    return (lambda: SUCCESS if news() == IDLE else instance.fail(refusal)), halt_nothing
+
+
+class _EntryUpdates:
+    """A check of an entry: IDLE if it is new since the last call, else the status `otherwise`."""
+
+    __slots__ = ("key", "otherwise", "scope", "seen")
+
+    def __init__(self, instance: NodeInstance, otherwise: int) -> None:
+        self.scope, self.key = instance.scope, key_port(instance, "entry")
+        self.otherwise = otherwise
+        self.seen = -1
+
+    def __call__(self) -> int:
+        before = self.seen
+        if self.key in self.scope:
+            self.seen = self.scope.writes(self.key)
+        return IDLE if self.seen != before else self.otherwise
+
+    def saved(self) -> int:
+        """Return how often the entry had been set."""
+        return self.seen
+
+    def restore(self, seen: int) -> None:
+        """Take back what `saved` returned."""
+        self.seen = seen

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from btlang.engine.instance import NodeInstance, apart
+from btlang.engine.instance import NodeInstance, split_children
 from btlang.engine.nodes.ports import rate_port
 from btlang.engine.nodes.timed import Stopwatch
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
@@ -19,11 +19,11 @@ if TYPE_CHECKING:
 
 
 def pipeline_sequence(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
-    """Ticks all children up to the furthest one reached, again those that have completed (pipeline_sequence.cpp).
+    """Tick all children up to the furthest one reached, again those that have completed (pipeline_sequence.cpp).
 
     One before it may be RUNNING as well. A failure, or the last child's success, ends it and halts the others.
     """
-    ticks, halts = apart(children)
+    ticks, halts = split_children(children)
     count = len(ticks)
     reached = 0
 
@@ -55,12 +55,12 @@ def pipeline_sequence(instance: NodeInstance, children: Sequence[Compiled]) -> C
 
 
 def recovery_node(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
-    """When the first child fails, the second one recovers, and the first is tried again (recovery_node.cpp).
+    """Run the second child, which recovers, when the first fails, and try the first again (recovery_node.cpp).
 
     At most number_of_retries (1) times, all within one tick where nothing is RUNNING. FAILURE also where the recovery
     fails or is SKIPPED; SKIPPED where the first child is.
     """
-    ticks, halts = apart(children)
+    ticks, halts = split_children(children)
     retries = instance.number("number_of_retries")
     position = count = 0  # of the child, and of the recoveries so far
 
@@ -97,12 +97,12 @@ def recovery_node(instance: NodeInstance, children: Sequence[Compiled]) -> Compi
 
 
 def round_robin(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
-    """One child after the other until one succeeds; the next run begins after that one (round_robin_node.cpp).
+    """Run one child after the other until one succeeds; the next run begins after that one (round_robin_node.cpp).
 
     FAILURE when all have failed or were SKIPPED, SKIPPED when all were SKIPPED; then, and when it is halted while it
     runs, the next run begins with the first child.
     """
-    ticks, halts = apart(children)
+    ticks, halts = split_children(children)
     count = len(ticks)
     position = failed = 0
     running = False
@@ -139,7 +139,7 @@ def round_robin(instance: NodeInstance, children: Sequence[Compiled]) -> Compile
 
 
 def rate_controller(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
-    """Ticks its child at the start, while it is RUNNING, and when 1/hz s (hz: 10) have passed (rate_controller.cpp).
+    """Tick its child at the start, while it is RUNNING, and every 1/hz s (hz: 10) (rate_controller.cpp).
 
     RUNNING in between. The time counts from the child's last success, and a PipelineSequence leaves it running.
     """

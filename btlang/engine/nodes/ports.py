@@ -1,4 +1,4 @@
-"""Ports of nodes as values: what the text says, or what is under its `{key}` whenever it is asked.
+"""Ports of nodes as functions: what the text says, or what is under its `{key}` at the time of the call.
 
 A text that makes no sense raises EngineError when the tree is compiled; what is under a key raises ActionFailed.
 """
@@ -24,7 +24,9 @@ STATUSES = {"SUCCESS": SUCCESS, "FAILURE": FAILURE, "SKIPPED": SKIPPED, "RUNNING
 
 
 def value_port(instance: NodeInstance, port: str, convert: Callable[[Any], T]) -> Callable[[], T]:
-    """A function that gives the converted value of a port. `convert` raises ActionFailed for what it cannot take."""
+    """Make a function that returns the converted value of a port. `convert` raises ActionFailed for what it can't
+    take.
+    """
     text = instance.node.port(port)
     key = blackboard_key(port, text)
     if key is not None:
@@ -40,7 +42,7 @@ def value_port(instance: NodeInstance, port: str, convert: Callable[[Any], T]) -
 
 
 def choice_port(instance: NodeInstance, port: str, table: Mapping[str, T]) -> Callable[[], T]:
-    """As value_port, for a port that takes one of some words."""
+    """Make a function as `value_port` does, for a port that takes one of some words."""
 
     def convert(value: Any) -> T:
         word = as_text(value)
@@ -52,7 +54,7 @@ def choice_port(instance: NodeInstance, port: str, table: Mapping[str, T]) -> Ca
 
 
 def rate_port(instance: NodeInstance, port: str) -> Callable[[], float]:
-    """As value_port, for a number above 0."""
+    """Make a function as `value_port` does, for a number above 0."""
 
     def convert(value: Any) -> float:
         try:
@@ -67,7 +69,7 @@ def rate_port(instance: NodeInstance, port: str) -> Callable[[], float]:
 
 
 def key_port(instance: NodeInstance, port: str) -> str:
-    """The key that a port names, with or without braces."""
+    """Return the key that a port names, with or without braces."""
     text = instance.node.port(port)
     key = blackboard_key(port, text) or text
     if not key:

@@ -26,7 +26,7 @@ _SLACK = 1e-9  # twenty ticks of 0.05 s are 1 s, whatever floating point makes o
 
 
 class Stopwatch:
-    """Runs from its first reading; `halt(keep)` pauses or resets it."""
+    """A stopwatch that runs from its first reading; `halt(keep)` pauses or resets it."""
 
     __slots__ = ("clock", "kept", "since")
 
@@ -42,17 +42,19 @@ class Stopwatch:
         return self.kept + self.clock.now - self.since >= msec / 1000 - _SLACK
 
     def wait(self, msec: float) -> int:
-        """RUNNING, with a tick when so much time has passed since it began to run; at most a thousand a second."""
+        """Return RUNNING, and ask for a tick when so much time has passed since it began; at most a thousand a
+        second.
+        """
         assert self.since is not None
         self.clock.wake_at(self.since + max(msec / 1000, SOONEST) - self.kept)
         return RUNNING
 
     def saved(self) -> float:
-        """The seconds that it has run."""
+        """Return the seconds that it has run."""
         return self.kept + (0.0 if self.since is None else self.clock.now - self.since)
 
     def restore(self, seconds: float) -> None:
-        """It has run so long, and is paused."""
+        """Set the seconds that it has run, and pause it."""
         self.kept, self.since = seconds, None
 
     def halt(self, keep: bool) -> None:
@@ -64,7 +66,7 @@ class Stopwatch:
 
 
 def sleep(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
-    """RUNNING until msec have passed, then SUCCESS."""
+    """Return RUNNING until msec have passed, then SUCCESS."""
     msec = instance.number("msec")
     stopwatch = Stopwatch(instance.state.clock)
 
@@ -79,7 +81,7 @@ def sleep(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
 
 
 def wait_for_time(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
-    """RUNNING until the clock next shows the time, then SUCCESS; where it shows it at the start, that is tomorrow.
+    """Return RUNNING until the clock next shows the time, then SUCCESS. If it shows it at the start, that is tomorrow.
 
     The clock may be set: what is skipped by that has come, and what is set back is waited for.
     """
@@ -117,7 +119,7 @@ def _time_of_day(value: Any) -> float:
 
 
 def delay(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
-    """RUNNING until delay_msec have passed, then its child; a SKIPPED child is ticked again without a delay."""
+    """Return RUNNING until delay_msec have passed, then run its child. A SKIPPED child is ticked again at once."""
     [(child, halt_child)] = children
     msec = instance.number("delay_msec")
     stopwatch = Stopwatch(instance.state.clock)
@@ -139,7 +141,7 @@ def delay(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
 
 
 def timeout(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
-    """Its child; one that is still RUNNING when msec have passed is halted, not ticked again: FAILURE. 0: no limit."""
+    """Run its child; if it is still RUNNING when msec have passed, halt it, not tick it again: FAILURE. 0: no limit."""
     [(child, halt_child)] = children
     msec = instance.number("msec")
     stopwatch = Stopwatch(instance.state.clock)

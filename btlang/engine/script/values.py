@@ -1,4 +1,4 @@
-"""What the operators of scripts do with values: numbers, which are doubles, and texts.
+"""Values of scripts, which are doubles and texts, and what the operators do with them.
 
 Names as in operators.hpp of BehaviorTree.CPP 4.10. All functions raise ScriptFailed where the values do not fit.
 """
@@ -9,7 +9,7 @@ import re
 from collections.abc import Callable
 from math import copysign, inf, nan
 
-from btlang.engine.blackboard import checked_length
+from btlang.engine.blackboard import check_length
 from btlang.engine.leaves.leaf import ActionFailed
 
 TYPE_CHECKING = False
@@ -26,11 +26,11 @@ _DECIMAL = re.compile(r"-?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
 
 
 class ScriptFailed(ActionFailed):
-    """A script cannot go on with the values that it found; the message is for people."""
+    """An error because a script can't go on with the values that it found; the message is for people."""
 
 
-def read(value: Any) -> Any:
-    """A value from the blackboard as scripts compute with it: any real number as a float, all else as it is."""
+def from_stored(value: Any) -> Any:
+    """Return a value from the blackboard as scripts compute with it: a real number as a float, all else as it is."""
     kind = value.__class__
     if kind is float or kind is str:
         return value
@@ -45,21 +45,25 @@ def read(value: Any) -> Any:
         raise ScriptFailed("a number of more than 308 digits is too large for a script") from None
 
 
-def kept(value: Any) -> Any:
-    """A value as it is written to the blackboard: a whole number as an int, so that leaves show and count with 3."""
+def to_stored(value: Any) -> Any:
+    """Return a value as it is written to the blackboard: a whole number as an int, so that leaves show and count with
+    3.
+    """
     if value.__class__ is float and -_EXACT < value < _EXACT and value == (whole := int(value)):
         return whole
     return value
 
 
 def as_text(value: Any) -> str:
-    """A value as people read it: a whole number as `3`, any other with at most six decimals: `0.5`."""
-    number = read(value)
-    return str(kept(round(number, 6) if isinstance(number, float) else number))
+    """Return a value as people read it: a whole number as `3`, any other with at most six decimals: `0.5`."""
+    number = from_stored(value)
+    return str(to_stored(round(number, 6) if isinstance(number, float) else number))
 
 
 def literal(text: str) -> int | float | str:
-    """What a constant in a port of a SubTree is there since 4.9: a whole number of 64 bits, a double, or a text."""
+    """Return a constant in a port of a SubTree as 4.9 and later read it: a whole number of 64 bits, a double, or a
+    text.
+    """
     if len(text) <= _LONGEST and _WHOLE.fullmatch(text) and -(2**63) <= (whole := int(text)) < 2**63:
         return whole
     return float(text) if _DECIMAL.fullmatch(text) and abs(float(text)) < inf else text
@@ -81,7 +85,7 @@ def logical_not(value: Any) -> float:
 
 
 def complement(value: Any) -> float:
-    """A fraction is cut off first."""
+    """Complement a whole number. A fraction is cut off first."""
     if value.__class__ is not float:
         raise _only_numbers("~", value)
     if not -(2.0**63) <= value < 2.0**63:
@@ -95,26 +99,26 @@ def complement(value: Any) -> float:
 def plus(left: Any, right: Any) -> Any:
     if left.__class__ is right.__class__ and (left.__class__ is float or left.__class__ is str):
         total = left + right
-        return checked_length(total) if total.__class__ is str else total
-    raise _unfit("+", "two numbers or two texts", left, right)
+        return check_length(total) if total.__class__ is str else total
+    raise _wrong_operands("+", "two numbers or two texts", left, right)
 
 
 def minus(left: Any, right: Any) -> float:
     if left.__class__ is float and right.__class__ is float:
         return left - right
-    raise _unfit("-", "two numbers", left, right)
+    raise _wrong_operands("-", "two numbers", left, right)
 
 
 def times(left: Any, right: Any) -> float:
     if left.__class__ is float and right.__class__ is float:
         return left * right
-    raise _unfit("*", "two numbers", left, right)
+    raise _wrong_operands("*", "two numbers", left, right)
 
 
 def divide(left: Any, right: Any) -> float:
-    """By zero as a double: inf, -inf or nan."""
+    """Divide as doubles: by zero that is inf, -inf or nan."""
     if left.__class__ is not float or right.__class__ is not float:
-        raise _unfit("/", "two numbers", left, right)
+        raise _wrong_operands("/", "two numbers", left, right)
     if right:
         return left / right
     return copysign(inf, left) * copysign(1.0, right) if left and left == left else nan
@@ -123,12 +127,12 @@ def divide(left: Any, right: Any) -> float:
 def concat(left: Any, right: Any) -> str:
     if left.__class__ is str:
         if right.__class__ is str:
-            return checked_length(left + right)
+            return check_length(left + right)
         if right.__class__ is float:
-            return checked_length(left + as_text(right))
+            return check_length(left + as_text(right))
     elif left.__class__ is float and right.__class__ is str:
-        return checked_length(as_text(left) + right)
-    raise _unfit("..", "two texts, or a text and a number", left, right)
+        return check_length(as_text(left) + right)
+    raise _wrong_operands("..", "two texts, or a text and a number", left, right)
 
 
 def bit_and(left: Any, right: Any) -> float:
@@ -146,13 +150,13 @@ def bit_xor(left: Any, right: Any) -> float:
 def logic_and(left: Any, right: Any) -> float:
     if left.__class__ is float and right.__class__ is float:
         return 1.0 if left and right else 0.0
-    raise _unfit("&&", "two numbers", left, right)
+    raise _wrong_operands("&&", "two numbers", left, right)
 
 
 def logic_or(left: Any, right: Any) -> float:
     if left.__class__ is float and right.__class__ is float:
         return 1.0 if left or right else 0.0
-    raise _unfit("||", "two numbers", left, right)
+    raise _wrong_operands("||", "two numbers", left, right)
 
 
 # Comparisons
@@ -174,25 +178,25 @@ COMPARISONS: dict[str, Callable[[Any, Any], bool]] = {
 
 
 def comparable(sign: str, left: Any, right: Any, enums: Enums) -> tuple[Any, Any]:
-    """Two numbers or two texts; of a number and a text, the text as a number."""
+    """Return two numbers or two texts; of a number and a text, the text as a number."""
     if left.__class__ is float and right.__class__ is str:
         return left, number(right, enums)
     if left.__class__ is str and right.__class__ is float:
         return number(left, enums), right
     if left.__class__ is right.__class__ and (left.__class__ is float or left.__class__ is str):
         return left, right
-    raise _unfit(sign, "numbers and texts", left, right)
+    raise _wrong_operands(sign, "numbers and texts", left, right)
 
 
 # What values stand for
 
 
 def number(value: Any, enums: Enums) -> float:
-    """A number, or the one that a text stands for: `true`, `false`, the name of an enum, or digits."""
+    """Return a number, or the one that a text stands for: `true`, `false`, the name of an enum, or digits."""
     if value.__class__ is float:
         return value
     if value.__class__ is not str:
-        raise ScriptFailed(f"{described(value)} isn't a number")
+        raise ScriptFailed(f"{describe_value(value)} isn't a number")
     if value in ("true", "false"):
         return float(value == "true")
     if value in enums:
@@ -204,14 +208,14 @@ def number(value: Any, enums: Enums) -> float:
 
 
 def truth(value: Any) -> bool:
-    """Whether a script's result is true: any number but 0. A text is neither."""
+    """Whether a script's result is true: any number but 0. A text raises ScriptFailed."""
     if value.__class__ is float:
         return value != 0
-    raise ScriptFailed(f"{described(value)} is neither true nor false")
+    raise ScriptFailed(f"{describe_value(value)} is neither true nor false")
 
 
-def described(value: Any) -> str:
-    """A value as messages name it."""
+def describe_value(value: Any) -> str:
+    """Describe a value for a message."""
     if value.__class__ is float:
         return as_text(value)
     return f"the text {value!r}" if value.__class__ is str else f"a value of type {type(value).__name__}"
@@ -219,15 +223,15 @@ def described(value: Any) -> str:
 
 def _integer(sign: str, value: Any, other: Any) -> int:
     if value.__class__ is not float or other.__class__ is not float:
-        raise _unfit(sign, "two whole numbers", value, other)
+        raise _wrong_operands(sign, "two whole numbers", value, other)
     if not -(2.0**63) <= value < 2.0**63 or value != int(value):
         raise ScriptFailed(f"{sign} takes whole numbers of 64 bits, not {as_text(value)}")
     return int(value)
 
 
 def _only_numbers(sign: str, value: Any) -> ScriptFailed:
-    return ScriptFailed(f"{sign} takes a number, not {described(value)}")
+    return ScriptFailed(f"{sign} takes a number, not {describe_value(value)}")
 
 
-def _unfit(sign: str, wanted: str, left: Any, right: Any) -> ScriptFailed:
-    return ScriptFailed(f"{sign} takes {wanted}, not {described(left)} and {described(right)}")
+def _wrong_operands(sign: str, wanted: str, left: Any, right: Any) -> ScriptFailed:
+    return ScriptFailed(f"{sign} takes {wanted}, not {describe_value(left)} and {describe_value(right)}")

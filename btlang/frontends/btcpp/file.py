@@ -16,8 +16,7 @@ from btlang.frontends.btcpp.spelling import IN_NO_ID, KINDS, MODEL
 from btlang.support.record import Record
 from btlang.text.source import Span
 from btlang.tree.catalogue import SUBTREE
-from btlang.tree.model import NodeModel
-from btlang.tree.node import Node
+from btlang.tree.node import Node, NodeModel
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -5,9 +5,8 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
 
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import MOST_DEEP, TOO_DEEP, included_path, read_included, real_path
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
+from btlang.diagnostics.files import MOST_DEEP, TOO_DEEP, included_path, read_included, real_path
 from btlang.frontends.btcpp.file import TreeHead, XmlFile
 from btlang.frontends.btcpp.models import MODEL_KINDS, nav2_models, subtree_defaults
 from btlang.frontends.btcpp.scan import Document, scanned
@@ -15,8 +14,7 @@ from btlang.frontends.btcpp.scopes import Scopes
 from btlang.frontends.btcpp.spelling import MODEL, TO_4
 from btlang.text.source import Source, Span
 from btlang.tree.catalogue import CATALOGUE, SUBTREE
-from btlang.tree.model import NodeModel
-from btlang.tree.node import Node, Tree
+from btlang.tree.node import Node, NodeModel, Tree
 from btlang.tree.visit import in_order_of_use
 
 _NO_NODES = CATALOGUE.keys() | TO_4.keys() | {"root", "BehaviorTree", MODEL, *MODEL_KINDS}

@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterable, Iterator
 from hashlib import sha256
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.frontends.btcpp.fragments import Notes, fragment
 from btlang.frontends.btcpp.models import ModelReader
 from btlang.frontends.btcpp.origin import Element, XmlOrigin
@@ -18,7 +18,7 @@ from btlang.frontends.btcpp.spelling import MODEL
 from btlang.support.record import Record
 from btlang.text.source import Source
 from btlang.tree.comments import KEPT
-from btlang.tree.model import NodeModel
+from btlang.tree.node import NodeModel
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from btlang.frontends.btcpp.spelling import KINDS, is_xml_name
 from btlang.text.source import Span
 from btlang.text.spelling import nearest
 from btlang.tree.catalogue import SUBTREE
-from btlang.tree.model import NodeModel, PortModel
+from btlang.tree.node import NodeModel, PortModel
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -13,8 +13,7 @@ from btlang.frontends.btcpp.scopes import Scopes
 from btlang.frontends.btcpp.spelling import MAIN_TREE
 from btlang.support.record import Record
 from btlang.text.source import Span
-from btlang.tree.model import NodeModel
-from btlang.tree.node import Node
+from btlang.tree.node import Node, NodeModel
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

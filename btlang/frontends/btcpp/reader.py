@@ -5,8 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Collection
 
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.frontends.btcpp.file import TreeHead, XmlFile
 from btlang.frontends.btcpp.files import XmlFiles, repeated
 from btlang.frontends.btcpp.kept import digest_of

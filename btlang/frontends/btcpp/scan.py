@@ -8,8 +8,7 @@ from __future__ import annotations
 import re
 from xml.parsers import expat
 
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.frontends.btcpp.repair import Repaired, is_odd, repaired
 from btlang.support.record import Record
 from btlang.text.source import Source, Span

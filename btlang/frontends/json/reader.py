@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import re
 
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.text.json_text import NestedTooDeep, load_json
 from btlang.text.source import Source, Span
-from btlang.tree.model import NodeModel, PortModel
-from btlang.tree.node import Node, Tree
+from btlang.tree.node import Node, NodeModel, PortModel, Tree
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -6,9 +6,8 @@ import os
 from collections.abc import Callable, Iterable, Mapping
 from importlib import import_module
 
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import MOST_DEEP, TOO_DEEP, included_path, read_included, real_path
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
+from btlang.diagnostics.files import MOST_DEEP, TOO_DEEP, included_path, read_included, real_path
 from btlang.frontends.mission.grouping.grouping import Grouped, group
 from btlang.frontends.mission.parsers.build import Builder
 from btlang.frontends.mission.symbols.includes import Included
@@ -17,7 +16,7 @@ from btlang.frontends.mission.tokens.lexer import Lexer
 from btlang.frontends.mission.whole_rules import whole_rules, with_rules_first
 from btlang.support.record import Record
 from btlang.text.source import Source, Span
-from btlang.tree.asked import with_answers
+from btlang.tree.answers import with_answers
 from btlang.tree.ast import Ast, Definition, Nothing, Program
 from btlang.tree.conjunctions import resolve
 from btlang.tree.rounds import with_rounds

@@ -24,13 +24,13 @@ _IN_XML = re.compile(r"(?i)<!--\s*allow\s*:([^<>]*)-->")
 _NAME = r"[^,\s](?:[^,]*[^,\s])?"
 
 
-def silence(compilation: Compilation) -> Iterator[Diagnostic]:
-    """Leaves out the warnings that a comment silences. BT056 for names in such comments that no warning has."""
+def apply_allow(compilation: Compilation) -> Iterator[Diagnostic]:
+    """Leave out the warnings that a comment silences, and report names in such comments that no warning has (BT056)."""
     source, vocabulary = compilation.mission.span.source, compilation.vocabulary
     if "#" not in source.text or not re.search(_ALLOW, source.text):
         return
     words = split(source, vocabulary.orthography)
-    for _, span, code in _named(words):
+    for _, span, code in _allowed_names(words):
         if not code:
             from btlang.frontends.mission.explanations.spelling_rule import (
                 is_respelling,  # most comments name what there is
@@ -39,17 +39,17 @@ def silence(compilation: Compilation) -> Iterator[Diagnostic]:
             near = nearest(span.text.lower(), NAMES)
             fix = (span, near[0]) if near and is_respelling(span.text, near[0], vocabulary) else None
             yield diagnostic("BT056", span, fix=fix, name=span.text, near=", ".join(near or sorted(NAMES)))
-    compilation.warnings = _left(compilation.warnings, words, vocabulary)
+    compilation.warnings = _filter_allowed(compilation.warnings, words, vocabulary)
 
 
 def not_silenced(problems: Iterable[Diagnostic], source: Source, vocabulary: Lexicon) -> list[Diagnostic]:
-    """Those that no comment of their mission silences."""
-    return _left(problems, split(source, vocabulary.orthography), vocabulary)
+    """Return the problems that no comment of their mission silences."""
+    return _filter_allowed(problems, split(source, vocabulary.orthography), vocabulary)
 
 
-def _left(problems: Iterable[Diagnostic], words: Words, vocabulary: Lexicon) -> list[Diagnostic]:
+def _filter_allowed(problems: Iterable[Diagnostic], words: Words, vocabulary: Lexicon) -> list[Diagnostic]:
     silent: dict[str, list[tuple[int, int]]] = {}
-    for comment, _, code in _named(words):
+    for comment, _, code in _allowed_names(words):
         silent.setdefault(code, []).append(_scope(comment, words, vocabulary))
     return [
         problem
@@ -59,8 +59,8 @@ def _left(problems: Iterable[Diagnostic], words: Words, vocabulary: Lexicon) -> 
     ]
 
 
-def _named(words: Words) -> Iterator[tuple[Span, Span, str]]:
-    """Each name in such a comment: the comment, the place of the name, and its code, "" for none."""
+def _allowed_names(words: Words) -> Iterator[tuple[Span, Span, str]]:
+    """Yield each name in such a comment: the comment, the place of the name, and its code, "" for none."""
     for comment in words.comments:
         match = re.fullmatch(_ALLOW, comment.text.rstrip())
         for name in re.finditer(_NAME, match["names"]) if match else ():
@@ -69,15 +69,15 @@ def _named(words: Words) -> Iterator[tuple[Span, Span, str]]:
             yield comment, Span(comment.source, start, start + len(name[0])), code
 
 
-def silence_in_xml(compilation: Compilation) -> Iterable[Diagnostic]:
-    """The same for a tree from XML, without BT056."""
+def apply_allow_in_xml(compilation: Compilation) -> Iterable[Diagnostic]:
+    """Silence the warnings about a tree from XML, without BT056."""
     if not compilation.is_text and any(warning.span.source.text[:1] == "<" for warning in compilation.warnings):
         compilation.warnings = not_allowed(compilation.warnings)
     return ()
 
 
 def not_allowed(problems: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Those that no comment of their XML file silences; errors stay."""
+    """Return the problems that no comment of their XML file silences; errors stay."""
     silent: dict[str, set[str]] = {}
     left = []
     for problem in problems:
@@ -91,7 +91,7 @@ def not_allowed(problems: Iterable[Diagnostic]) -> list[Diagnostic]:
 
 
 def _scope(comment: Span, words: Words, vocabulary: Lexicon) -> tuple[int, int]:
-    """The characters that a comment counts for."""
+    """Return the characters that a comment counts for."""
     source = words.source
     lines = words.lines
     own = bisect(lines, comment.start, key=lambda line: words.starts[line.first]) - 1

@@ -1,4 +1,4 @@
-"""BT068: conditions that are asked only once, where people expect the robot to keep an eye on them.
+"""Lint BT068: conditions that are asked only once, when people expect the robot to keep an eye on them.
 
 `When C, A` as a whole statement, and `stop when C`, which can stop nothing: the commands before it have ended. The same
 where C is about a journey that is over: `bring the cup to Bob. If he isn't there, ...`.
@@ -13,7 +13,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
 from btlang.text.source import Span
 from btlang.tree import ast
-from btlang.tree.asked import ABOUT_ANSWERS
+from btlang.tree.answers import ABOUT_ANSWERS
 from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.lexicon import Lexicon
@@ -31,8 +31,8 @@ _WHILE_DRIVING = ("Bumped", "WallInFront", "ObstacleWithin")
 _FREE, _BATTERY, _LOW = "PathClear", "Battery", "BatteryLow"
 
 
-def asked_once(compilation: Compilation) -> Iterator[Diagnostic]:
-    """Among the statements of the mission, of definitions and of blocks."""
+def find_asked_once(compilation: Compilation) -> Iterator[Diagnostic]:
+    """Search the statements of the mission, of definitions and of blocks."""
     vocabulary = compilation.vocabulary
     for body in ast.bodies(compilation.mission):
         before: dict[int, tuple[Sequence[ast.Ast], int]] = {}
@@ -44,15 +44,15 @@ def asked_once(compilation: Compilation) -> Iterator[Diagnostic]:
             if type(node) is ast.If and not node.negated and node.otherwise is None:
                 sentence = _sentence_before(*before.get(id(node), ((), 0)))
                 if _is_statement(node, vocabulary):
-                    warnings = list(_warning(node, sentence[-1] if sentence else None, vocabulary))
+                    warnings = list(_warn(node, sentence[-1] if sentence else None, vocabulary))
                     yield from warnings or _too_late(node, sentence, vocabulary)
                 elif sentence and "\n" not in node.span.text:
                     before_it = sentence[-1] if type(node.body) is ast.Fail else None  # `A, and abort if C`
-                    yield from _warning(node, before_it, vocabulary)  # `A, and when C, B`
+                    yield from _warn(node, before_it, vocabulary)  # `A, and when C, B`
 
 
 def _sentence_before(items: Sequence[ast.Ast], at: int) -> Sequence[ast.Ast]:
-    """The items before one, as far back as no sentence ends between them; standing rules are no such items."""
+    """Return the items before one, as far back as no sentence ends between them; standing rules are no such items."""
     while at > 0 and isinstance(items[at - 1], ast.Whenever):
         at -= 1
     first = max(at - 1, 0)
@@ -65,7 +65,7 @@ def _sentence_before(items: Sequence[ast.Ast], at: int) -> Sequence[ast.Ast]:
 
 
 def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> Iterator[Diagnostic]:
-    """A condition that decides about the journey before it, or watches what happens on it."""
+    """Report a condition that decides about the journey before it, or watches what happens on it."""
     asked = node.condition.condition if isinstance(node.condition, ast.Not) else node.condition
     if not isinstance(asked, ast.Phrase):
         return
@@ -93,7 +93,9 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
         each = f"{vocabulary.word('whenever')} {node.span.text[len(words.split(maxsplit=1)[0]) :].lstrip()}"
         advice = f"'{last}' is over by then. To do it {'meanwhile' if is_timed else 'on the way'}, write: {each}"
         yield diagnostic("BT068", node.span, words=words, advice=advice).replace(readings=((node.span, each),))
-    elif isinstance(node.condition, ast.Not) and any(_named(journey) & _named(asked) for journey in journeys):
+    elif isinstance(node.condition, ast.Not) and any(
+        _find_things(journey) & _find_things(asked) for journey in journeys
+    ):
         advice = f"'{last}' comes first, and fails if it can't be done. What decides about it stands before it."
         yield diagnostic("BT068", node.span, words=words, advice=advice)
 
@@ -109,15 +111,17 @@ def _is_low(condition: ast.Phrase) -> bool:
 
 
 def _too_early(node: ast.If, vocabulary: Lexicon) -> Iterator[Diagnostic]:
-    """`go to the lab if Alice is there`: a condition behind a journey that is about its end, or what it chooses."""
+    """Report `go to the lab if Alice is there`: a condition behind a journey that is about its end, or what it
+    chooses.
+    """
     asked = node.condition.condition if isinstance(node.condition, ast.Not) else node.condition
     if not isinstance(asked, ast.Phrase) or asked.span.start < node.body.span.start:
         return
     phrases = [each for each in ast.parents_first(node.body) if isinstance(each, ast.Phrase)]
-    chosen = {text for each in phrases for text in _named(each) if text[:1] == "{"}
+    chosen = {text for each in phrases for text in _find_things(each) if text[:1] == "{"}
     there = [word for word, types in vocabulary.values.pronouns.items() if PLACE in types]
     is_there = asked.span.text.lower().endswith(tuple(f" {word}" for word in there))
-    if (is_there and any(MOVES in each.entry.resources for each in phrases)) or chosen & _named(asked):
+    if (is_there and any(MOVES in each.entry.resources for each in phrases)) or chosen & _find_things(asked):
         body, condition = node.body.span.text, asked.span.text
         advice = (
             f"It is asked before '{body}', where the robot is then. Name what and where, as in: Alice is in the lab"
@@ -132,8 +136,8 @@ def _is_event(condition: ast.Ast, vocabulary: Lexicon) -> bool:
     return is_phrase and not set(events).isdisjoint(condition.span.text.lower().split())
 
 
-def _named(phrase: ast.Phrase) -> set[str]:
-    """The things that a phrase is about: their names, and the values that they are chosen into."""
+def _find_things(phrase: ast.Phrase) -> set[str]:
+    """Return the names that a phrase is about, and the values that they are chosen into."""
     types = {slot.name: slot.type for slot in phrase.entry.slots}
     found: set[str] = set()
     for name, text in phrase.arguments:
@@ -155,7 +159,7 @@ def _is_statement(node: ast.If, vocabulary: Lexicon) -> bool:
     return starts and "\n" not in span.text and (halts or ends)
 
 
-def _warning(node: ast.If, before: ast.Ast | None, vocabulary: Lexicon) -> Iterator[Diagnostic]:
+def _warn(node: ast.If, before: ast.Ast | None, vocabulary: Lexicon) -> Iterator[Diagnostic]:
     source, condition = node.span.source, node.condition.span
     if node.body.span.start < condition.start:
         if before is not None and node.body.span.text.lower() in vocabulary.halting and "\n" not in before.span.text:

@@ -1,4 +1,4 @@
-"""How a node can end, as far as its kind shows. An unknown kind is taken to end in every way."""
+"""Endings of nodes, as far as their kind shows. An unknown kind is taken to end in every way."""
 
 from __future__ import annotations
 
@@ -21,14 +21,16 @@ ANY: Ends = SUCCESS | FAILURE | SKIPPED
 EITHER: Ends = SUCCESS | FAILURE
 
 
-def ends_of(node: Node, children: Sequence[Ends], named: dict[str, Ends]) -> Ends:
-    """The ways in which a node can end, given those of its children and those of the defined names."""
+def find_ends(node: Node, children: Sequence[Ends], named: dict[str, Ends]) -> Ends:
+    """Find the ways in which a node can end, given those of its children and those of the defined names."""
     decided, may_start = _before(node) if any(port in PRE_CONDITIONS for port, _ in node.ports) else (0, True)
     return decided | _ends(node, children, named) if may_start else decided
 
 
 def _before(node: Node) -> tuple[Ends, bool]:
-    """The endings that pre-conditions decide, and whether the node may start. `_while` also ends it once it runs."""
+    """Return the endings that pre-conditions decide, and whether the node may start. `_while` also ends a running
+    node.
+    """
     found = 0
     for port, (answer, ending) in PRE_CONDITIONS.items():
         text = node.port(port).strip()
@@ -56,27 +58,27 @@ def _ends(node: Node, children: Sequence[Ends], named: dict[str, Ends]) -> Ends:
     if kind.roles:
         return _branches(kind, children)
     if kind.most == 1:
-        return _decorated(kind, node, children[0])
+        return _decorator(kind, node, children[0])
     return ANY
 
 
-def going_on(kind: NodeKind) -> Ends:
-    """The endings of a child at which a node whose children follow in order comes to the next one."""
+def continuing_ends(kind: NodeKind) -> Ends:
+    """Return the endings of a child at which a node whose children follow in order comes to the next one."""
     return SKIPPED | _NAMED[kind.goes_on]
 
 
-def _in_order(going_on: Ends, children: Sequence[Ends]) -> Ends:
+def _in_order(continuing_ends: Ends, children: Sequence[Ends]) -> Ends:
     some, each = 0, SKIPPED
     for child in children:
-        if not child & going_on:
-            return (some & ~going_on) | child
+        if not child & continuing_ends:
+            return (some & ~continuing_ends) | child
         some |= child
         each &= child
     return (some & ~SKIPPED) | each
 
 
 def _at_once(enough: str, children: Sequence[Ends]) -> Ends:
-    """A Parallel succeeds with `enough` of its children."""
+    """Return the endings of a Parallel that succeeds with `enough` of its children."""
     least = int(enough) if _NUMBER.fullmatch(enough) else len(children)
     found = 0
     if sum(bool(child & (SUCCESS | SKIPPED)) for child in children) >= least:
@@ -89,14 +91,16 @@ def _at_once(enough: str, children: Sequence[Ends]) -> Ends:
 
 
 def _branches(kind: NodeKind, children: Sequence[Ends]) -> Ends:
-    """What interrupts a branch ends one that would not end by itself. A rule fails too where its reaction does."""
+    """Return the endings of branches. A branch that never ends may be interrupted. A rule fails if its reaction
+    does.
+    """
     if "reaction" in kind.roles:
         return children[2] | (children[1] & FAILURE)
     found = children[1] | (children[2] if len(children) > 2 else FAILURE)
     return found & ~NEVER if kind.interrupts else found
 
 
-def _decorated(kind: NodeKind, node: Node, child: Ends) -> Ends:
+def _decorator(kind: NodeKind, node: Node, child: Ends) -> Ends:
     if kind.turns:
         turns = {_NAMED[before]: _NAMED[after] for before, after in kind.turns}
         return sum({turns.get(end, end) for end in (SUCCESS, FAILURE, SKIPPED, NEVER) if child & end})

@@ -1,4 +1,4 @@
-"""The forms that can be read in another way: sentences side by side, what is tried, searched or counted."""
+"""Forms that can be read in another way: sentences side by side, what is tried, searched or counted."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 from itertools import pairwise
 
-from btlang.passes.lint.other_reading import (
+from btlang.passes.lint.other_readings import (
     Attachment,
     Readings,
-    bracketed,
-    in_order,
+    add_brackets,
     is_in_brackets,
     is_list,
-    with_part,
+    replace_part,
+    sort_by_place,
 )
 from btlang.text.source import Span
 from btlang.tree import ast
@@ -31,13 +31,13 @@ _SEES = "perception"
 _WORD = re.compile(r"\w+")
 
 
-def in_form(node: ast.If | ast.Try, vocabulary: Lexicon) -> Iterator[Attachment]:
-    """An `otherwise` that both this form and one at the end of its body could have, and another `if` there."""
+def find_in_form(node: ast.If | ast.Try, vocabulary: Lexicon) -> Iterator[Attachment]:
+    """Find an `otherwise` that both this form and one at the end of its body could have, and another `if` there."""
     if node.otherwise is not None or node.body.span.start <= node.span.start:
         return
     body = node.body
     if isinstance(node, ast.Try) and _is_tried(node, vocabulary) and _is_joined_by_then(body, vocabulary):
-        yield Attachment(TRIED, node.span.start, partial(_tried_first, node))
+        yield Attachment(TRIED, node.span.start, partial(_try_first, node))
     joins = isinstance(body, ast.Chain) and body.operator in ("sequence", "parallel") and not body.bracketed
     if isinstance(node, ast.If) and isinstance(body, ast.Chain) and joins and len(body.items) > 1:
         before, last = body.items[-2:]
@@ -51,7 +51,7 @@ def in_form(node: ast.If | ast.Try, vocabulary: Lexicon) -> Iterator[Attachment]
     while not _has_otherwise(part):
         path.append(part)
         if isinstance(part, ast.Chain) and not part.bracketed and not is_list(part):
-            part = in_order(part.items)[-1]
+            part = sort_by_place(part.items)[-1]
         elif isinstance(part, ast.If | ast.Try | ast.Chain) or is_in_brackets(part.span):
             return
         elif getattr(part, "body", None) is not None and part.body.span.start > part.span.start:
@@ -61,11 +61,11 @@ def in_form(node: ast.If | ast.Try, vocabulary: Lexicon) -> Iterator[Attachment]
     text = part.span.source.text
     if is_in_brackets(part.span) or "\n" in text[node.span.start : part.span.start]:
         return
-    yield Attachment(OTHERWISE, node.span.start, partial(_moved, node, path, part))
+    yield Attachment(OTHERWISE, node.span.start, partial(_move, node, path, part))
 
 
-def in_pace(node: ast.Every, vocabulary: Lexicon) -> Iterator[Attachment]:
-    """`A 3 times every 10 s`: the number could be that of each round."""
+def find_in_pace(node: ast.Every, vocabulary: Lexicon) -> Iterator[Attachment]:
+    """Find `A 3 times every 10 s`: the number could be that of each round."""
     start, body = node.span.start, node.body.span
     if not node.rounds or body.start != start:
         return  # as nearly always
@@ -73,11 +73,11 @@ def in_pace(node: ast.Every, vocabulary: Lexicon) -> Iterator[Attachment]:
     words = {vocabulary.orthography.words(pattern)[0] for pattern in vocabulary.roles["every"]}
     at = min((match.start() for match in _WORD.finditer(behind) if match[0].lower() in words), default=0)
     if _WORD.search(behind[:at]):
-        yield Attachment(PACED, start, partial(_repeated, node, Span(body.source, body.end, node.span.end), at))
+        yield Attachment(PACED, start, partial(_repeat_inside, node, Span(body.source, body.end, node.span.end), at))
 
 
-def in_time(node: ast.For, vocabulary: Lexicon) -> Iterator[Attachment]:
-    """`wait for Alice for 10 min`: once, and at most so long."""
+def find_in_time(node: ast.For, vocabulary: Lexicon) -> Iterator[Attachment]:
+    """Find `wait for Alice for 10 min`: once, and at most so long."""
     body = node.body
     if not isinstance(body, ast.Phrase) or body.span.start != node.span.start or is_in_brackets(body.span):
         return
@@ -86,8 +86,8 @@ def in_time(node: ast.For, vocabulary: Lexicon) -> Iterator[Attachment]:
         yield Attachment(SEARCHES, node.span.start, partial(_once_at_most, node, vocabulary.word("repeat")))
 
 
-def in_sentences(chain: ast.Chain, vocabulary: Lexicon) -> Iterator[Attachment]:
-    """`if C, A. If D, B. Otherwise E`, and `if the lamp is on, switch it off. If it is off, switch it on`."""
+def find_in_sentences(chain: ast.Chain, vocabulary: Lexicon) -> Iterator[Attachment]:
+    """Find `if C, A. If D, B. Otherwise E`, and `if the lamp is on, switch it off. If it is off, switch it on`."""
     if chain.operator != "sequence":
         return
     then = vocabulary.word("then").capitalize()
@@ -145,17 +145,17 @@ def _has_otherwise(node: ast.Ast) -> bool:
     return getattr(node, "otherwise", None) is not None
 
 
-def _moved(node: Any, path: Sequence[ast.Ast], part: Any) -> Readings:
-    """`if C, if D, A otherwise B`: if C, (if D, A) otherwise B."""
+def _move(node: Any, path: Sequence[ast.Ast], part: Any) -> Readings:
+    """Read `if C, if D, A otherwise B` as: if C, (if D, A) otherwise B."""
     tried = isinstance(part, ast.Try) and part.body.span.start == part.span.start
     changed: ast.Ast = part.body if tried else part.replace(otherwise=None)
     for inner, outer in zip([part, *path[:0:-1]], path[::-1], strict=True):
-        changed = with_part(outer, inner, changed)
-    return Readings(node, changed.replace(otherwise=part.otherwise), node.span, bracketed(part.span))
+        changed = replace_part(outer, inner, changed)
+    return Readings(node, changed.replace(otherwise=part.otherwise), node.span, add_brackets(part.span))
 
 
 def _side_by_side(node: ast.If, gap: Span, then: str) -> Readings:
-    """`if C, A, if D, B`: if C, A; then, whatever came of that, if D, B."""
+    """Read `if C, A, if D, B` as: if C, A; then, whatever came of that, if D, B."""
     body: Any = node.body
     *before, last = body.items
     first = before[0] if len(before) == 1 else body.replace(items=tuple(before))
@@ -168,16 +168,16 @@ def _side_by_side(node: ast.If, gap: Span, then: str) -> Readings:
     return Readings(taken, other, node.span, fix)
 
 
-def _tried_first(node: ast.Try) -> Readings:
-    """`try to A, then B`: try to A; then B in any case."""
+def _try_first(node: ast.Try) -> Readings:
+    """Read `try to A, then B` as: try to A; then B in any case."""
     body: Any = node.body
     first = node.replace(body=body.items[0])
     other = ast.Chain("sequence", (first, *body.items[1:]), True, node.span)
-    return Readings(node, other, node.span, bracketed(body.span))
+    return Readings(node, other, node.span, add_brackets(body.span))
 
 
-def _repeated(node: ast.Every, behind: Span, at: int) -> Readings:
-    """`A 3 times every 10 s`: every 10 s, A 3 times."""
+def _repeat_inside(node: ast.Every, behind: Span, at: int) -> Readings:
+    """Make the reading of `A 3 times every 10 s` as: every 10 s, A 3 times."""
     rounds, pace = behind.text[:at].strip(), behind.text[at:]
     other = node.replace(body=ast.Repeat(node.rounds, node.body, node.span), rounds="")
     return Readings(node, other, node.span, (behind, f" {pace} {rounds}"))
@@ -189,7 +189,7 @@ def _once_at_most(node: ast.For, repeat: str) -> Readings:
 
 
 def _as_otherwise(first: ast.If, second: ast.If, gap: Span, words: str) -> Readings:
-    """`if C, A. If D, B`: if C, A, otherwise if D, B."""
+    """Read `if C, A. If D, B` as: if C, A, otherwise if D, B."""
     span = Span(first.span.source, first.span.start, second.span.end)
     taken = ast.Chain("sequence", (first, second), True, span)
     return Readings(taken, first.replace(otherwise=second, span=span), span, (gap, words))

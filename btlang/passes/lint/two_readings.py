@@ -10,7 +10,8 @@
 - a number before a pace: `A 3 times every 10 s`;
 - two sentences that could exclude one another: `if C, A. If D, B. Otherwise E`;
 - a search for a time: `look for Alice for 5 min`;
-- what follows a command that is tried: `try to A, then B`.
+- what follows a command that is tried: `try to A, then B`;
+- `A, or B if C`: B if A fails, or B instead of A. Brackets can't give the second reading.
 """
 
 from __future__ import annotations
@@ -21,9 +22,17 @@ from collections.abc import Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
-from btlang.passes.lint.gaps import Gaps
-from btlang.passes.lint.other_form import in_form, in_pace, in_sentences, in_time
-from btlang.passes.lint.other_reading import Attachment, Readings, in_chain, in_order, is_list
+from btlang.passes.lint.other_form import find_in_form, find_in_pace, find_in_sentences, find_in_time
+from btlang.passes.lint.other_readings import (
+    Attachment,
+    Gaps,
+    Readings,
+    add_brackets,
+    balance_brackets,
+    find_in_chain,
+    is_list,
+    sort_by_place,
+)
 from btlang.text.source import Source, Span
 from btlang.tree import ast
 
@@ -31,11 +40,12 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.printer.printer import Printer
 
+
 _SENTENCE_END = re.compile(r"[\n;]|[.!?](?=\s)")
 
 
-def two_readings(compilation: Compilation) -> Iterator[Diagnostic]:
-    """At most one of each kind for each sentence: the first."""
+def find_two_readings(compilation: Compilation) -> Iterator[Diagnostic]:
+    """Report at most one place of each kind for each sentence: the first."""
     mission, reported = compilation.mission, set[tuple[str, int, str]]()
     warned = {warning.span for warning in compilation.warnings if warning.code == "BT050"}
     printer: Printer | None = None
@@ -49,35 +59,35 @@ def two_readings(compilation: Compilation) -> Iterator[Diagnostic]:
             if key in reported:
                 continue
             reported.add(key)
-            printer = printer or printer_for(compilation)
+            printer = printer or make_printer(compilation)
             readings = found.readings()
             if readings.span not in warned and not printer.say(readings.taken).in_lines:
-                yield warning_of(readings, printer)
+                yield make_warning(readings, printer)
 
 
 def _attachments(root: ast.Ast, compilation: Compilation) -> Iterator[Attachment]:
-    """Outer ones first, in the order of the text."""
+    """Yield places with two readings, outer ones first, in the order of the text."""
     stack = [(root, False)]
     while stack:
         node, is_part = stack.pop()
         if isinstance(node, ast.Chain):
-            items = in_order(node.items)
+            items = sort_by_place(node.items)
             if (items is not node.items or any(item.parts for item in items)) and not is_list(node):
-                yield from in_chain(node, items, is_part, compilation.vocabulary)
-                yield from in_sentences(node, compilation.vocabulary)
+                yield from find_in_chain(node, items, is_part, compilation.vocabulary)
+                yield from find_in_sentences(node, compilation.vocabulary)
                 stack += reversed(_parts(items, compilation))
             continue
         if isinstance(node, ast.If | ast.Try):
-            yield from in_form(node, compilation.vocabulary)
+            yield from find_in_form(node, compilation.vocabulary)
         elif isinstance(node, ast.Every):
-            yield from in_pace(node, compilation.vocabulary)
+            yield from find_in_pace(node, compilation.vocabulary)
         elif isinstance(node, ast.For):
-            yield from in_time(node, compilation.vocabulary)
+            yield from find_in_time(node, compilation.vocabulary)
         stack += [(part, False) for part in reversed(ast.parts(node)) if part.parts]
 
 
 def _parts(items: Sequence[ast.Ast], compilation: Compilation) -> list[tuple[ast.Ast, bool]]:
-    """The parts of a chain that have parts, and whether each has something beside it in its statement."""
+    """Return the parts of a chain that have parts, and whether each has something beside it in its statement."""
     gaps = Gaps(items, compilation.vocabulary)
     return [
         (item, isinstance(item, ast.Chain) and not gaps.is_alone(at)) for at, item in enumerate(items) if item.parts
@@ -88,23 +98,47 @@ def _sentence_ends(source: Source) -> list[int]:
     return [match.start() for match in _SENTENCE_END.finditer(source.text)]
 
 
-def printer_for(compilation: Compilation) -> Printer:
-    """What says the readings of a mission."""
+def make_printer(compilation: Compilation) -> Printer:
+    """Make the printer that says the readings of a mission."""
     from btlang.printer.mission import printer_of  # most missions have nothing to report
 
     return printer_of(compilation.mission, compilation.vocabulary, "all")
 
 
-def warning_of(found: Readings, printer: Printer) -> Diagnostic:
-    """BT050 with both readings."""
+def make_warning(found: Readings, printer: Printer) -> Diagnostic:
+    """Make BT050 with both readings."""
     taken, other = printer.statement(found.taken), printer.statement(found.other)
     fix = None if "\n" in found.fix[0].text else found.fix
-    fixed = taken if fix is None or "\n" in found.span.text else _changed(found.span, *found.fix)
+    fixed = taken if fix is None or "\n" in found.span.text else _change_text(found.span, *found.fix)
     readings = () if "\n" in found.span.text else ((found.span, fixed), (found.span, other))
     problem = diagnostic("BT050", found.span, (), fix, taken=taken, other=other, fixed=fixed)
     return problem.replace(readings=readings)  # type: ignore[no-any-return]
 
 
-def _changed(span: Span, part: Span, words: str) -> str:
+def _change_text(span: Span, part: Span, words: str) -> str:
     text = span.source.text
     return " ".join((text[span.start : part.start] + words + text[part.end : span.end]).split())
+
+
+def find_conditional_alternatives(compilation: Compilation) -> Iterator[Diagnostic]:
+    """Search the alternatives of the mission and of its definitions."""
+    vocabulary = compilation.vocabulary
+    for body in ast.bodies(compilation.mission):
+        for node in compilation.syntax(body):
+            if not isinstance(node, ast.Chain) or node.operator != "fallback":
+                continue
+            last = node.items[-1]
+            if not isinstance(last, ast.If) or last.otherwise is not None or last.body.span.start != last.span.start:
+                continue
+            gap = Gaps(node.items, vocabulary).text(len(node.items) - 2)
+            if "," in gap and gap.strip(" ,").lower() in vocabulary.roles["or"]:
+                yield make_warning(_alternative_readings(node, last), make_printer(compilation))
+
+
+def _alternative_readings(chain: ast.Chain, last: ast.If) -> Readings:
+    """Read `A, or B if C` as: if C, B, otherwise A."""
+    items = chain.items[:-1]
+    before = items[0] if len(items) == 1 else chain.replace(items=items, bracketed=True)
+    body, otherwise = (before, last.body) if last.negated else (last.body, before)
+    other = last.replace(negated=False, body=body, otherwise=otherwise)
+    return Readings(chain, other, balance_brackets(chain.span), add_brackets(last.span))

@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Collection
 from functools import cache
 
-from btlang.diagnostics.reading import is_below, real_path
+from btlang.diagnostics.files import is_below, real_path
 from btlang.robots.bodies import joint_tables
 from btlang.robots.bodies.body import (
     PATIENCE,
@@ -39,7 +39,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import TypeVar
 
-    from btlang.diagnostics.errors import MissionError
+    from btlang.diagnostics.diagnostic import MissionError
 
     T = TypeVar("T")
 
@@ -79,8 +79,7 @@ def unusable_robot(problem: Exception) -> MissionError:
     """Return the error (BT071) for a problem that no line of the file shows: something isn't
     installed, or is missing.
     """
-    from btlang.diagnostics.diagnostic import diagnostic
-    from btlang.diagnostics.errors import MissionError
+    from btlang.diagnostics.diagnostic import MissionError, diagnostic
     from btlang.text.source import NOWHERE
 
     return MissionError([diagnostic(BodyError.code, NOWHERE, reason=str(problem))])

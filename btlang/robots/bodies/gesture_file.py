@@ -6,7 +6,7 @@ import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
 
-from btlang.diagnostics.reading import is_below, real_path
+from btlang.diagnostics.files import is_below, real_path
 from btlang.robots.bodies.body import Joint
 from btlang.robots.bodies.gesture import BEARING, BEARINGS, OPPOSITE, Gesture, KeyFrame, Step
 from btlang.robots.bodies.joint_tables import step

@@ -8,15 +8,15 @@ from collections.abc import Iterator, Mapping
 from functools import cache
 from zlib import crc32
 
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.files import read_source
 from btlang.robots.bodies.body import Body
 from btlang.robots.bodies.gesture import Gesture, joints_of
 from btlang.robots.bodies.gesture_file import TARGET, GestureError, phrase_forms
 from btlang.robots.files import DataFileError, as_mission_error, locate_problems
 from btlang.text.source import Source
+from btlang.text.toml import toml_key, toml_value
 from btlang.text.toml_table import Problem
-from btlang.text.toml_writing import toml_key, toml_value
 from btlang.tree.catalogue import CATALOGUE
 from btlang.vocabulary.cache import own_folder
 from btlang.vocabulary.entry import Meaning
@@ -64,7 +64,7 @@ def gesture_words(body: Body) -> str | None:
 
 def _problem(path: str, text: str) -> MissionError | None:
     """Return why a text can't be the keyword file there."""
-    from btlang.backends.files import write_file  # only a file that is new is written
+    from btlang.diagnostics.files import write_file  # only a file that is new is written
 
     write_file(path, text)
     try:

@@ -10,7 +10,7 @@ from btlang.robots.geometry import Point, Pose, centre_of, segment_distance, wra
 from btlang.robots.robot import OnEvent, RobotError
 from btlang.robots.worlds.likeness import Parts, unseen
 from btlang.robots.worlds.world import World, WorldObject, said
-from btlang.text.enumeration import nth
+from btlang.text.formatting import nth
 from btlang.vocabulary.references import DENIED, RELATIONS, SECOND, SELF, ordinal
 
 TYPE_CHECKING = False

@@ -8,7 +8,7 @@ from btlang.robots.worlds.world import Door, Person, Stop, Visits, World, WorldF
 from btlang.robots.worlds.world_tables import ANYWHERE
 from btlang.support.record import Record
 from btlang.text.time_of_day import USUAL_START, WEEKDAYS, shown
-from btlang.text.toml_writing import toml_value
+from btlang.text.toml import toml_value
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ import sys
 from contextlib import suppress
 from typing import BinaryIO
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.ros.available import require_ros
 from btlang.ros.clocks import wait_until
 

@@ -17,7 +17,7 @@ import numpy as np
 from btlang.ros.bridge.replies import BridgeError
 from btlang.ros.messages import type_name
 from btlang.ros.words.fields import INTEGERS, array_of, field_types
-from btlang.text.escaping import one_line
+from btlang.text.formatting import one_line
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -26,7 +26,7 @@ from btlang.components.component import (
     ComponentError,
 )
 from btlang.components.started_process import StartedProcess
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.geometry import Pose
 from btlang.robots.robot import RobotError

@@ -11,7 +11,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from btlang.components.component import ComponentAbsent, ComponentError
-from btlang.engine.leaves.leaf import described
+from btlang.engine.leaves.leaf import describe_exception
 from btlang.ros.clocks import wait_until
 from btlang.ros.node import ExecutorThread
 
@@ -65,7 +65,7 @@ class ServiceCaller:
             try:
                 results.append(work(self._node))
             except Exception as problem:
-                problems.append(described(problem))
+                problems.append(describe_exception(problem))
 
         self._executor.post(try_it)
         wait_until(lambda: results or problems, _DONE)

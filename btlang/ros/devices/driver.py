@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from btlang.devices.driver import Device, DeviceError
 from btlang.devices.kinds import KINDS, Command, Reading
 from btlang.devices.loop import SILENCE
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.robots.motion.guard.guard import FRESH
 from btlang.ros.available import require_ros
 from btlang.ros.devices.setting import COMMANDS, Setting, TopicDevice, topic_name

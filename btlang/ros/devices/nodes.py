@@ -15,7 +15,7 @@ from btlang.devices.device_set import Reads
 from btlang.devices.driver import Device, DeviceError, DeviceSilent
 from btlang.devices.kinds import KINDS, Command, Reading, Sound
 from btlang.devices.loop import SILENCE
-from btlang.engine.leaves.leaf import described
+from btlang.engine.leaves.leaf import describe_exception
 from btlang.robots.robot import RobotError
 from btlang.ros.devices.actuators import (
     DisplayTranslation,
@@ -132,7 +132,7 @@ class TopicClient:
         except DeviceError as problem:
             return f"{self._device.topic}: {problem}", None
         except (ValueError, OverflowError, IndexError) as problem:
-            return f"{self._device.topic} can't be understood: {described(problem)}", None
+            return f"{self._device.topic} can't be understood: {describe_exception(problem)}", None
 
 
 class DeviceClient:
@@ -207,7 +207,7 @@ class ShownDevice:
         try:
             self._reads.write(self._name, self._translation.command(message))
         except (RobotError, ValueError, IndexError) as problem:
-            reason = str(problem) if isinstance(problem, RobotError) else described(problem)
+            reason = str(problem) if isinstance(problem, RobotError) else describe_exception(problem)
             text = f"a command for the {self._name} was refused: {reason}"
             self._node.get_logger().warning(text, throttle_duration_sec=_COMPLAIN)
 

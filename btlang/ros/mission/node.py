@@ -11,7 +11,7 @@ from rclpy.node import Node
 from std_srvs.srv import Trigger
 
 from btlang.api import Mission
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.ros.mission.progress import MissionProgress, RunUpdate, TreeTopic
 from btlang.ros.mission.server import LABEL, MissionServer, create_services
 from btlang.ros.mission.setup import Setup

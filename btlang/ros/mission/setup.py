@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from btlang.diagnostics.reading import read_included
+from btlang.diagnostics.files import read_included
 from btlang.robots.registry import connector
 from btlang.support.record import Record
 from btlang.task.execution.missions import MissionReader

@@ -8,8 +8,7 @@ from typing import Any
 
 from rosgraph_msgs.msg import Clock as ClockMessage
 
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.robots.bodies.body import Body
 from btlang.robots.preflight import check_mission, find_missing_parts
 from btlang.robots.worlds.world import World

@@ -7,7 +7,7 @@ from collections import deque
 from collections.abc import Callable
 
 from btlang.backends.engine import bind_leaf
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.engine.engine import Engine, EngineError
 from btlang.engine.status import RUNNING, SUCCESS
 from btlang.printer.phrase import phrase_of

@@ -11,7 +11,7 @@ from action_msgs.msg import GoalStatus
 from action_msgs.srv import CancelGoal
 from unique_identifier_msgs.msg import UUID
 
-from btlang.engine.leaves.leaf import ActionFailed, Failed, NotThere, described
+from btlang.engine.leaves.leaf import ActionFailed, Failed, NotThere, describe_exception
 from btlang.engine.script.values import as_text
 from btlang.ros.clocks import AWAKE
 from btlang.ros.goals import goal_handle
@@ -136,7 +136,7 @@ def await_answer(
         try:
             client.call_async(request).add_done_callback(got)
         except Exception as problem:
-            answers.append(f"{name} could not be called: {described(problem)}")
+            answers.append(f"{name} could not be called: {describe_exception(problem)}")
             wake()
 
     clients.post(send)
@@ -201,7 +201,7 @@ class ActionGoal:
             sent = self._client.send_goal_async(self._message, self._hear, goal_uuid=self._goal_id)
             sent.add_done_callback(self._on_answer)
         except Exception as problem:
-            self._end(f"the goal could not be sent to {self._name}: {described(problem)}")
+            self._end(f"the goal could not be sent to {self._name}: {describe_exception(problem)}")
 
     def _hear(self, _: object = None) -> None:
         self.heard = AWAKE.now()

@@ -6,8 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from importlib import import_module
 
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.ros.messages import type_name
 from btlang.text.source import Source, Span

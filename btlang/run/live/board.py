@@ -12,7 +12,7 @@ from btlang.run.live import frame
 from btlang.run.live.selection import LEAST_HEIGHT
 from btlang.run.logs import PlainLines
 from btlang.run.snapshot import RunState, Shape
-from btlang.text.escaping import one_line
+from btlang.text.formatting import one_line
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from btlang.run.pace import are_many
 from btlang.run.robot_state import RobotState
 from btlang.run.snapshot import HALTED, SUSPENDED, RunState
 from btlang.support.record import Record
-from btlang.text.escaping import one_line
+from btlang.text.formatting import one_line
 from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.node import Node
 

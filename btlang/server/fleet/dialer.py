@@ -20,14 +20,14 @@ from contextlib import suppress
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, WebSocketException
 
-from btlang.diagnostics.reading import reason_of
+from btlang.diagnostics.files import os_error_reason
 from btlang.server.accounts.certificate import pin, write_private
 from btlang.server.fleet.fleet import pin_in
 from btlang.server.http.access import AccessError
 from btlang.server.live.robot_connection import STREAM, LocalConnection
 from btlang.server.page.recordings import list_recordings, piece
 from btlang.support.record import Record
-from btlang.text.escaping import one_line
+from btlang.text.formatting import one_line
 from btlang.text.output import show
 
 TYPE_CHECKING = False
@@ -240,7 +240,7 @@ def main() -> int:
     except RefusedError as error:
         show(f"It can't join {settings.address}: {error}.")
     except OSError as error:
-        show(f"It can't join {settings.address}: its key can't be kept: {reason_of(error)}")
+        show(f"It can't join {settings.address}: its key can't be kept: {os_error_reason(error)}")
     return _REFUSED
 
 

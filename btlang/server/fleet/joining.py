@@ -18,7 +18,7 @@ from itertools import count
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.server.accounts.passwords import Throttle
 from btlang.server.fleet.fleet import Fleet, FleetRobot
 from btlang.server.http.access import Access, AccessError, address_of, read_object, text_in

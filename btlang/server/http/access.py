@@ -13,11 +13,11 @@ from itsdangerous import BadSignature, Signer
 from starlette.requests import ClientDisconnect, HTTPConnection, Request
 from starlette.responses import Response
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.server.accounts.accounts import Accounts, Identity
 from btlang.server.accounts.passwords import BusyError, Throttle, Verifier
 from btlang.task.store.records import is_whole
-from btlang.text.escaping import one_line
+from btlang.text.formatting import one_line
 from btlang.text.json_text import load_json
 
 TYPE_CHECKING = False

@@ -14,8 +14,8 @@ from starlette.routing import BaseRoute, Route, WebSocketRoute
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocket
 
-from btlang.diagnostics.errors import MissionError
-from btlang.editing.words import Words
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.editing.words import RobotWords
 from btlang.server.accounts.accounts import LONGEST, NEEDED, Accounts, Identity
 from btlang.server.fleet.fleet import Fleet
 from btlang.server.fleet.joining import Joins
@@ -70,7 +70,7 @@ class Api:
         key: str,
         robots: RobotFeeds | None = None,
         ros: Sequence[str] = (),
-        words: Words | None = None,
+        words: RobotWords | None = None,
         cookie: str = COOKIE,
     ) -> None:
         self.accounts, self.robots, self.words = accounts, robots or RobotFeeds(), words
@@ -236,7 +236,7 @@ class Api:
         data = await json_object(request)
         text, robot = text_in(data, "text"), str(data.get("robot", ""))
         arguments = arguments_of(kind, data, text)
-        words = self.words or (self.feed(robot).words if robot or self.robots.feeds else Words())
+        words = self.words or (self.feed(robot).words if robot or self.robots.feeds else RobotWords())
         if "world" in data:
             name = text_in(data, "world")
             if not name:

@@ -14,9 +14,8 @@ from contextlib import suppress
 import uvicorn
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import reason_of
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.diagnostics.files import os_error_reason
 from btlang.server.accounts.certificate import write_private
 from btlang.server.http.app import MOST_HEAD, Api
 from btlang.text.source import NOWHERE
@@ -62,7 +61,7 @@ def open_listener(host: str, port: int) -> socket.socket:
         listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         return listener
     except (OSError, UnicodeError, OverflowError) as error:
-        reason = reason_of(error) if isinstance(error, OSError) else str(error)
+        reason = os_error_reason(error) if isinstance(error, OSError) else str(error)
         raise MissionError([diagnostic("BT201", NOWHERE, place=f"{host}:{port}", reason=reason)]) from None
 
 

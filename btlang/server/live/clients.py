@@ -7,7 +7,7 @@ import itertools
 import json
 from collections.abc import Awaitable, Callable
 
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.server.accounts.accounts import Identity
 from btlang.server.http.access import AccessError, read_object, text_in
 from btlang.server.live.client_queue import TOPICS

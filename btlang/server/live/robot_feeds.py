@@ -8,7 +8,7 @@ import time
 from collections.abc import AsyncGenerator, Callable, Iterable
 from contextlib import aclosing, suppress
 
-from btlang.editing.words import Words
+from btlang.editing.words import RobotWords
 from btlang.server.live.client_queue import ClientQueue, RobotNews
 from btlang.server.live.robot_connection import LocalConnection
 from btlang.server.live.robot_view import RobotView
@@ -42,7 +42,7 @@ class RobotFeed:
         self.is_elsewhere = connection is not None
         self.seen = seen
         """The time when it last said something, in seconds since 1970."""
-        self.words = Words()
+        self.words = RobotWords()
         self.recordings = ""
         """The folder of its recordings, "" if they aren't on this computer."""
         self._connection: RobotConnection = connection or LocalConnection(name)
@@ -186,7 +186,7 @@ class RobotFeed:
         kind = message["type"]
         if kind == "hello":
             if not self.is_elsewhere:  # its files are not on this computer
-                self.words = Words(**message.get("words", {}))
+                self.words = RobotWords(**message.get("words", {}))
                 self.recordings = str(message.get("recordings", ""))
             self._publish({"type": "up", "change": message["change"]})
             self._up.set()

@@ -19,7 +19,7 @@ from btlang.server.accounts.accounts import Identity, UserRole
 from btlang.server.http.access import Access, AccessError, read_object
 from btlang.server.live.sockets import LOST, ConnectedClient
 from btlang.support.record import Record
-from btlang.text.escaping import one_line
+from btlang.text.formatting import one_line
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -12,13 +12,11 @@ from starlette.requests import Request
 from starlette.responses import Response
 from starlette.routing import BaseRoute
 
-from btlang.backends.files import write_file
 from btlang.backends.targets import target_of
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import MOST_DEEP, has_mark, read_included, read_source, unwritable
-from btlang.editing.onto import write_onto
-from btlang.editing.words import Words
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.diagnostics.files import MOST_DEEP, has_mark, read_included, read_source, unwritable, write_file
+from btlang.editing.english_of_xml import write_onto
+from btlang.editing.words import RobotWords
 from btlang.frontends.mission.symbols.includes import find_includes
 from btlang.frontends.table import FRONTENDS, frontend_of
 from btlang.server.accounts.accounts import Accounts
@@ -30,7 +28,7 @@ from btlang.task.commands.answers import differences
 from btlang.task.commands.checks import refusal_error
 from btlang.task.messages import Answer
 from btlang.task.store.records import is_whole
-from btlang.text.escaping import one_line
+from btlang.text.formatting import one_line
 from btlang.text.output import show
 from btlang.text.source import Source, Span
 from btlang.text.words import split
@@ -51,7 +49,7 @@ class EditorFiles:
     be read (BT001, BT002) or written (BT009), and AccessError (403, 404).
     """
 
-    def __init__(self, words: Words) -> None:
+    def __init__(self, words: RobotWords) -> None:
         self.path, self.name = words.file, os.path.basename(words.file)
         self._words = words
         stem = self.path.removesuffix(".txt")
@@ -123,7 +121,7 @@ class TreeEditorFiles(EditorFiles):
     of that one, which itself stays as it is. `main` is the ID of one of several trees.
     """
 
-    def __init__(self, words: Words, tree: str, main: str = "") -> None:
+    def __init__(self, words: RobotWords, tree: str, main: str = "") -> None:
         super().__init__(words)
         self._tree, self._main, self._target = tree, main, tree_sort(tree)
         self._copy = f"{os.path.splitext(self.path)[0]}.{self._target}"
@@ -178,7 +176,7 @@ class XmlEditorFiles(EditorFiles):
     does. `main` is the ID of one of several trees.
     """
 
-    def __init__(self, words: Words, tree: str, main: str = "") -> None:
+    def __init__(self, words: RobotWords, tree: str, main: str = "") -> None:
         super().__init__(words)
         self._tree, self._main = tree, main
 
@@ -217,7 +215,7 @@ class XmlEditorFiles(EditorFiles):
         return f"{_revision(read_source(self._tree).text)} {_revision(_text(self.path))}"
 
 
-def _english_of(tree: str, words: Words, main: str) -> str:
+def _english_of(tree: str, words: RobotWords, main: str) -> str:
     source = read_source(tree)
     return _of_fair_size(str(words.mission(source, main=main).to("english")), source)
 
@@ -282,7 +280,7 @@ def edit(options: argparse.Namespace) -> int:
     check_page()
     sort = tree_sort(options.file)
     file = english_beside(options.file) if sort else options.file
-    words = Words(options.keywords, options.world, options.language, file=file)
+    words = RobotWords(options.keywords, options.world, options.language, file=file)
     trees = {"xml": XmlEditorFiles, "json": TreeEditorFiles}.get(sort)
     files = trees(words, options.file, options.main) if trees is not None else EditorFiles(words)
     files.read(files.name)  # what can't be opened says so at once
@@ -295,7 +293,7 @@ def edit(options: argparse.Namespace) -> int:
 class EditorApi(LocalApi):
     """The server for the files of an editor, without robots."""
 
-    def __init__(self, accounts: Accounts, files: EditorFiles, words: Words, port: int) -> None:
+    def __init__(self, accounts: Accounts, files: EditorFiles, words: RobotWords, port: int) -> None:
         super().__init__(accounts, port, ("write", "file", files.name), LocalRobots(), words)
         self._files, self._saving = files, asyncio.Lock()
 

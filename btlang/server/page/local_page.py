@@ -20,9 +20,8 @@ from starlette.requests import Request
 from starlette.responses import PlainTextResponse, Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
-from btlang.editing.words import Words
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.editing.words import RobotWords
 from btlang.run.terminal import interrupted_by_signals
 from btlang.server.accounts.accounts import Accounts, Identity, UserRole
 from btlang.server.accounts.certificate import write_private
@@ -58,7 +57,12 @@ class LocalApi(Api):
     role = UserRole.ADMINISTRATOR
 
     def __init__(
-        self, accounts: Accounts, port: int, screen: tuple[str, ...], robots: RobotFeeds, words: Words | None = None
+        self,
+        accounts: Accounts,
+        port: int,
+        screen: tuple[str, ...],
+        robots: RobotFeeds,
+        words: RobotWords | None = None,
     ) -> None:
         super().__init__(accounts, secrets.token_hex(32), robots, words=words, cookie=f"btlang-{port}")
         accounts.add(_USER, self.role, "")

@@ -14,16 +14,14 @@ from functools import partial
 from weakref import WeakValueDictionary
 
 from btlang.api import Mission, format_mission
-from btlang.diagnostics.errors import MissionError
-from btlang.editing.changes import Change, changed
-from btlang.editing.completion import complete
-from btlang.editing.document import document, text_messages
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.editing.changes import Change, apply_changes
+from btlang.editing.document import document, messages, text_messages
 from btlang.editing.edits import edit, read_edit
-from btlang.editing.hover import hover
-from btlang.editing.messages import messages
+from btlang.editing.help import complete, hover
 from btlang.editing.palette import palette
 from btlang.editing.rename import rename
-from btlang.editing.words import Words
+from btlang.editing.words import RobotWords
 from btlang.frontends.table import frontend_of
 from btlang.recording.film import Film, side_by_side, try_mission
 from btlang.recording.reader import open_recording
@@ -31,8 +29,7 @@ from btlang.server.http.access import AccessError, text_in
 from btlang.support.gc_pause import gc_paused
 from btlang.support.record import Record
 from btlang.testing.trial import results_of
-from btlang.text.source import Source
-from btlang.text.utf16 import Units
+from btlang.text.source import Source, Utf16Units
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -44,15 +41,15 @@ def in_units(answer: dict[str, Any], text: str) -> dict[str, Any]:
 
     Where it has `changes`, its own `start` and `end` are in the text with them.
     """
-    units = Units(text)
+    units = Utf16Units(text)
     made: dict[str, Any] = _convert(answer, units) if units.wide else answer
     if "changes" in answer and "start" in answer:
-        after = Units(changed(text, [Change(**change) for change in answer["changes"]]))
+        after = Utf16Units(apply_changes(text, [Change(**change) for change in answer["changes"]]))
         made = {**made, "start": after.unit(answer["start"]), "end": after.unit(answer["end"])}
     return made
 
 
-def _convert(part: Any, units: Units) -> Any:
+def _convert(part: Any, units: Utf16Units) -> Any:
     if isinstance(part, Mapping):
         return {
             key: _place(value, units) if key in ("start", "end", "of") else _convert(value, units)
@@ -61,7 +58,7 @@ def _convert(part: Any, units: Units) -> Any:
     return [_convert(each, units) for each in part] if isinstance(part, list | tuple) else part
 
 
-def _place(value: Any, units: Units) -> Any:
+def _place(value: Any, units: Utf16Units) -> Any:
     if isinstance(value, int):
         return units.unit(value)
     return [units.unit(each) for each in value] if value is not None else None
@@ -127,19 +124,19 @@ class TextQuery(Record):
 def _of_mission(report: Callable[[Mission], dict[str, Any]]) -> Callable[..., dict[str, Any]]:
     """Make a query that reports something about a mission, with its messages."""
 
-    def do(source: Source, words: Words) -> dict[str, Any]:
+    def do(source: Source, words: RobotWords) -> dict[str, Any]:
         mission = words.mission(source)
         return {"messages": messages(mission.warnings, source), **report(mission)}
 
     return do
 
 
-def _english(source: Source, words: Words) -> dict[str, Any]:
+def _english(source: Source, words: RobotWords) -> dict[str, Any]:
     query = _of_mission(lambda mission: {"text": mission.to("english")})
     return {"sort": frontend_of(source), **query(source, words)}
 
 
-def _format(source: Source, words: Words) -> dict[str, Any]:
+def _format(source: Source, words: RobotWords) -> dict[str, Any]:
     return {"text": format_mission(source, keywords=words.keywords, world=words.world, language=words.language)}
 
 
@@ -163,7 +160,7 @@ DOES: Mapping[str, TextQuery] = {
 }
 
 
-def _test(source: Source, words: Words, tests: str, called: str) -> dict[str, Any]:
+def _test(source: Source, words: RobotWords, tests: str, called: str) -> dict[str, Any]:
     mission = words.mission(source)
 
     def given(name: str, world: str | None) -> Mission | None:
@@ -192,7 +189,7 @@ def arguments_of(kind: str, data: Mapping[str, Any], text: str) -> dict[str, Any
     given = {name: data[name] for name in asked.takes if data.get(name) is not None}
     given |= {name: data.get(name) for name in asked.needs}
     if "at" in given:
-        units = Units(text)
+        units = Utf16Units(text)
         if type(given["at"]) is not int or not 0 <= given["at"] <= units.length:
             raise AccessError(400, "'at' must be a place in the text, a whole number of UTF-16 units.")
         given["at"] = units.character(given["at"])
@@ -206,7 +203,7 @@ def arguments_of(kind: str, data: Mapping[str, Any], text: str) -> dict[str, Any
     return given
 
 
-def answer(kind: str, text: str, words: Words, arguments: Mapping[str, Any] = {}) -> dict[str, Any]:
+def answer(kind: str, text: str, words: RobotWords, arguments: Mapping[str, Any] = {}) -> dict[str, Any]:
     """Return what is asked of a text, with what is wrong with it as data; places are in UTF-16 units."""
     source = words.source(text)
     try:
@@ -216,7 +213,7 @@ def answer(kind: str, text: str, words: Words, arguments: Mapping[str, Any] = {}
     return in_units(found, text)
 
 
-def _write_answer(kind: str, text: str, words: Words, arguments: Mapping[str, Any]) -> bytes:
+def _write_answer(kind: str, text: str, words: RobotWords, arguments: Mapping[str, Any]) -> bytes:
     """Return the answer as JSON in ASCII: half a character of UTF-16 has no other encoding."""
     with gc_paused:
         return json.dumps(answer(kind, text, words, arguments), separators=(",", ":")).encode()
@@ -247,7 +244,7 @@ class Checker:
         self,
         kind: str,
         text: str,
-        words: Words,
+        words: RobotWords,
         arguments: Mapping[str, Any] = {},
         user: str = "",
         page: str | None = None,

@@ -30,7 +30,7 @@ from btlang.task.live.feed import Feed
 from btlang.task.messages import Answer, EmergencyStop, List
 from btlang.task.messages import Urdf as UrdfCommand
 from btlang.task.store.records import TaskChange
-from btlang.text.escaping import one_line
+from btlang.text.formatting import one_line
 from btlang.text.output import show
 
 TYPE_CHECKING = False

@@ -11,8 +11,7 @@ from btlang.task.messages import Answer, Put
 from btlang.task.schedule.calendar import format_duration, format_moment
 from btlang.task.store.records import FINAL, MissionText, Revision, Schedule, Task, TaskState
 from btlang.task.store.task_store import TaskStore
-from btlang.text.enumeration import joined
-from btlang.text.escaping import one_line
+from btlang.text.formatting import joined, one_line
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

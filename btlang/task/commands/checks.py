@@ -6,13 +6,12 @@ import re
 from collections.abc import Iterable
 
 from btlang.api import Mission, value_key
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.task.messages import Submit, wrong
 from btlang.task.schedule.calendar import format_moment
 from btlang.task.schedule.recurrence import read_moment, read_past_moment
 from btlang.task.store.records import PRIORITIES
-from btlang.text.escaping import one_line
+from btlang.text.formatting import one_line
 from btlang.text.source import NOWHERE
 
 TYPE_CHECKING = False

@@ -9,9 +9,8 @@ import re
 import socket
 from contextlib import suppress
 
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import reason_of
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.diagnostics.files import os_error_reason
 from btlang.robots.files import socket_folder
 from btlang.support.user_dirs import user_dir
 from btlang.task.execution.emergency import latch_path, shut_latch
@@ -119,7 +118,9 @@ def _report_stop(name: str, reason: str) -> str | None:
     try:
         shut_latch(folder, getpass.getuser(), reason)
     except OSError as error:
-        raise MissionError([diagnostic("BT195", NOWHERE, place=latch_path(folder), reason=reason_of(error))]) from None
+        raise MissionError(
+            [diagnostic("BT195", NOWHERE, place=latch_path(folder), reason=os_error_reason(error))]
+        ) from None
     return f"The robot '{name}' doesn't answer. If it is up, it stops in a moment; it stays stopped when it comes up."
 
 

@@ -11,9 +11,8 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from importlib.util import find_spec
 
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import reason_of
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.diagnostics.files import os_error_reason
 from btlang.task.commands.client import data_folder
 from btlang.text.source import NOWHERE
 
@@ -97,7 +96,7 @@ class Companion:
             try:
                 self._process = self._begin()
             except OSError as error:
-                self._report(f"The {self._name} can't start: {reason_of(error)}")
+                self._report(f"The {self._name} can't start: {os_error_reason(error)}")
                 return
 
 

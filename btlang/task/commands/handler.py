@@ -9,9 +9,8 @@ from contextlib import suppress
 from functools import partial
 
 from btlang.api import Mission
-from btlang.diagnostics.crash import crashed
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.diagnostics.report import report_crash
 from btlang.speech.marks import without_marks
 from btlang.task import messages
 from btlang.task.commands.answers import task_data, task_line, write_report
@@ -34,7 +33,7 @@ from btlang.task.messages import Answer, Command, wrong
 from btlang.task.schedule.calendar import format_moment
 from btlang.task.store.records import ACTIVE, FINAL, WAITING, Act, MissionText, RequestedEnd, Restart, Task, TaskState
 from btlang.task.store.task_store import TaskStore
-from btlang.text.escaping import one_line
+from btlang.text.formatting import one_line
 from btlang.text.json_text import NestedTooDeep, dump_json
 from btlang.text.source import NOWHERE
 
@@ -108,7 +107,7 @@ class Handler:
         except Exception as problem:  # whoever asked gets an answer, and the others go on
             if os.environ.get("BTC_DEBUG"):
                 raise
-            answer = Answer(False, crashed(problem), {}, "BT099")
+            answer = Answer(False, report_crash(problem), {}, "BT099")
         if command.changes:
             self._log(command, person, answer)
         return answer

@@ -23,7 +23,7 @@ from btlang.speech.engine import Utterance
 from btlang.task import messages
 from btlang.task.commands.checks import choose_member, refusal_error
 from btlang.task.messages import Answer, wrong
-from btlang.text.escaping import one_line
+from btlang.text.formatting import one_line
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -14,8 +14,7 @@ import threading
 from collections.abc import Callable, Generator, Iterator
 from contextlib import closing, contextmanager, suppress
 
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.robots.files import socket_folder
 from btlang.task.commands.client import socket_path
 from btlang.task.messages import Answer, EmergencyStop

@@ -22,12 +22,12 @@ from btlang.task.schedule.calendar import format_moment
 from btlang.task.schedule.recurrence import read_rule
 from btlang.task.store.records import LibraryKind, Missed, MissionText, Overlap, Restart, Schedule
 from btlang.task.store.task_store import TaskStore
-from btlang.text.escaping import one_line
+from btlang.text.formatting import one_line
 from btlang.text.source import Source
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.diagnostics.errors import MissionError
+    from btlang.diagnostics.diagnostic import MissionError
     from btlang.robots.bodies.body import Body
     from btlang.task.store.records import Revision
 

@@ -9,8 +9,8 @@ from collections.abc import Callable
 from functools import partial
 
 from btlang.api import Mission, value_key
-from btlang.diagnostics.errors import MissionError
-from btlang.engine.leaves.leaf import described
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.engine.leaves.leaf import describe_exception
 from btlang.engine.status import RUNNING
 from btlang.run.outcome import EMERGENCY, SUSPENDED
 from btlang.session import Run, Session
@@ -219,7 +219,7 @@ class Executor:
                 self._trouble(str(error))
                 self._rest(_RETRY)
             except Exception as problem:  # nothing may end the executor but `halt`
-                self._trouble(f"An error inside btlang: {described(problem)}")
+                self._trouble(f"An error inside btlang: {describe_exception(problem)}")
                 self._rest(_RETRY)
 
     def _turn(self) -> None:
@@ -278,7 +278,7 @@ class Executor:
             except MissionError as error:
                 self._change(task, TaskState.ERROR, error.diagnostics[0].message)
             except (Exception, SystemExit) as problem:  # a word or a sink of the user's is broken
-                self._change(task, TaskState.ERROR, described(problem))
+                self._change(task, TaskState.ERROR, describe_exception(problem))
             else:
                 self._end(task, run, outcome)
         finally:

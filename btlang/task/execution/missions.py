@@ -7,12 +7,11 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 from btlang.api import Mission, parse_tree
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import is_below, read_source
-from btlang.engine.leaves.leaf import described
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.diagnostics.files import is_below, read_source
+from btlang.engine.leaves.leaf import describe_exception
 from btlang.task.store.records import MissionText
-from btlang.text.escaping import one_line
+from btlang.text.formatting import one_line
 from btlang.text.source import NOWHERE, Source, Span
 from btlang.tree.catalogue import CATALOGUE, SUBTREE
 from btlang.tree.node import Node, Tree
@@ -94,7 +93,9 @@ class MissionReader:
             )
         except (SystemExit, RecursionError) as problem:  # of a keyword file, which may be anybody's
             where = Span(source, 0, 0)
-            raise MissionError([diagnostic("BT001", where, file=source.name, reason=described(problem))]) from None
+            raise MissionError(
+                [diagnostic("BT001", where, file=source.name, reason=describe_exception(problem))]
+            ) from None
 
     def _is_in_allowed_folder(self, name: str) -> bool:
         if "\0" in name or not os.path.isfile(name):

@@ -8,7 +8,7 @@ from collections.abc import Callable, Collection
 from contextlib import suppress
 
 from btlang.api import Mission
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.engine.status import FAILURE, RUNNING, SUCCESS
 from btlang.recording.recorder import Recorder, recorder_in
 from btlang.run.bus import INLINE

@@ -9,7 +9,7 @@ from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import suppress
 
 from btlang.api import Mission
-from btlang.engine.leaves.leaf import described
+from btlang.engine.leaves.leaf import describe_exception
 from btlang.engine.status import NAMES
 from btlang.passes.scripts import is_prepared
 from btlang.run.bus import INLINE
@@ -22,7 +22,7 @@ from btlang.task.live.robot_now import BodyNow, MapNow
 from btlang.task.store.database import StoreError
 from btlang.task.store.records import TaskChange
 from btlang.task.store.task_store import TaskStore
-from btlang.text.utf16 import Units
+from btlang.text.source import Utf16Units
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -302,7 +302,7 @@ def _tree(watched: _Watched) -> dict[str, Any]:
     filled = [nodes.filled(index) for index in range(nodes.size)]
     listed = [[nodes.path(index), node.id, label(node), dict(node.ports)] for index, node in enumerate(filled)]
     text, places = text_and_places(watched.mission.syntax, nodes)
-    unit = Units(text).unit
+    unit = Utf16Units(text).unit
     spans = [place and [unit(place[0]), unit(place[1])] for place in places]
     prepared = [index for index, node in enumerate(filled) if is_prepared(node)]
     return {"nodes": listed, "prepared": prepared, "text": text, "spans": spans}
@@ -367,6 +367,6 @@ class TaskFollower:
                 self._closed.wait(_RETRY)
             except Exception as problem:  # the next ones may do better
                 self._last = found[-1][0]
-                self._trouble(f"An error inside btlang: {described(problem)}")
+                self._trouble(f"An error inside btlang: {describe_exception(problem)}")
             else:
                 self._closed.wait(_REST * (time.monotonic() - began))

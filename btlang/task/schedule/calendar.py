@@ -8,10 +8,9 @@ from datetime import date, datetime, time, timedelta
 from time import localtime, strftime
 from zoneinfo import ZoneInfo, available_timezones
 
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.support.record import Record
-from btlang.text.enumeration import NTH, joined, nth
+from btlang.text.formatting import NTH, joined, nth
 from btlang.text.source import Source, Span
 from btlang.text.spelling import nearest
 from btlang.text.time_of_day import EVERY_DAY, WEEKDAYS, WEEKEND, WORKDAYS, shown

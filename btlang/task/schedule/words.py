@@ -6,8 +6,7 @@ import re
 from collections.abc import Callable, Collection, Mapping
 from datetime import date
 
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.frontends.mission.explanations.times import explain_time
 from btlang.task.schedule.calendar import MONTHS, ORDINAL_ENDINGS, ORDINALS, YEARS
 from btlang.text.source import Source, Span

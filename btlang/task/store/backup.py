@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from contextlib import suppress
 
-from btlang.diagnostics.reading import reason_of
+from btlang.diagnostics.files import os_error_reason
 from btlang.task.store.database import Database, Mode, store_error
 from btlang.task.store.migrations import MIGRATIONS, migrate, open_database, stored_version, tables_of
 from btlang.task.store.rows import marks
@@ -36,7 +36,7 @@ def write_backup(
         _write(database, part, path, steps, without)
         os.rename(part, path)
     except OSError as error:
-        raise store_error(path, reason_of(error)) from error
+        raise store_error(path, os_error_reason(error)) from error
     finally:
         with suppress(OSError):
             _remove(part)

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import sqlite3
 
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.task.store.database import Database, Mode, store_error
 from btlang.task.store.sqlite import Sqlite, columns
 from btlang.text.source import NOWHERE

@@ -10,8 +10,7 @@ from contextlib import suppress
 from functools import cache
 from urllib.parse import urlsplit
 
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.task.store.database import OWNED, PATIENCE, Database, Mode, owned_error, store_error
 from btlang.text.source import NOWHERE
 

@@ -10,7 +10,7 @@ import time
 from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext, suppress
 
-from btlang.diagnostics.reading import reason_of
+from btlang.diagnostics.files import os_error_reason
 from btlang.task.store.database import OWNED, PATIENCE, Database, Mode, StoreError, owned_error, store_error
 
 TYPE_CHECKING = False
@@ -104,7 +104,7 @@ class Sqlite(Database):
             try:
                 file = os.open(path, os.O_RDWR | os.O_CREAT | getattr(os, "O_CLOEXEC", 0), 0o644)
             except OSError as error:
-                raise store_error(self.place, f"{path} can't be written: {reason_of(error)}") from None
+                raise store_error(self.place, f"{path} can't be written: {os_error_reason(error)}") from None
             try:
                 _lock(file)
             except OSError:

@@ -5,8 +5,7 @@ from __future__ import annotations
 import pytest
 
 from btlang.api import Mission, parse_tree
-from btlang.diagnostics.diagnostic import Diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError
 
 ASKED = [
     ("as soon as someone is near, wave\ngo to the lab", "BT171"),

@@ -8,7 +8,7 @@ from functools import cache, lru_cache
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.support.record import Record
-from btlang.text.enumeration import joined
+from btlang.text.formatting import joined
 from btlang.text.source import Span
 from btlang.text.words import Words
 from btlang.vocabulary.entry import Entry

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.explanations.spelling_rule import is_respelling
-from btlang.text.enumeration import joined
+from btlang.text.formatting import joined
 from btlang.text.source import Span
 from btlang.text.spelling import nearest
 from btlang.text.words import Words

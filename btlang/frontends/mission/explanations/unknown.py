@@ -28,7 +28,7 @@ from btlang.frontends.mission.token import (
     arguments_of,
     run_start,
 )
-from btlang.text.enumeration import joined
+from btlang.text.formatting import joined
 from btlang.text.source import Span
 from btlang.text.spelling import nearest, nearest_start
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words

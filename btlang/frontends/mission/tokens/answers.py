@@ -9,7 +9,7 @@ from btlang.frontends.mission.token import BEFORE_CONDITIONS, Called, Listed, To
 from btlang.frontends.mission.tokens.addressed_texts import AddressedTexts
 from btlang.frontends.mission.tokens.sentence_reader import is_question
 from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of
-from btlang.tree.asked import ABOUT_ANSWERS, ANSWERED, ASK, EXAMPLE, OF_WHICH, UNANSWERED, asking_verbs
+from btlang.tree.answers import ABOUT_ANSWERS, ANSWERED, ASK, EXAMPLE, OF_WHICH, UNANSWERED, asking_verbs
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.references import choice_of
 from btlang.vocabulary.value_type import PERSON, TEXT

@@ -10,7 +10,7 @@ from btlang.frontends.mission.token import Called, Listed, Token, texts_of
 from btlang.frontends.mission.tokens.addressed_texts import TELL
 from btlang.frontends.mission.tokens.questions import Questions
 from btlang.text.source import Span
-from btlang.tree.asked import ASK
+from btlang.tree.answers import ASK
 from btlang.vocabulary.entry import SAY, Entry
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.value_type import TEXT

@@ -8,7 +8,7 @@ from btlang.frontends.mission.token import Called, Listed, Token, constraint_of,
 from btlang.frontends.mission.tokens.calls import Calls
 from btlang.frontends.mission.tokens.partial_commands import PartialCommands
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
-from btlang.tree.asked import ASK
+from btlang.tree.answers import ASK
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import ReadingContext

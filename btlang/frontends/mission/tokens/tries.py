@@ -19,7 +19,7 @@ from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, is_q
 from btlang.frontends.mission.tokens.settling import FAILS
 from btlang.frontends.mission.tokens.silent_words import begins
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
-from btlang.tree.asked import asking_verbs
+from btlang.tree.answers import asking_verbs
 from btlang.vocabulary.match import Match
 
 _JOINTS = JOINTS | {"stop"}

@@ -1,0 +1,140 @@
+"""Help at a place of a text: what was understood there, and what may follow."""
+
+from __future__ import annotations
+
+from btlang.api import Mission
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.editing.words import RobotWords
+from btlang.frontends.mission.completion.completer import completions
+from btlang.frontends.mission.reader import lexed
+from btlang.frontends.mission.token import Assigned, Called, Each, Header, Listed, NodeCall, Remembered, Token
+from btlang.frontends.mission.tokens.lexer import Lexer
+from btlang.frontends.table import frontend_of
+from btlang.printer.mission import english
+from btlang.text.source import Source
+from btlang.tree import ast
+from btlang.vocabulary.entry import About, Entry
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    Found = dict[str, Any]
+
+_LONGEST = 500  # characters of canonical English
+_NAMED = "A name of this mission"
+_ROLES: dict[type, str] = {Remembered: "remember", NodeCall: "do", Each: "each"}
+_MOST = 200
+
+
+def hover(source: Source, at: int, words: RobotWords) -> dict[str, Any]:
+    """Return `found`: what is at a character, None for nothing.
+
+    `start` and `end` are its characters; `words` what was understood, in canonical English; `help` and `example` those
+    of its phrase or joining word; `id` that of its node or role; `kind` "command", "condition", "name", "word", or
+    "node" in XML and JSON. Raises MissionError for words that can't be used.
+    """
+    try:
+        mission = words.mission(source)
+    except MissionError:
+        mission = None
+    if frontend_of(source) == "english":
+        return {"found": _in_english(source, at, words, mission)}
+    return {"found": None if mission is None else _in_tree(source, at, mission)}
+
+
+def _in_tree(source: Source, at: int, mission: Mission) -> Found | None:
+    places = ((node.span, node) for node in mission.tree.walk() if node.span is not None)
+    around = [(span, node) for span, node in places if span.source is source and span.start <= at < span.end]
+    if not around:
+        return None
+    span, node = min(around, key=lambda place: place[0].end - place[0].start)
+    entry = mission.vocabulary.entry(node.id)
+    return _find(span.start, span.end, mission.label(node), node.id, "node", entry or About())
+
+
+def _in_english(source: Source, at: int, words: RobotWords, mission: Mission | None) -> Found | None:
+    lexer = lexed(source, words.vocabulary(source))
+    token = next((token for token in lexer.tokens if token.start <= at < token.end), None)
+    if token is None:
+        return None
+    said = token.value
+    program = mission.syntax if mission is not None else None
+    if isinstance(said, Header):
+        return _definition(token, said, program, lexer)
+    part = _smallest(program, source, token) if program is not None else None
+    if isinstance(said, Called | Listed):
+        if part is None and isinstance(said, Called) and said.entry.sort in ("action", "condition"):
+            part = ast.Phrase(said.entry, said.arguments, lexer.text.span(0, 0))
+        understood = _english(part, program, lexer) if part is not None else source.text[token.start : token.end]
+        return _describe_call(token, said.entry, understood, lexer)
+    known = said.operation if isinstance(said, Assigned) else _ROLES.get(type(said), token.kind)
+    role = next((role for role in (known, token.role) if role in lexer.vocabulary.about), "")
+    if not role:
+        return None
+    understood = source.text[token.start : token.end]
+    if part is not None:
+        understood = _english(_join(part, at), program, lexer)
+    return _find(token.start, token.end, understood, role, "word", lexer.vocabulary.about[role])
+
+
+def _definition(token: Token, header: Header, program: ast.Program | None, lexer: Lexer) -> Found:
+    defined = program.definitions if program is not None else ()
+    body = next((each.body for each in defined if each.name_span.start == header.span.start), None)
+    understood = header.name if body is None else f"{header.name}: {_english(body, program, lexer)}"
+    return _find(token.start, token.end, understood, header.name, "name", About(help=_NAMED))
+
+
+def _describe_call(token: Token, entry: Entry, understood: str, lexer: Lexer) -> Found:
+    if entry.sort == "name":
+        return _find(token.start, token.end, understood, entry.id, "name", About(help=_NAMED))
+    if entry.sort == "value":
+        return _find(token.start, token.end, understood, "compare", "condition", lexer.vocabulary.about["compare"])
+    return _find(
+        token.start, token.end, understood, entry.id, "command" if entry.sort == "action" else entry.sort, entry
+    )
+
+
+def _find(start: int, end: int, understood: str, id: str, kind: str, about: Entry | About) -> Found:
+    short = understood if len(understood) <= _LONGEST else f"{understood[: _LONGEST - 1]}…"
+    return {
+        "start": start, "end": end, "words": short, "help": " ".join(about.help.split()), "example": about.example,
+        "id": id, "kind": kind,
+    }  # fmt: skip
+
+
+def _smallest(program: ast.Program, source: Source, token: Token) -> ast.Ast | None:
+    """Return the smallest part of a mission around a token, with all that is said by the same words."""
+    bodies = [each.body for each in program.definitions] + ([program.body] if program.body is not None else [])
+    best: ast.Ast | None = None
+    for body in bodies:
+        for part in ast.parents_first(body):
+            span = part.span
+            if span.start <= token.start and token.end <= span.end and span.source is source:
+                if best is None or span.end - span.start < best.span.end - best.span.start:
+                    best = part
+    return best
+
+
+def _join(part: ast.Ast, at: int) -> ast.Ast:
+    """Return only the two parts of a chain that are joined at a character."""
+    if not isinstance(part, ast.Chain) or len(part.items) < 3:
+        return part
+    right = next((number for number, item in enumerate(part.items) if item.span.start > at), len(part.items) - 1)
+    return part.replace(items=part.items[max(right - 1, 0) : right + 1], bracketed=False)  # type: ignore[no-any-return]
+
+
+def _english(part: ast.Ast, program: ast.Program | None, lexer: Lexer) -> str:
+    names = ast.all_definitions(program) if program is not None else ()
+    return english(part, lexer.vocabulary, names=names)
+
+
+def complete(source: Source, words: RobotWords, at: int | None = None) -> dict[str, Any]:
+    """List completions at a character, by default the end; see `Completion`. None in XML and JSON.
+
+    Raises MissionError for words that can't be used.
+    """
+    if frontend_of(source) != "english":
+        return {"completions": []}
+    found = completions(source.text[:at], words.vocabulary(source))
+    return {"completions": [each.as_dict() for each in found[:_MOST]]}

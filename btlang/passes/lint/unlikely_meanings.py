@@ -1,0 +1,107 @@
+"""Lints on commands that mean something else than most people expect (BT163, BT169, BT170, BT050).
+
+- `turn around three times` are half turns, as most people mean whole turns;
+- `turn around and drive back 1 m`: backwards, or the way back that the robot faces then;
+- `A until 5 pm. At 5 pm, B` waits for the next day;
+- `go to the lab until someone is near` starts again, though the command comes to an end by itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.passes.compilation import Compilation
+from btlang.passes.lint.other_readings import Readings
+from btlang.passes.lint.two_readings import make_printer, make_warning
+from btlang.tree import ast
+from btlang.vocabulary.lexicon import Lexicon
+
+_ENDLESS = "-1"
+_HALF, _WHOLE = "TurnAround", "TurnOnceAround"
+_BACKWARD, _FORWARD = "MoveBackward", "MoveForward"
+_ENDS = frozenset(("place", "object", "person", "door", "length", "angle", "text"))
+"""The types of the values with which people say when a command has ended."""
+
+
+def find_half_turns(compilation: Compilation) -> Iterator[Diagnostic]:
+    """Search the loops of the mission and of its definitions."""
+    whole = compilation.vocabulary.entry(_WHOLE)
+    example = whole.example if whole is not None else ""
+    for body in ast.bodies(compilation.mission) if example else ():
+        for node in compilation.syntax(body):
+            if (
+                type(node) is ast.Repeat
+                and isinstance(node.body, ast.Phrase)
+                and node.body.entry.id == _HALF
+                and node.rounds != _ENDLESS
+            ):
+                said = node.span.text
+                fixed = said.replace(node.body.span.text, example, 1)
+                note = diagnostic("BT163", node.span, words=said, fixed=fixed)
+                yield note.replace(readings=((node.span, fixed),))
+            elif type(node) is ast.Chain and node.operator == "sequence":
+                yield from _ways_back(node, compilation)
+
+
+def _ways_back(chain: ast.Chain, compilation: Compilation) -> Iterator[Diagnostic]:
+    """Find where a robot that has turned around drives back, and not in as many words backwards."""
+    vocabulary = compilation.vocabulary
+    forward, particles = vocabulary.entry(_FORWARD), vocabulary.values.role_words.particles
+    for turn, drive in pairwise(chain.items):
+        if forward is None or not isinstance(turn, ast.Phrase) or not isinstance(drive, ast.Phrase):
+            continue
+        said = drive.span.text.lower().split()
+        if (turn.entry.id, drive.entry.id) == (_HALF, _BACKWARD) and not particles.isdisjoint(said):
+            printer = make_printer(compilation)
+            fix = drive.span, printer.statement(drive)
+            yield make_warning(Readings(drive, drive.replace(entry=forward), drive.span, fix), printer)
+
+
+def find_next_day(compilation: Compilation) -> Iterator[Diagnostic]:
+    """Search commands one after the other, in the mission and in definitions."""
+    for body in ast.bodies(compilation.mission):
+        for node in compilation.syntax(body):
+            if type(node) is not ast.Chain or node.operator != "sequence":
+                continue
+            ended = ""
+            for item in node.items:
+                wait = next((each for each in ast.parents_first(item) if isinstance(each, ast.WaitTime)), None)
+                if wait is not None and ended and ended in wait.time.split(";"):
+                    yield diagnostic("BT169", wait.span, words=wait.span.text)
+                if isinstance(item, ast.Whenever):
+                    continue
+                ends = (each.time for each in ast.parents_first(item) if isinstance(each, ast.UntilTime | ast.WaitTime))
+                ended = next(ends, "")
+
+
+def find_restarts(compilation: Compilation) -> Iterator[Diagnostic]:
+    """Report a command, unless `repeat`, `keep` or a form before it says that it is repeated."""
+    for body in ast.bodies(compilation.mission):
+        for node in compilation.syntax(body):
+            if type(node) is ast.While and node.otherwise is None and _has_an_end(node.body):
+                yield from _starts_again_warning(node, compilation.vocabulary)
+
+
+def _has_an_end(command: ast.Ast) -> bool:
+    if type(command) is not ast.Phrase:
+        return False
+    said = {slot for slot, _ in command.arguments}
+    return any(slot.name in said and slot.type in _ENDS for slot in command.entry.slots)
+
+
+def _starts_again_warning(node: ast.While, vocabulary: Lexicon) -> Iterator[Diagnostic]:
+    text, command = node.span.source.text, node.body.span
+    between = text[command.end : node.condition.span.start]
+    words = vocabulary.orthography.words(between.strip(" \t,("))
+    role = "until" if node.negated else "while"
+    if command.start != node.span.start or " ".join(words) not in vocabulary.roles[role]:
+        return
+    behind = text[command.end : node.span.end].strip(" \t,")
+    condition = behind.split(maxsplit=len(words))[-1]
+    said = command.text[0].lower() + command.text[1:]
+    again = f"{vocabulary.word('repeat')} {said} {behind}"
+    once = f"{command.text} {vocabulary.word('stop_when' if node.negated else 'provided')} {condition}"
+    problem = diagnostic("BT170", node.span, words=command.text, again=again, once=once)
+    yield problem.replace(readings=((node.span, again), (node.span, once)))

@@ -1,0 +1,202 @@
+"""Answers: commands that depend on what somebody answers are put where that person is asked.
+
+A command that depends on the answer and follows a form whose commands ask belongs to those commands: elsewhere it
+would be asked where nobody has answered.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Container, Sequence
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.text.source import Span
+from btlang.tree import ast
+from btlang.tree.visit import fold
+from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.value_type import TEXT
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+
+ASK, ANSWERED, UNANSWERED = "Ask", "AnswerIs", "NobodyAnswered"
+"""The ids of the question, and of the conditions about its answer."""
+ABOUT_ANSWERS = frozenset((ANSWERED, UNANSWERED))
+_ONCE = (ast.Retry, ast.Try, ast.Within, ast.UpTo, ast.StopWhen, ast.Constrained, ast.Delay, ast.Provided, ast.Chain)
+"""Forms whose commands are done before what comes behind the form."""
+EXAMPLE = 'ask Alice "Tea?". If so, wave'
+OF_WHICH = "could be about the first question or about the second"
+
+
+def asking_verbs(vocabulary: Lexicon) -> frozenset[str]:
+    """Return the words with which somebody is asked."""
+    return frozenset(phrase.split()[0] for entry in vocabulary.entries.get(ASK, ()) for phrase in entry.phrases)
+
+
+def with_answers(mission: ast.Program) -> tuple[ast.Program, list[Diagnostic]]:
+    """Return the mission with dependent commands where somebody asks, and what is wrong with it (BT144)."""
+    problems: list[Diagnostic] = []
+
+    def body(root: ast.Ast) -> ast.Ast:
+        if not _asks(root):
+            return root
+        return fold(root, ast.parts, lambda node, done: _gather(ast.with_parts(node, done), problems))
+
+    def program(part: ast.Program) -> ast.Program:
+        return ast.with_bodies(part, body, program)
+
+    return program(mission), problems
+
+
+def _asks(node: ast.Ast, ids: Container[str] = ABOUT_ANSWERS) -> bool:
+    """Whether a condition of these, by default one about an answer, is in a node."""
+    return any(isinstance(each, ast.Phrase) and each.entry.id in ids for each in ast.parents_first(node))
+
+
+def _depends(node: ast.Ast) -> bool:
+    """Whether a command is done if the answer is this or that."""
+    return isinstance(node, ast.If) and _asks(node.condition)
+
+
+def _gather(node: ast.Ast, problems: list[Diagnostic]) -> ast.Ast:
+    """Return a sequence in which commands that depend on an answer stand where it is given."""
+    if not isinstance(node, ast.Chain) or node.operator != "sequence" or not any(map(_depends, node.items)):
+        return node
+    made: list[ast.Ast] = []
+    asking: int | None = None
+    for item in node.items:
+        if asking is not None and isinstance(item, ast.If) and _depends(item):
+            behind = _behind_silence(made[asking], item)
+            if behind is not None:
+                made[asking] = behind
+                continue
+            form = _form_that_asks(made[asking])
+            problem = _problem(made, asking, form, item)
+            if problem:
+                words = item.span.text.split(",")[0]
+                problems.append(diagnostic("BT144", item.span, words=words, problem=problem, example=EXAMPLE))
+            elif form:
+                made[asking] = _with_last(form, item)
+                continue
+        _reply(made, asking, item)
+        if _questions(item):
+            asking = len(made) - 1
+    return made[0] if len(made) == 1 else node.replace(items=tuple(made))
+
+
+def _behind_silence(question: ast.Ast, item: ast.If) -> ast.Ast | None:
+    """Put a reply that would hold in silence, too, behind what is done then: `if she doesn't answer, A. If not, B`."""
+    if isinstance(question, ast.IfWorks) and _questions(question.tried):
+        span = Span(item.span.source, question.body.span.start, item.span.end)
+        body = ast.Chain("sequence", (question.body, item), True, span)
+        return ast.IfWorks(question.tried, body, question.otherwise, question.span)
+    if not (isinstance(question, ast.Chain) and question.operator == "fallback" and _holds_in_silence(item)):
+        return None
+    first, *others = question.items
+    silent = others[0] if len(others) == 1 else question.replace(items=tuple(others))
+    span = Span(item.span.source, question.span.start, item.span.end)
+    return ast.IfWorks(first, item, silent, span) if _questions(first) else None
+
+
+def _reply(items: list[ast.Ast], asking: int | None, item: ast.Ast) -> None:
+    """Add a command to those behind a question, if there is one."""
+    if asking is not None and isinstance(item, ast.If) and _asks(item.condition, (UNANSWERED,)):
+        items[asking:] = _with_silence(items[asking:], item)
+    else:
+        items.append(item)
+
+
+def _with_silence(items: Sequence[ast.Ast], item: ast.If) -> list[ast.Ast]:
+    """Return a question and what follows, with a command that says what silence does: nobody has to answer then.
+
+    `If so, A. If not, B. If she says nothing, C`: silence is no `not`.
+    """
+    asked, *others = items
+    question = _without_failure(asked)
+    excludes = any(isinstance(each, ast.If) and _holds_in_silence(each) for each in others)
+    is_plain = isinstance(item.condition, ast.Phrase) and not item.negated and item.otherwise is None
+    if not (excludes and is_plain and all(map(_depends, others))):
+        return [question, *others, item]
+    span = Span(item.span.source, others[0].span.start, others[-1].span.end)
+    otherwise = others[0] if len(others) == 1 else ast.Chain("sequence", tuple(others), True, span)
+    return [question, item.replace(otherwise=otherwise)]
+
+
+def _without_failure(asked: ast.Ast) -> ast.Ast:
+    """Return a command whose question may stay without an answer; what is done before it may still fail."""
+    if isinstance(asked, ast.Try):
+        return asked
+    if not isinstance(asked, ast.Chain) or asked.operator == "fallback":
+        return ast.Try(asked, None, asked.span)
+    last = max(at for at, each in enumerate(asked.items) if _questions(each))
+    items = [*asked.items[:last], _without_failure(asked.items[last]), *asked.items[last + 1 :]]
+    made: ast.Chain = asked.replace(items=tuple(items))
+    return made
+
+
+def _holds_in_silence(node: ast.If) -> bool:
+    """Whether a command that depends on an answer does something where there is none."""
+    is_denied = any(isinstance(each, ast.Not) for each in ast.parents_first(node.condition))
+    return node.negated or node.otherwise is not None or is_denied
+
+
+def _questions(node: ast.Ast) -> list[ast.Phrase]:
+    return [each for each in ast.parents_first(node) if isinstance(each, ast.Phrase) and each.entry.id == ASK]
+
+
+def _question(node: ast.Phrase) -> str:
+    """Return the text of a question."""
+    types = {slot.name: slot.type for slot in node.entry.slots}
+    return next((text for name, text in node.arguments if types.get(name) == TEXT), "")
+
+
+def _form_that_asks(node: ast.Ast) -> list[Any]:
+    """List the forms around the last question of a command, the outermost first; none if it is asked in any case."""
+    path: list[Any] = []
+    last = _questions(node)[-1]
+    while node is not last:
+        part = next(part for part in reversed(ast.parts(node)) if any(each is last for each in ast.parents_first(part)))
+        path.append((node, part))
+        node = part
+    while path and isinstance(path[-1][0], _ONCE):
+        path.pop()
+    return path
+
+
+def _with_last(form: Sequence[Any], item: ast.Ast) -> ast.Ast:
+    """Return the outermost of some forms, whose innermost has one more command at its end."""
+    body = form[-1][1]
+    items = body.items if isinstance(body, ast.Chain) and body.operator == "sequence" else (body,)
+    made = list(items)
+    _reply(made, max(at for at, each in enumerate(items) if _questions(each)), item)
+    span = Span(body.span.source, body.span.start, item.span.end)
+    changed: ast.Ast = ast.Chain("sequence", tuple(made), True, span)
+    for node, part in reversed(form):
+        parts = [changed if each is part else each for each in ast.parts(node)]
+        changed = ast.with_parts(node, parts)
+    return changed
+
+
+def _problem(made: Sequence[ast.Ast], at: int, form: Sequence[Any], item: ast.Ast) -> str:
+    """Return why it isn't clear whose answer is meant, "" if it is."""
+    asked = _questions(made[at])
+    before = _questions(made[at - 1]) if at and not form else []
+    same = [each for each in (*before, *asked) if _question(each) == _question(asked[-1])]
+    if len({each.arguments for each in same}) > 1 or any(isinstance(node, ast.ForEach) for node, _ in form):
+        return "could be about one answer or about all"
+    if not form:
+        return ""
+    inner = form[-1][0]
+    text = item.span.source.text[made[at].span.end : item.span.start]
+    if getattr(inner, "otherwise", None) is not None or len(form) > 1:
+        return "could be about several questions"
+    if _depends(inner):
+        return "" if _same(inner, item) else OF_WHICH
+    return "stands on another line than what asks only sometimes" if "\n" in text else ""
+
+
+def _same(one: Any, other: Any) -> bool:
+    """Whether two commands depend on the same answer, which then is that of the second question."""
+    plain = isinstance(one.condition, ast.Phrase) and isinstance(other.condition, ast.Phrase)
+    return plain and not (one.negated or other.negated) and one.condition.arguments == other.condition.arguments
