@@ -89,6 +89,7 @@ class OrderWords(ClockWords, JourneyWords):
 
     def no_phrase(self, at: int) -> int:
         """What begins with words that are no phrase."""
+        text = self._text
         return (
             self._go_and_see(at)
             or self._start_of_leg(at)
@@ -96,6 +97,7 @@ class OrderWords(ClockWords, JourneyWords):
             or self._journey_of_constraint(at)
             or self._wait_for(at)
             or self._back(at)
+            or (self._partial.add_third(at + 1, None) if text.words[at] in self._vocabulary.asking["subject"] else 0)
         )
 
     def connect(self, role: str) -> None:

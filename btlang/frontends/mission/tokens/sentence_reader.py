@@ -8,7 +8,7 @@ from btlang.frontends.mission.token import Called, Listed, Token, constraint_of,
 from btlang.frontends.mission.tokens.calls import Calls
 from btlang.frontends.mission.tokens.partial_commands import PartialCommands
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
-from btlang.tree.answers import ASK
+from btlang.tree.answers import ANSWERED, ASK
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import ReadingContext
@@ -85,6 +85,11 @@ def hears(token: Token) -> bool:
 def is_question(token: Token) -> bool:
     """Whether a command asks somebody something."""
     return isinstance(token.value, Called | Listed) and token.value.entry.id == ASK
+
+
+def is_answer(token: Token) -> bool:
+    """Whether a condition asks if somebody has answered in some words."""
+    return isinstance(token.value, Called) and token.value.entry.id == ANSWERED
 
 
 def searches(token: Token) -> bool:

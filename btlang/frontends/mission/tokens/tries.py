@@ -15,9 +15,10 @@ from btlang.frontends.mission.token import (
     statement_start,
 )
 from btlang.frontends.mission.tokens.rules_inside import asks_if_blocked
-from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, is_question, may_fail
+from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, is_answer, is_question, may_fail
 from btlang.frontends.mission.tokens.settling import FAILS
 from btlang.frontends.mission.tokens.silent_words import begins
+from btlang.text.source import Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
 from btlang.tree.answers import asking_verbs
 from btlang.vocabulary.match import Match
@@ -42,7 +43,8 @@ class Tries(SentenceReader):
         last = len(tokens) - (2 if tokens and tokens[-1].kind == "comma" else 1)
         first = statement_start(tokens, last + 1)
         is_closed = any(token.kind in ("try", "retry", "repeat") for token in tokens[first:])
-        if last < 0 or (tokens[last].kind not in _OPERANDS and not is_closed):
+        is_check = last > 0 and tokens[last].kind == "condition" and tokens[last - 1].kind == "check"
+        if last < 0 or not (tokens[last].kind in _OPERANDS or is_closed or is_check):
             return 0
         if any(token.kind == "until" for token in tokens[first:]):
             self._doubt_number(match, at)
@@ -50,7 +52,7 @@ class Tries(SentenceReader):
         if not is_closed:
             whole = last < len(tokens) - 1
             first = _first_of_form(tokens, first, last) if whole else _first_of_operand(tokens, last)
-            fails = match.meaning.role == "tries" or any(map(may_fail, tokens[first : last + 1]))
+            fails = match.meaning.role == "tries" or is_check or any(map(may_fail, tokens[first : last + 1]))
             if fails:
                 tokens.insert(first, Token("retry", tokens[first].start, tokens[first].start))
             elif match.meaning.role == "at_most":
@@ -75,6 +77,8 @@ class Tries(SentenceReader):
     def paused(self) -> None:
         """`try to open it up to 3 times with 5 s between attempts`: the pause that the last token says."""
         tokens = self._tokens
+        if tokens[-2].kind == "comma" and len(tokens) > 2 and tokens[-3].kind == "count":
+            del tokens[-2]
         if tokens[-2].kind != "count":
             return
         depth, first = 0, statement_start(tokens, len(tokens))
@@ -94,7 +98,7 @@ class Tries(SentenceReader):
         end = self._behind(end - 1) if pause is not None else end
         form = self._condition(end)
         last = self._before_form(form)
-        asks = self._text.words[at] in self._asking_verbs
+        asks = self._text.words[at] in self._asking_verbs or self._text.words[at] in self._vocabulary.asking["letting"]
         tried = tokens[last - 1] if form and last else None
         if tried is None or tried.kind not in _OPERANDS or (asks and not is_question(tried)):
             return self._ask_again(match, at) if asks else self._after_repair(match, at) or self._try_that(match, at)
@@ -175,13 +179,27 @@ class Tries(SentenceReader):
         """`ask Bob "Tea?". If he says no, ask again`: what was asked before."""
         asked = next((token for token in reversed(self._tokens) if is_question(token)), None)
         behind = self._behind_comma(match.last)
+        behind += self._text.words[behind] in self._vocabulary.roles["but"]
         amount = self._phrase(behind)
-        if asked is None or (amount is not None and amount.meaning.role in _IN_ALL):
-            return 0  # `if he says no, ask again, at most 3 times`: until he says something else
+        if asked is None:
+            return 0
+        if amount is not None and amount.meaning.role in _IN_ALL:
+            self._doubt_questions(asked, self._text.span(at, amount.last), self._text.span(behind, amount.last).text)
+            return amount.last
         self._tokens.append(Token("command", self._text.starts[at], self._text.ends[match.last - 1], asked.value))
         last = amount.last if amount is not None and amount.meaning.role == "once" else match.last
         self._doubt(last)
         return last
+
+    def _doubt_questions(self, asked: Token, words: Span, number: str) -> None:
+        """BT151 for `if he says no, ask again, at most 3 times`: what is done on the later answers isn't said."""
+        word, text = self._vocabulary.word, self._text.source.text
+        question, again = text[asked.start : asked.end], words.text.removesuffix(number).rstrip(" ,")
+        answer = next(filter(is_answer, self._tokens), None)
+        if answer is not None:
+            question = f"{question} {word('and')} {word('check')} {text[answer.start : answer.end]}"
+        one = f"{question}, {number}. {word(FAILS).capitalize()}, ..."
+        self._calls.problems.append(diagnostic("BT151", words, words=words.text, one=one, other=again))
 
     @cached_property
     def _asking_verbs(self) -> frozenset[str]:
