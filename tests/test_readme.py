@@ -75,9 +75,9 @@ def command_and_output(block: Block) -> tuple[str, str]:
 
 
 def commands() -> list[str]:
-    """The lines of shell blocks, without those that set up an environment."""
-    lines = [line for block in blocks("sh") for line in block.text.splitlines()]
-    return [line for line in lines if line.strip() and not line.startswith((SET_UP, "git clone "))]
+    """The lines of shell blocks, each once and without its comment, and without those that set up an environment."""
+    lines = [line.partition("  #")[0].rstrip() for block in blocks("sh") for line in block.text.splitlines()]
+    return [line for line in dict.fromkeys(lines) if line and not line.startswith((SET_UP, "git clone "))]
 
 
 def run(arguments: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
@@ -145,7 +145,7 @@ def recording() -> bytes:
 @pytest.mark.parametrize("line", commands())
 def test_commands_run(line: str, folder: Path) -> None:
     real_time = line.startswith(("btc run", 'btc "')) and "--speed" not in line
-    done = btc(f"{line.partition('  #')[0]} --speed max" if real_time else line, folder)
+    done = btc(f"{line} --speed max" if real_time else line, folder)
     assert done.returncode == 0, done.stdout
 
 
