@@ -22,6 +22,7 @@ from typing import IO
 import pytest
 from hypothesis import HealthCheck, settings
 
+from btlang.text.source import Source
 from tests.profiles import LONG
 
 settings.register_profile(
@@ -134,6 +135,26 @@ def pytest_collection_finish() -> None:
     gc.collect()
     gc.freeze()
     gc.set_threshold(20_000, 20, 20)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _shipped_words_are_read_once() -> Iterator[None]:
+    """Hundreds of tests make a vocabulary of a file of their own and of those that ship, which never change."""
+    from btlang.vocabulary import keyword_file
+
+    read, known = keyword_file.read_keyword_file, dict[tuple[str, str], keyword_file.KeywordFile]()
+
+    def read_once(source: Source) -> keyword_file.KeywordFile:
+        if not source.name.startswith("keywords/"):  # where none ships
+            return read(source)
+        key = source.name, source.text
+        if key not in known:
+            known[key] = read(source)
+        return known[key]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(keyword_file, "read_keyword_file", read_once)
+        yield
 
 
 def without_overruns(printed: str) -> str:

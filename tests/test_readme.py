@@ -75,9 +75,9 @@ def command_and_output(block: Block) -> tuple[str, str]:
 
 
 def commands() -> list[str]:
-    """The lines of shell blocks, without those that set up an environment."""
-    lines = [line for block in blocks("sh") for line in block.text.splitlines()]
-    return [line for line in lines if line.strip() and not line.startswith((SET_UP, "git clone "))]
+    """The lines of shell blocks, each once and without its comment, and without those that set up an environment."""
+    lines = [line.partition("  #")[0].rstrip() for block in blocks("sh") for line in block.text.splitlines()]
+    return [line for line in dict.fromkeys(lines) if line and not line.startswith((SET_UP, "git clone "))]
 
 
 def run(arguments: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
@@ -123,13 +123,25 @@ def readings(line: str) -> list[str]:
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     """A folder with the examples and the files that the pages show."""
-    shutil.copytree(ROOT / "examples", tmp_path / "examples")
-    shutil.copytree(ROOT / "examples" / "guide", tmp_path / "guide")
+    return laid_out(tmp_path)
+
+
+@pytest.fixture(scope="module")
+def read_only(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The same, for all tests that leave it as it is: to lay one out takes longer than to read a mission."""
+    return laid_out(tmp_path_factory.mktemp("pages"))
+
+
+def laid_out(folder: Path) -> Path:
+    """The folder, with all of that in it."""
+    left_out = shutil.ignore_patterns("__pycache__")
+    shutil.copytree(ROOT / "examples", folder / "examples", ignore=left_out)
+    shutil.copytree(ROOT / "examples" / "guide", folder / "guide", ignore=left_out)
     for block in BLOCKS:
         if block.file:
-            (tmp_path / block.file).write_text(block.text, encoding="utf-8")
-    (tmp_path / "tea.mcap").write_bytes(recording())
-    return tmp_path
+            (folder / block.file).write_text(block.text, encoding="utf-8")
+    (folder / "tea.mcap").write_bytes(recording())
+    return folder
 
 
 @cache
@@ -145,20 +157,20 @@ def recording() -> bytes:
 @pytest.mark.parametrize("line", commands())
 def test_commands_run(line: str, folder: Path) -> None:
     real_time = line.startswith(("btc run", 'btc "')) and "--speed" not in line
-    done = btc(f"{line.partition('  #')[0]} --speed max" if real_time else line, folder)
+    done = btc(f"{line} --speed max" if real_time else line, folder)
     assert done.returncode == 0, done.stdout
 
 
 @pytest.mark.parametrize("block", blocks("console"), ids=first_line)
-def test_shown_output_is_real(block: Block, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_shown_output_is_real(block: Block, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     line, shown = command_and_output(block)
     if is_reading(line):
-        monkeypatch.chdir(folder)
+        monkeypatch.chdir(request.getfixturevalue("read_only"))
         monkeypatch.setenv("COLUMNS", "100")
         printed, *others = readings(line)
         assert all(other == printed for other in others)
     else:
-        printed = without_overruns(btc(line, folder).stdout)
+        printed = without_overruns(btc(line, request.getfixturevalue("folder")).stdout)
     assert "Traceback" not in printed
     if os.environ.get("UPDATE_README"):
         page = block.page.read_text(encoding="utf-8")
@@ -193,12 +205,12 @@ def commands_with(file: str) -> list[str]:
 
 
 @pytest.mark.parametrize("block", [block for block in BLOCKS if block.language == "mission"], ids=first_line)
-def test_missions_compile(block: Block, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_missions_compile(block: Block, read_only: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """With the world and the words of the first command that runs it, and without a warning."""
     line = next(iter(commands_with(block.file)), "")
     options = re.findall(r"--(?:world|keywords|language) \S+", line)
-    (folder / "shown.txt").write_text(block.text, encoding="utf-8")
-    monkeypatch.chdir(folder)
+    (read_only / "shown.txt").write_text(block.text, encoding="utf-8")  # which each of these tests writes anew
+    monkeypatch.chdir(read_only)
     assert quick(f"btc check shown.txt {' '.join(options)}") == (0, "No problems found.\n")
 
 

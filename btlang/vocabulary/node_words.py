@@ -10,12 +10,19 @@ from itertools import takewhile
 from btlang.text.source import Source
 from btlang.text.spelling import respellings
 from btlang.text.words import Words, split
+from btlang.vocabulary.cache import recent
 from btlang.vocabulary.language_tables import CHANGING, NOT_ALONE
 from btlang.vocabulary.lexicon import DEFINING, NODE_ROLES, Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.pattern import Slot, forms
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import TrieNode, longest
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+    _Phrases: TypeAlias = tuple[frozenset[str], frozenset[str], frozenset[str]]
 
 _ID = re.compile(r"(?:[A-Z][a-z0-9]*)+")
 _PART = re.compile(r"[A-Z]{2,}[0-9]*(?![a-z])|[A-Z][a-z0-9]*")
@@ -141,9 +148,19 @@ def _ends(text: Words, at: int, vocabulary: Lexicon) -> bool:
     return joins or role_end(text, at, BEHIND_ID, vocabulary) > 0
 
 
-@lru_cache(maxsize=4)
-def _phrases(vocabulary: Lexicon) -> tuple[frozenset[str], frozenset[str], frozenset[str]]:
-    """What can be said without a value, the words up to the first value of all else, and the words of nodes."""
+_made: dict[int, tuple[TrieNode, _Phrases]] = {}  # the tries stay, so that no id is used again
+
+
+def _phrases(vocabulary: Lexicon) -> _Phrases:
+    """What can be said without a value, the words up to the first value of all else, and the words of nodes.
+
+    Made once for all vocabularies with the same words: each mission has one with names of its own.
+    """
+    trie = vocabulary.trie
+    return recent(_made, id(trie), lambda: (trie, _made_of(vocabulary)))[1]
+
+
+def _made_of(vocabulary: Lexicon) -> _Phrases:
     whole, heads = set(vocabulary.nodes.values()), set[str]()
     said = [phrase for entries in vocabulary.entries.values() for entry in entries for phrase in entry.phrases]
     for phrase in [*said, *(phrase for phrases in vocabulary.roles.values() for phrase in phrases)]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 import re
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Iterator
 from functools import cache, cached_property
 from typing import NamedTuple
@@ -36,7 +36,7 @@ def read(gbnf: str) -> dict[str, Node]:
 
 
 def _parsed(body: str) -> Node:
-    pieces: list[tuple[str, str]] = []
+    pieces: deque[tuple[str, str]] = deque()
     at = 0
     while at < len(body):
         match = _PIECE.match(body, at)
@@ -50,21 +50,21 @@ def _parsed(body: str) -> Node:
     return node
 
 
-def _choice(pieces: list[tuple[str, str]]) -> Node:
+def _choice(pieces: deque[tuple[str, str]]) -> Node:
     rows = [_row(pieces)]
     while pieces and pieces[0] == ("mark", "|"):
-        pieces.pop(0)
+        pieces.popleft()
         rows.append(_row(pieces))
     return rows[0] if len(rows) == 1 else Node("choice", parts=tuple(rows))
 
 
-def _row(pieces: list[tuple[str, str]]) -> Node:
+def _row(pieces: deque[tuple[str, str]]) -> Node:
     parts = []
     while pieces and pieces[0] not in (("mark", "|"), ("mark", ")")):
-        kind, piece = pieces.pop(0)
+        kind, piece = pieces.popleft()
         if (kind, piece) == ("mark", "("):
             node = _choice(pieces)
-            if not pieces or pieces.pop(0) != ("mark", ")"):
+            if not pieces or pieces.popleft() != ("mark", ")"):
                 raise ValueError("a bracket is not closed")
         elif kind == "text":
             node = Node("text", _ESCAPE.sub(lambda found: {"n": "\n"}.get(found[1], found[1]), piece))
@@ -73,7 +73,7 @@ def _row(pieces: list[tuple[str, str]]) -> Node:
         else:
             raise ValueError(f"unexpected {piece}")
         while pieces and pieces[0][0] == "mark" and pieces[0][1] in "?*+":
-            node = Node(pieces.pop(0)[1], parts=(node,))
+            node = Node(pieces.popleft()[1], parts=(node,))
         parts.append(node)
     return parts[0] if len(parts) == 1 else Node("joined", parts=tuple(parts))
 
@@ -127,13 +127,15 @@ class Sampler:
     `used` counts the uses of each rule.
     """
 
-    def __init__(self, gbnf: str, seed: int) -> None:
-        self.rules = read(gbnf)
+    def __init__(self, rules: dict[str, Node], seed: int) -> None:
+        self.rules = rules
         self.used: Counter[str] = Counter()
         self._random = random.Random(seed)
         self._depths = self._least_depths()
         self._taken: Counter[tuple[int, int]] = Counter()
         self._steps: dict[str, dict[str, int]] = {}
+        self._within: dict[int, tuple[str, ...]] = {}
+        self._shallow: dict[int, list[int]] = {}
         self._target = ""
 
     def sentence(self, target: str = "") -> str:
@@ -164,32 +166,48 @@ class Sampler:
         """The alternative with the fewest uses, among those that are not too deep; of equal ones any."""
         places = list(range(len(node.parts)))
         if depth > _DEEPEST:
-            least = min(self._depth(node.parts[place]) for place in places)
-            places = [place for place in places if self._depth(node.parts[place]) == least]
+            places = self._shallowest(node)
         uses = {place: self._taken[id(node), place] + self._random.random() for place in places}
         return min(uses, key=lambda each: uses[each])
 
+    def _shallowest(self, node: Node) -> list[int]:
+        """The alternatives that are the least deep."""
+        if id(node) not in self._shallow:
+            depths = [self._depth(part) for part in node.parts]
+            least = min(depths)
+            self._shallow[id(node)] = [place for place, depth in enumerate(depths) if depth == least]
+        return self._shallow[id(node)]
+
     def _distance(self, node: Node) -> float:
         """Through how many rules it is to the target."""
-        if node.kind == "name":
-            return self._steps_to(self._target).get(node.text, float("inf"))
-        return min(map(self._distance, node.parts), default=float("inf"))
+        steps = self._steps_to(self._target)
+        return min((steps[name] for name in self._names(node) if name in steps), default=float("inf"))
 
     def _steps_to(self, target: str) -> dict[str, int]:
         """From each rule that leads there."""
         if target not in self._steps:
-            steps, latest = {target: 0}, {target}
+            steps, latest, step = {target: 0}, {target}, 0
             while latest:
-                step = 1 + max(steps.values())
-                latest = {name for name in self.rules if name not in steps and self._names[name] & latest}
+                step += 1
+                latest = {name for each in latest for name in self._users.get(each, ()) if name not in steps}
                 steps |= dict.fromkeys(latest, step)
             self._steps[target] = steps
         return self._steps[target]
 
+    def _names(self, node: Node) -> tuple[str, ...]:
+        """The rules that a node of the rules uses."""
+        if id(node) not in self._within:
+            self._within[id(node)] = tuple(dict.fromkeys(_names_in(node)))
+        return self._within[id(node)]
+
     @cached_property
-    def _names(self) -> dict[str, set[str]]:
-        """The rules that each rule uses."""
-        return {name: set(_names_in(node)) for name, node in self.rules.items()}
+    def _users(self) -> dict[str, set[str]]:
+        """The rules that use each rule."""
+        users: dict[str, set[str]] = {}
+        for name, node in self.rules.items():
+            for used in self._names(node):
+                users.setdefault(used, set()).add(name)
+        return users
 
     def _depth(self, node: Node) -> float:
         """How many rules deep the shortest derivation is."""

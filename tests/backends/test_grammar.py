@@ -50,13 +50,23 @@ UNKNOWABLE = {
 
 
 @cache
+def grammar(to: str, language: str = "en") -> str:
+    return GRAMMARS[to](WORDS if language == "en" else world_vocabulary(language=language))
+
+
 def gbnf() -> str:
-    return GRAMMARS["gbnf"](WORDS)
+    return grammar("gbnf")
+
+
+@cache
+def rules_of(language: str = "en") -> dict[str, Node]:
+    """Those of the grammar in GBNF. Nobody changes them."""
+    return read(grammar("gbnf", language))
 
 
 def phrases() -> list[str]:
     """The rules of phrases: each ends in the number that the phrase has in its entry."""
-    return [name for name in read(gbnf()) if re.search(r"-\d+$", name) and not name.startswith(("beside-", "word-"))]
+    return [name for name in rules_of() if re.search(r"-\d+$", name) and not name.startswith(("beside-", "word-"))]
 
 
 def codes(text: str, parser: str, language: str = "en") -> list[str]:
@@ -69,7 +79,7 @@ def codes(text: str, parser: str, language: str = "en") -> list[str]:
 @pytest.mark.long
 def test_both_parsers_read_what_the_grammar_makes() -> None:
     count = amount(800, 10_000)
-    sampler = Sampler(gbnf(), seed=20)
+    sampler = Sampler(rules_of(), seed=20)
     found: Counter[str] = Counter()
     for _ in range(count):
         text = sampler.sentence()
@@ -89,7 +99,7 @@ def test_every_phrase_and_every_form_has_a_rule() -> None:
     only_at_line_start = {phrase for phrase in actions if "is" in phrase.split()}
     said = [phrase for entry in entries for phrase in entry.phrases if phrase not in only_at_line_start]
     assert len(phrases()) == len(said)
-    assert read(gbnf()).keys() >= FORMS.keys() - {"mission"}
+    assert rules_of().keys() >= FORMS.keys() - {"mission"}
 
 
 def test_every_role_that_can_stand_in_one_line_has_a_rule() -> None:
@@ -107,13 +117,13 @@ def test_every_role_that_can_stand_in_one_line_has_a_rule() -> None:
         "furthest", "leftmost", "rightmost",
     }  # fmt: skip
     roles = {role.replace("_", "-") for role in WORDS.roles if role not in elsewhere}
-    rules = read(gbnf()).keys()
+    rules = rules_of().keys()
     assert not [role for role in sorted(roles) if not any(name.startswith(f"word-{role}") for name in rules)]
 
 
 def test_no_rule_begins_with_itself() -> None:
     """llama.cpp refuses such a grammar."""
-    rules = read(gbnf())
+    rules = rules_of()
     firsts = {name: set(first_names(node)) for name, node in rules.items()}
     for _ in range(20):  # rules in each other
         firsts = {name: found.union(*(firsts[other] for other in found)) for name, found in firsts.items()}
@@ -138,7 +148,7 @@ def test_the_rules_of_the_page_are_real() -> None:
 
 @pytest.mark.parametrize("to", ["gbnf", "ebnf"])
 def test_every_rule_that_is_used_is_there(to: str) -> None:
-    text = re.sub(r"\"(?:\\.|[^\"\\])*\"|'[^']*'|\[[^\]]*\]|#xA", " ", GRAMMARS[to](WORDS))
+    text = re.sub(r"\"(?:\\.|[^\"\\])*\"|'[^']*'|\[[^\]]*\]|#xA", " ", grammar(to))
     lines = [line.partition("::=") for line in text.splitlines()]
     defined = {head.strip() for head, _, _ in lines}
     used = {word for _, _, body in lines for word in re.findall("[a-z][a-z0-9-]*", body)}
@@ -224,12 +234,12 @@ def test_the_grammar_makes_what_is_printed(node: str) -> None:
     text = str(parse_tree(xml).to("english"))
     said = "\n".join(line for line in text.splitlines() if not line.startswith("#:"))
     said = said.partition('"r4"\n')[2]  # a mission has one of both: a name or values from outside
-    assert accepts(read(gbnf()), said), said
+    assert accepts(rules_of(), said), said
 
 
 @pytest.mark.long
 def test_nodes_with_ports_and_values_from_outside_can_run() -> None:
-    sampler = Sampler(gbnf(), seed=5)
+    sampler = Sampler(rules_of(), seed=5)
     rules = ("named", "further", "exact-ports", "given-values", "keyed-n1", "keyed-n2", "is-keyed-n2")
     for number in range(amount(70, 2000)):
         text = sampler.sentence(rules[number % len(rules)])
@@ -241,7 +251,7 @@ def test_nodes_with_ports_and_values_from_outside_can_run() -> None:
 
 @pytest.mark.long
 def test_missions_in_spanish_are_read() -> None:
-    sampler = Sampler(GRAMMARS["gbnf"](world_vocabulary(language="es")), seed=3)
+    sampler = Sampler(rules_of("es"), seed=3)
     for _ in range(amount(100, 1000)):
         text = sampler.sentence()
         assert UNKNOWABLE.keys() >= set(codes(text, "lark", "es")), text
@@ -249,7 +259,7 @@ def test_missions_in_spanish_are_read() -> None:
 
 @cache
 def schema() -> Any:
-    made = json.loads(GRAMMARS["json-schema"](WORDS))
+    made = json.loads(grammar("json-schema"))
     Draft202012Validator.check_schema(made)
     return Draft202012Validator(made)
 

@@ -17,13 +17,14 @@ import re
 import traceback
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
 from btlang.cli.examples import examples
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError
-from btlang.frontends.mission.reader import read_mission
+from btlang.frontends.mission.reader import lexed, read_mission
 from btlang.passes import compile_mission, errors_of
 from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.text.source import Source
@@ -78,7 +79,15 @@ def pool() -> tuple[Mission, ...]:
         told = [match[1] for match in _BLOCK.finditer(text)]
         told += [next(part for part in match.groups() if part) for match in _SENTENCE.finditer(text)]
         found += [Mission(page.name, part, None) for part in dict.fromkeys(told) if len(part.split()) > 2]
-    return tuple({m.text: m for m in found if compiled(m.text, m.world).tree is not None}.values())
+    return tuple({m.text: m for m in found if is_sound(m)}.values())
+
+
+def is_sound(mission: Mission) -> bool:
+    """Whether it compiles. What has unknown words doesn't, and to explain these takes most of the time."""
+    with suppress(MissionError):
+        tokens = lexed(Source(mission.text), vocabulary(mission.world)).tokens
+        return all(token.kind != "unknown" for token in tokens) and compiled(*mission[1:]).tree is not None
+    return False
 
 
 @cache

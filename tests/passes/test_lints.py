@@ -328,3 +328,8 @@ def test_what_an_action_says_of_itself() -> None:
     weld = Entry("action", "Weld", ("weld",), call, uninterruptible=True)
     tree = parse_tree("spin quickly forever; weld for 5 s # allow: never runs", keywords=[spin, weld])
     assert [warning.code for warning in tree.warnings] == ["BT053", "BT054"]
+
+
+def test_a_time_far_inside_takes_no_time_of_its_square() -> None:
+    deep = "(" * 5_000 + "wave until 5 pm. At 5 pm, nod" + " then nod) twice" * 5_000
+    assert warned(deep) == ["BT169"]  # half a minute, when each command looked for a time in all that is in it

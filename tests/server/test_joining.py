@@ -24,8 +24,10 @@ from tests.task.layers import LONG, wait_until
 
 @pytest.fixture
 def kim(door: Door, joined: Elsewhere) -> Elsewhere:
-    """One for all tests, which is up again, and may move."""
+    """One for all tests, which is up again, may move, and has nothing left to do of the test before."""
     wait_until(lambda: is_up(door, "kim"))
+    for task in command(door, "kim", command="list").data["data"]["tasks"]:
+        command(door, "kim", command="cancel", task=task["id"])  # refused where it has ended
     assert command(door, "kim", command="release").data["ok"]
     return joined
 

@@ -8,7 +8,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
@@ -17,6 +17,10 @@ from btlang.passes.lint.other_readings import Readings
 from btlang.passes.lint.two_readings import make_printer, make_warning
 from btlang.tree import ast
 from btlang.vocabulary.lexicon import Lexicon
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
 
 _ENDLESS = "-1"
 _HALF, _WHOLE = "TurnAround", "TurnOnceAround"
@@ -62,18 +66,33 @@ def _ways_back(chain: ast.Chain, compilation: Compilation) -> Iterator[Diagnosti
 def find_next_day(compilation: Compilation) -> Iterator[Diagnostic]:
     """Search commands one after the other, in the mission and in definitions."""
     for body in ast.bodies(compilation.mission):
-        for node in compilation.syntax(body):
+        nodes = compilation.syntax(body)
+        if not any(isinstance(node, ast.WaitTime) for node in nodes):
+            continue
+        waits, ends = _first_inside(nodes, ast.WaitTime), _first_inside(nodes, ast.UntilTime | ast.WaitTime)
+        for node in nodes:
             if type(node) is not ast.Chain or node.operator != "sequence":
                 continue
             ended = ""
             for item in node.items:
-                wait = next((each for each in ast.parents_first(item) if isinstance(each, ast.WaitTime)), None)
+                wait = waits.get(id(item))
                 if wait is not None and ended and ended in wait.time.split(";"):
                     yield diagnostic("BT169", wait.span, words=wait.span.text)
                 if isinstance(item, ast.Whenever):
                     continue
-                ends = (each.time for each in ast.parents_first(item) if isinstance(each, ast.UntilTime | ast.WaitTime))
-                ended = next(ends, "")
+                end = ends.get(id(item))
+                ended = "" if end is None else end.time
+
+
+def _first_inside(nodes: Sequence[ast.Ast], kinds: Any) -> dict[int, Any]:
+    """Return, by the id of each node of a tree (parents first), the first one of these kinds in it, if there is one."""
+    found: dict[int, Any] = {}
+    for node in reversed(nodes):
+        parts = (found[id(part)] for part in ast.parts(node) if id(part) in found)
+        first = node if isinstance(node, kinds) else next(parts, None)
+        if first is not None:
+            found[id(node)] = first
+    return found
 
 
 def find_restarts(compilation: Compilation) -> Iterator[Diagnostic]:
