@@ -21,7 +21,7 @@ def problems(text: str) -> list[Diagnostic]:
         ("the kitchen", "BT019", ""),
         ("wave then the lab", "BT019", ""),
         ("to the kitchen", "BT154", "'to the kitchen' is only a part of a command or condition."),
-        ("go the kitchen", "BT012", "After 'go' I expected 'to' or 'into'."),
+        ("go the kitchen", "BT012", "After 'go' I expected 'to', 'around' or 'into'."),
         ("if battery below 20%, dock", "BT012", "After 'battery' I expected 'is'."),
     ],
 )

@@ -17,7 +17,7 @@ from btlang.frontends.mission.token import (
 )
 from btlang.frontends.mission.tokens.rules_inside import ON_WAY
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, hears, searches
-from btlang.frontends.mission.tokens.settling import FAILS, MEASURES, WORKS, asked_about, is_about, settle
+from btlang.frontends.mission.tokens.settling import FAILS, MEASURES, TURNED, WORKS, asked_about, is_about, settle
 from btlang.text.source import Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
 from btlang.vocabulary.match import Match
@@ -132,8 +132,15 @@ class GoingOn(SentenceReader):
         if role == FAILS and WORKS in kinds and self._denies_what_worked(words):
             return "otherwise"
         if WORKS in kinds if role == FAILS else FAILS in kinds and WORKS not in kinds:
-            self._unclear(words)
+            if role != "otherwise" or not kinds.isdisjoint(FORMS):
+                self._unclear(words)
         return role
+
+    def turns(self, otherwise: Token) -> None:
+        """`A. If that fails, B. Otherwise C`: C is done if A works; see `turn_branches`."""
+        kinds = self._statement(len(self._tokens) - 1)[1]
+        if FAILS in kinds and WORKS not in kinds and kinds.isdisjoint(FORMS):
+            otherwise.role = TURNED
 
     def check_asked(self, match: Match, at: int) -> None:
         """BT145 for `wave or, if he doesn't answer, nod`."""

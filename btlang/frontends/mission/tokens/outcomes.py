@@ -56,6 +56,8 @@ class Outcomes(GoingOn):
         if role in (FAILS, "if_unanswered", "otherwise"):
             token.kind = "or" if role != "otherwise" else role
             token.value = FAILS if said != "otherwise" else None
+        if role == said == "otherwise":
+            self.turns(token)
         if said == "if_unanswered" and at not in self._text.going_on:
             self.check_asked(match, at)
             self.try_question(len(self._tokens) - 1)

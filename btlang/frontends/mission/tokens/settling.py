@@ -15,6 +15,7 @@ from btlang.frontends.mission.token import (
     Token,
     drives,
     run_start,
+    statement_end,
     statement_start,
     texts_of,
 )
@@ -22,6 +23,8 @@ from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.references import ALL, choice_of
 
 FAILS, WORKS = "if_fails", "if_works"
+TURNED = "turned"
+"""The role of an `otherwise` behind words about a failure."""
 MEASURES = frozenset(("for", "up_to", "within", "count"))
 """What may stand between a command and the words that ask how it went."""
 _WAITING = ("wait_until", "wait_for", "wait_up_to")
@@ -83,6 +86,24 @@ def settle(tokens: list[Token], at: int) -> str:
         before = [*before[:joint], Token("semi", before[joint - 1].end, before[joint - 1].end)]
     tokens[first:end] = [*before, *made]
     return "otherwise" if rest else FAILS
+
+
+def turn_branches(tokens: list[Token]) -> None:
+    """Make `A. If that fails, B. Otherwise C` into `A. If that works, C. Otherwise B`."""
+    ends = JOINTS | STATEMENT_ENDS
+    for at, token in enumerate(tokens):
+        if token.kind != "otherwise" or token.role != TURNED:
+            continue
+        form = next(i for i in reversed(range(at)) if tokens[i].value == FAILS)
+        end = statement_end(tokens, at)
+        failing = tokens[form + 1 : run_start(tokens, at, ends)]
+        working = tokens[at + 1 : run_start(tokens, end, STATEMENT_ENDS)]
+        failing, working = (part[part[:1] != [] and part[0].kind == "comma" :] for part in (failing, working))
+        here, there = tokens[form].start, token.start
+        tokens[run_start(tokens, form, ends) : end] = [
+            Token("stop", here, here), Token(WORKS, here, here), *working,
+            Token("stop", there, there), Token("otherwise", there, token.end), *failing,
+        ]  # fmt: skip
 
 
 def _is_sequence(before: Sequence[Token]) -> bool:
