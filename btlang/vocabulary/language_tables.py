@@ -39,9 +39,9 @@ CHANGING = ("increase", "decrease")
 ASKING = (
     "journey", "search", "whereabouts", "whether", "any_place", "searching", "making_sure", "counting", "asking_be",
     "asking_do", "answers", "silence", "any_answer", "feeling", "there", "very", "states", "subject", "been", "towards",
-    "going", "coming", "letting", "finding_out", "inspecting", "telling", "lasting", "whole", "located", "wishing",
-    "wished", "fetching", "begging", "home", "pleading", "saying_that", "plea", "reminding", "reminder", "addressed",
-    "informing", "informed", "staying", "resuming", "interrupting", "and_back",
+    "going", "coming", "letting", "hours", "time_is", "finding_out", "inspecting", "telling", "lasting", "whole",
+    "located", "wishing", "wished", "fetching", "begging", "home", "pleading", "saying_that", "plea", "reminding",
+    "reminder", "addressed", "informing", "informed", "staying", "resuming", "interrupting", "and_back",
     "if_yes", "if_no", "told_of", "standing", "able", "unable", "reaching", "finishing", "waiting", "apiece",
     "between_joint",    "standing_verbs", "events", "duties", "reasons", "performing", "naming", "named_as",
 )  # fmt: skip

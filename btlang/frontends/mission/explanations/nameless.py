@@ -19,7 +19,7 @@ from btlang.vocabulary.references import ALL
 from btlang.vocabulary.value_type import ValueType
 
 _MOST_NAMES = 12  # that a message lists
-_KIND_NAMES = {"kinds": "kind"}
+KIND_NAMES = {"kinds": "kind"}
 """What messages call types whose names are no words for people."""
 
 
@@ -64,7 +64,7 @@ def _misfit(text: Words, value: SlotValue, reason: str, advice: str) -> Diagnost
 def unnamed(span: Span, kinds: Sequence[ValueType], understood: str, vocabulary: Lexicon) -> Diagnostic:
     """BT013: nothing of these kinds has such a name."""
     known = list(dict.fromkeys(name for kind in kinds for name in vocabulary.values.said_names(kind.name)))
-    said = joined(list(dict.fromkeys(_KIND_NAMES.get(kind.name, kind.name) for kind in kinds)), "or")
+    said = joined(list(dict.fromkeys(KIND_NAMES.get(kind.name, kind.name) for kind in kinds)), "or")
     words = span.text.lower()
     near = nearest(words, known)
     if correct_words(vocabulary.word_list).issuperset(words.split()):  # `bedroom` is no slip of `door`

@@ -12,7 +12,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.explanations.fragments import explain_fragment
 from btlang.frontends.mission.explanations.lacking import not_two, unreferred, untold, value_example
 from btlang.frontends.mission.explanations.misfits import Misfit, misfits_of
-from btlang.frontends.mission.explanations.nameless import near_names, unnamed
+from btlang.frontends.mission.explanations.nameless import KIND_NAMES, near_names, unnamed
 from btlang.frontends.mission.explanations.roles import explain_role
 from btlang.frontends.mission.explanations.spelling_rule import is_respelling
 from btlang.frontends.mission.explanations.times import explain_time, without_hour
@@ -90,9 +90,10 @@ def explain_unknown(
         return time
     number = vocabulary.values.number(text, at)
     for _, kind, child in vocabulary.trie.get(SLOTS, ()):
-        if number is not None and text.words[number[1]] in child:  # `0 times`
+        is_measured = vocabulary.types[kind].kind != "names"
+        if number is not None and is_measured and text.words[number[1]] in child:  # `0 times`
             return _number_misfit(text, at, number, [vocabulary.types[kind]], "", "", kind, vocabulary)
-    if number is not None or text.words[at][0] == '"':
+    if (number is not None and not _asks(before)) or text.words[at][0] == '"':
         return diagnostic("BT019", text.span(at, end), example='say "hello"')
     goes_on = bool(before) and before[-1].kind == "command" and _ends_in_a_bare_text(before[-1])  # `say still here`
     part = None if goes_on else explain_fragment(text, at, end, _asks(before), vocabulary, context)
@@ -147,7 +148,8 @@ def _misfit(
 ) -> Diagnostic:
     at = misfits[0].at
     types = [vocabulary.types[misfit.kind] for misfit in misfits]
-    wanted = joined([f"{_article(kind.name)} {kind.name.replace('_', ' ')}" for kind in types], "or")
+    names = [KIND_NAMES.get(kind.name, kind.name.replace("_", " ")) for kind in types]
+    wanted = joined([f"{_article(name)} {name}" for name in names], "or")
     head = text.span(first, at).text
     example = f"{head} {value_example(types[0], vocabulary)}"
     if text.words[at] == "(" and end > at and any(kind.name == PLACE for kind in types):

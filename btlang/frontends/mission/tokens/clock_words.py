@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from btlang.frontends.mission.token import Called, OnDays, Token
+from bisect import bisect_left
+
+from btlang.frontends.mission.token import Called, OnDays, Token, constraint_of
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.frontends.mission.tokens.silent_words import BEGINS
 from btlang.text.time_of_day import WEEKDAYS
@@ -48,6 +50,36 @@ class ClockWords(SentenceReader):
         times = [time for each in found for time in each.values[0].texts]
         tokens.append(Token("at", text.starts[at], text.ends[found[-1].last - 1], ";".join(times)))
         return found[-1].last
+
+    def hours(self, at: int) -> int:
+        """`never enter the hall after 6 pm`, `... between 10 pm and 6 am`: while it is then."""
+        tokens, start = self._tokens, self._text.starts[at]
+        if not tokens or self._text.words[at] not in self._vocabulary.asking["hours"]:
+            return 0
+        if constraint_of(tokens[-1]) is None:
+            return 0
+        match = self._with_front(at, at, "time_is")
+        if match is None or match.meaning.role != "condition":
+            return 0
+        condition = self._calls.token(match, at)
+        condition.kind = "condition"
+        tokens += [Token("while", start, start), condition]
+        return match.last
+
+    def once_more(self, at: int) -> int:
+        """`count the people, wave and count again`: the latest command with this verb."""
+        again = self._phrase(at + 1)
+        if again is None or again.meaning.role != "again":
+            return 0
+        text = self._text
+        commands = (token for token in reversed(self._tokens) if token.kind == "command")
+        said = next(
+            (each for each in commands if text.words[bisect_left(text.starts, each.start)] == text.words[at]), None
+        )
+        if said is None:
+            return 0
+        self._tokens.append(Token("command", text.starts[at], text.ends[again.last - 1], said.value))
+        return again.last
 
     def _is_singular(self, days: SlotValue) -> bool:
         """Whether days are said by the names that they have, `Friday`: not `Fridays`, `weekdays`."""

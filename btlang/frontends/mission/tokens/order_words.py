@@ -92,6 +92,7 @@ class OrderWords(ClockWords, JourneyWords):
         text = self._text
         return (
             self._go_and_see(at)
+            or self.once_more(at)
             or self._start_of_leg(at)
             or self._pace(at)
             or self._journey_of_constraint(at)
