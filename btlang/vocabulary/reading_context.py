@@ -10,7 +10,7 @@ from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.entry import MANNER
 from btlang.vocabulary.nouns import Description
 from btlang.vocabulary.references import ALL, LATEST, NAMES, SELF, Choice, Parts, choice_of, is_one
-from btlang.vocabulary.value_type import DOOR, OBJECT, PLACE, WORLD, format_number
+from btlang.vocabulary.value_type import DOOR, OBJECT, PLACE, WORLD, ZONE, format_number
 from btlang.vocabulary.values import Values, key_of
 from btlang.vocabulary.word_tree import find
 
@@ -319,7 +319,9 @@ class ReadingContext:
     def _referred(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
         """What a pronoun stands for."""
         word, end = find(self.values.pronoun_words, text.words, at) or ("", at)
-        is_one = kind in self.pronouns.get(word, ())
+        types = self.pronouns.get(word, ())
+        is_region = ZONE in types and self.latest.get(ZONE, "") == self.latest.get(PLACE, "")
+        is_one = kind in types or (kind == PLACE and is_region)  # `avoid the lab while Bob is in it`
         if is_one and word in self.values.ones:
             return self._another(kind, text, end)
         if is_one and word in self.values.plural_pronouns and self._stands_for_several(kind):

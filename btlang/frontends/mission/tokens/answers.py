@@ -123,6 +123,8 @@ class Answers(AddressedTexts):
         """Remember of whom pronouns behind the answers to a question to nobody by name speak."""
         if is_question(command):
             self._met = self._context.latest.get(PERSON, "")
+            if not self._met and self._calls.speaks_of_people:
+                self._calls.note_nearest()  # `ask the visitor "Tea?" and wave at them`
 
     def note_answerer(self) -> None:
         """Make pronouns stand for who answers, whatever is done for another answer; else for the nearest person.

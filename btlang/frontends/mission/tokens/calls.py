@@ -247,6 +247,8 @@ class Calls:
             self._context.latest[value.type] = f"{{{choice.key}}}" if choice is not None else latest
             if value.type == PLACE and latest in self._vocabulary.values.listed(ZONE):
                 self._context.latest[ZONE] = latest  # `go to the lab, then leave it`
+            if value.type == ZONE and latest in self._vocabulary.values.listed(PLACE):
+                self._context.latest[PLACE] = latest  # `never enter the lab while Bob is in it`
 
     def _note_owners(self, value: SlotValue) -> None:
         """BT177 for each owner of whom it isn't known what they own: `my cup`, but not the cup called "my cup"."""

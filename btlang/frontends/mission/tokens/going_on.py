@@ -20,6 +20,7 @@ from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, hear
 from btlang.frontends.mission.tokens.settling import FAILS, MEASURES, TURNED, WORKS, asked_about, is_about, settle
 from btlang.text.source import Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
+from btlang.tree.answers import ASK
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.value_type import PLACE
 from btlang.vocabulary.word_tree import find
@@ -149,7 +150,11 @@ class GoingOn(SentenceReader):
     def _check_asked(self, words: Span) -> None:
         word = self._vocabulary.word
         if not self._asks():
-            example = f'ask "Tea?". {word(WORKS).capitalize()}, wave. {word("otherwise").capitalize()} nod'
+            said = next((token for token in reversed(self._tokens) if token.kind == "command"), None)
+            question = f'"{_question_in(said)}"'
+            verb = self._vocabulary.entry(ASK)
+            begin = verb.phrases[0].split()[0] if verb is not None else ""
+            example = f"{begin} {question}. {word(WORKS).capitalize()}, wave. {word('otherwise').capitalize()} nod"
             self._calls.problems.append(diagnostic("BT145", words, words=words.text.rstrip(","), example=example))
 
     def _unclear(self, words: Span) -> None:
@@ -300,6 +305,13 @@ class GoingOn(SentenceReader):
         word = self._vocabulary.word(FAILS if role == "otherwise" else role)
         one = f"... {word} {said}" if role == "then" else f"{word}, {said}"
         self._calls.problems.append(diagnostic("BT151", words, words=words.text, one=one, other=said))
+
+
+def _question_in(command: Token | None) -> str:
+    """Return the question that a command only says, `say "Who is there?"`, or one as an example."""
+    value = command.value if command is not None else None
+    said = value.arguments[-1][1] if isinstance(value, Called) and value.arguments else ""
+    return said if said.endswith("?") else "Tea?"
 
 
 def _words(text: str) -> list[str]:

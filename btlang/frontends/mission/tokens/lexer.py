@@ -11,7 +11,7 @@ from btlang.frontends.mission.token import Token
 from btlang.frontends.mission.tokens.condition_names import condition_names, settle
 from btlang.frontends.mission.tokens.ended_rules import with_ends
 from btlang.frontends.mission.tokens.rules_inside import with_rules_inside
-from btlang.frontends.mission.tokens.settling import turn_branches
+from btlang.frontends.mission.tokens.settling import turn_branches, with_rounds
 from btlang.frontends.mission.tokens.word_reader import WordReader
 from btlang.text.source import Source, Span
 from btlang.text.words import Words, split
@@ -49,6 +49,7 @@ class Lexer:
         self._words = WordReader(self.text, self.names, self.context, self.tokens, self.problems, explain)
         self._lines()
         turn_branches(self.tokens)
+        with_rounds(self.tokens)
         with_rules_inside(self.tokens)
         self.problems += with_ends(self.tokens, self.vocabulary, partial(Span, source))
         self.conditions = condition_names(self.tokens, self.names.included_conditions())

@@ -32,6 +32,7 @@ from btlang.vocabulary.entry import THEME
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.word_tree import find
 
+_DONE = frozenset(("command", "name", "wait", "wait_time", "condition", "close"))
 BEFORE_ASIDE = JOINTS | {"otherwise", "or"}
 """Raw kinds behind which words may say that the robot goes on with what it did."""
 
@@ -141,7 +142,7 @@ class OrderWords(ClockWords, JourneyWords):
             return end
         if not tokens or tokens[first].kind not in (*RULES, "if"):
             return 0
-        if found is not None and self._is_end(found[1]) and any(token.kind == "command" for token in tokens[-3:]):
+        if found is not None and self._is_end(found[1]) and any(token.kind in _DONE for token in tokens[-3:]):
             while tokens[-1].kind in JOINTS:
                 tokens.pop()
             if any(token.kind in ("command", "name") for token in tokens[:first]):

@@ -128,12 +128,10 @@ class PartialCommands:
     def add_third(self, at: int, other: Match | None) -> int:
         """A command in the third person: `the robot goes to the lab, then waves`."""
         tokens, text = self._tokens, self._text
-        if tokens and tokens[-1].kind in JOINTS:
-            before = _command_before(tokens)
+        if at == 0 or text.words[at - 1] not in self._vocabulary.asking["subject"]:
+            before = _command_before(tokens) if tokens and tokens[-1].kind in JOINTS else None
             if before is None or before.role != "third":
                 return 0
-        elif at == 0 or text.words[at - 1] not in self._vocabulary.asking["subject"]:
-            return 0
         match = doing(text, at, self._vocabulary.third_person, self._tries, self._context)
         if match is None or (other is not None and other.last >= match.last):
             return 0

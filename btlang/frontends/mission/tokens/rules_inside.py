@@ -34,6 +34,8 @@ def with_rules_inside(tokens: list[Token]) -> None:
     while at < len(tokens):
         if asks_if_blocked(tokens, at) and _is_event(tokens, at):
             tokens[at].kind, tokens[at].role = "whenever", ON_WAY
+        if tokens[at].kind == "whenever" and tokens[at].role != ON_WAY:
+            _front(tokens, at)
         is_rule = tokens[at].role == ON_WAY
         if is_rule or tokens[at].kind == _DOING:
             first = statement_start(tokens, at)
@@ -54,6 +56,19 @@ def asks_if_blocked(tokens: Sequence[Token], form: int) -> bool:
     if not isinstance(asked, Called) or asked.entry.id not in _BLOCKED:
         return False
     return _journey_before(tokens, form) is not None
+
+
+def _front(tokens: list[Token], rule: int) -> None:
+    """Put a rule for the time of the commands before it in front: `stay at the door until noon and wave whenever C`."""
+    first, end = statement_start(tokens, rule), statement_end(tokens, rule)
+    joint = run_start(tokens, rule - 1, JOINTS)
+    condition = tokens[rule + 1 : run_start(tokens, end, STATEMENT_ENDS)]
+    is_command = rule > 0 and tokens[rule - 1].kind == "command"
+    if not is_command or not first < joint < rule - 1 or any(each.kind not in _IN_CONDITIONS for each in condition):
+        return
+    done, here = tokens[rule - 1], tokens[rule].start
+    made = [tokens[rule], *condition, Token("comma", here, here), done]
+    tokens[first:end] = _made(tokens[first:end], tokens[first:joint], made)
 
 
 def _journey_before(tokens: Sequence[Token], form: int) -> Called | Listed | None:

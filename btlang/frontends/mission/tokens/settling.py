@@ -106,6 +106,20 @@ def turn_branches(tokens: list[Token]) -> None:
         ]  # fmt: skip
 
 
+def with_rounds(tokens: list[Token]) -> None:
+    """Make `go to the lab every hour and wave` into `every hour, go to the lab and wave`: a task has no end else."""
+    for at, token in enumerate(tokens):
+        if token.kind != "every" or tokens[at + 1 : at + 2] == [] or tokens[at + 1].kind != "and":
+            continue
+        first, end = statement_start(tokens, at), run_start(tokens, statement_end(tokens, at), STATEMENT_ENDS)
+        if first == at or any(each.kind not in _SIMPLE for each in (*tokens[first:at], *tokens[at + 1 : end])):
+            continue
+        value = tokens[at - 1].value
+        if isinstance(value, Called | Listed) and not value.entry.accompaniment:
+            start = tokens[first].start
+            tokens[first : at + 1] = [token, Token("comma", start, start), *tokens[first:at]]
+
+
 def _is_sequence(before: Sequence[Token]) -> bool:
     """Whether commands are done before another one, whatever they are joined with."""
     if any(token.kind not in _SIMPLE for token in before) or all(token.kind in JOINTS for token in before):

@@ -69,7 +69,8 @@ def without_meaning(
     if going is not None and going[1] not in text.articles:
         follows = longest(vocabulary.trie, text, going[1], context)
         is_command = follows is not None and follows.meaning.role == "command"
-        if is_command or find(vocabulary.telling, text.words, going[1]) is not None:
+        joins = text.words[going[1] - 1] in vocabulary.roles["and"]
+        if is_command or (joins and follows is None) or find(vocabulary.telling, text.words, going[1]) is not None:
             begin, end = text.starts[at], text.ends[going[1] - 1]
             if text.words[at] in vocabulary.asking["coming"] and not _goes(follows):
                 here = vocabulary.entry(_COME)

@@ -185,6 +185,7 @@ class Tries(SentenceReader):
             return 0
         if amount is not None and amount.meaning.role in _IN_ALL:
             self._doubt_questions(asked, self._text.span(at, amount.last), self._text.span(behind, amount.last).text)
+            self._tokens.append(Token("command", self._text.starts[at], self._text.ends[amount.last - 1], asked.value))
             return amount.last
         self._tokens.append(Token("command", self._text.starts[at], self._text.ends[match.last - 1], asked.value))
         last = amount.last if amount is not None and amount.meaning.role == "once" else match.last
@@ -195,9 +196,12 @@ class Tries(SentenceReader):
         """BT151 for `if he says no, ask again, at most 3 times`: what is done on the later answers isn't said."""
         word, text = self._vocabulary.word, self._text.source.text
         question, again = text[asked.start : asked.end], words.text.removesuffix(number).rstrip(" ,")
-        answer = next(filter(is_answer, self._tokens), None)
+        answer = next(filter(is_answer, reversed(self._tokens)), None)
         if answer is not None:
-            question = f"{question} {word('and')} {word('check')} {text[answer.start : answer.end]}"
+            said, (yes, no) = text[answer.start : answer.end], self._vocabulary.asking["answers"]
+            is_otherwise = any(token.kind == "otherwise" for token in self._tokens[self._tokens.index(answer) :])
+            said = said if is_otherwise else said.removesuffix(no) + yes if said.endswith(f" {no}") else ""
+            question += f" {word('and')} {word('check')} {said}" if said else ""
         one = f"{question}, {number}. {word(FAILS).capitalize()}, ..."
         self._calls.problems.append(diagnostic("BT151", words, words=words.text, one=one, other=again))
 
