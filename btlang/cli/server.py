@@ -134,7 +134,8 @@ def listener_path() -> str:
 
 def _write_listener(certificate: Certificate | None, port: int) -> None:
     """Write the pin and the port for `btc robot invite`, which is another process."""
-    from btlang.server.accounts.certificate import pin_of, write_private
+    from btlang.server.accounts.certificate import pin_of
+    from btlang.support.private_file import write_private
 
     with suppress(FileNotFoundError):
         os.unlink(listener_path())

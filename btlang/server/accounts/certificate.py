@@ -1,4 +1,4 @@
-"""The certificate of a server that nobody else vouches for, and files for their owner alone."""
+"""The certificate of a server that nobody else vouches for."""
 
 from __future__ import annotations
 
@@ -14,20 +14,8 @@ from cryptography.hazmat.primitives import hashes, serialization
 from cryptography.hazmat.primitives.asymmetric import ec
 from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
+from btlang.support.private_file import write_private
 from btlang.support.record import Record
-
-
-def write_private(path: str, data: bytes) -> None:
-    """Write a file that only its owner can read, whole or not at all. Raises OSError."""
-    part = f"{path}.{os.getpid()}"
-    descriptor = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
-    try:
-        os.write(descriptor, data)
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
-    os.replace(part, path)
-
 
 _DAYS, _RENEWED = 365, 30  # days that one is valid, and before its end when it is renewed
 

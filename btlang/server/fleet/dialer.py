@@ -21,11 +21,12 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, WebSocketException
 
 from btlang.diagnostics.files import os_error_reason
-from btlang.server.accounts.certificate import pin, write_private
+from btlang.server.accounts.certificate import pin
 from btlang.server.fleet.fleet import pin_in
 from btlang.server.http.access import AccessError
 from btlang.server.live.robot_connection import STREAM, LocalConnection
 from btlang.server.page.recordings import list_recordings, piece
+from btlang.support.private_file import write_private
 from btlang.support.record import Record
 from btlang.text.formatting import one_line
 from btlang.text.output import show

@@ -16,8 +16,8 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.diagnostics.files import os_error_reason
-from btlang.server.accounts.certificate import write_private
 from btlang.server.http.app import MOST_HEAD, Api
+from btlang.support.private_file import write_private
 from btlang.text.source import NOWHERE
 
 TYPE_CHECKING = False

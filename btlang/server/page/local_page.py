@@ -24,12 +24,12 @@ from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.editing.words import RobotWords
 from btlang.run.terminal import interrupted_by_signals
 from btlang.server.accounts.accounts import Accounts, Identity, UserRole
-from btlang.server.accounts.certificate import write_private
 from btlang.server.http.access import AccessError, address_of, is_same_site, json_object, text_in
 from btlang.server.http.app import Api
 from btlang.server.http.listener import open_listener, web_server
 from btlang.server.http.pages import BUILT
 from btlang.server.live.robot_feeds import RobotFeed, RobotFeeds
+from btlang.support.private_file import write_private
 from btlang.text.output import show
 from btlang.text.source import NOWHERE
 
