@@ -336,7 +336,13 @@ class Lexicon:
             self._wrong(entry, f"{entry.id} has no slot {{{name}}}")
         said = {"quantity" if known[0].measures else "phrases": phrases}
         made: Entry = known[0].replace(
-            **{"phrases": (), **said}, call="", ros=None, replaces=False, span=entry.span, verbs=verbs
+            **{"phrases": (), **said},
+            call="",
+            ros=None,
+            replaces=False,
+            span=entry.span,
+            verbs=verbs,
+            yields=entry.yields,
         )
         made = self._with_comparisons(made) if made.measures else made
         return made if used <= slots else None

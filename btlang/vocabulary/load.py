@@ -135,7 +135,11 @@ def _after_yielding(files: Sequence[KeywordFile], entries: Iterable[Entry]) -> l
         return entry.replace(accompaniment=True) if entry.id in marked else entry
 
     return [
-        file.replace(entries=tuple(kept(entry) for entry in file.entries if not (entry.yields and entry.id in taken)))
+        file.replace(
+            entries=tuple(
+                kept(entry) for entry in file.entries if not (entry.call and entry.yields and entry.id in taken)
+            )
+        )
         for file in files
     ]
 

@@ -23,7 +23,7 @@ HEAD = 'test "t":\n  run:\n    round is nod\n    wave then go to the lab then ro
 @pytest.mark.parametrize(
     ("line", "code"),
     [
-        ("eventually it waves", "BT010"),
+        ("eventually it waves", "BT029"),
         ("within it has said hello", "BT180"),
         ("within 5 m it has said hello", "BT180"),
         ("within 5 s", "BT180"),

@@ -83,9 +83,10 @@ class _VocabularyRules:
     def _leaves(self) -> Iterator[_Leaf]:
         articles, roles = self._vocabulary.articles, self._vocabulary.roles
         defining = {*roles["define"], *roles["define_strong"]}
-        for entry in chain.from_iterable(self._vocabulary.entries.values()):
-            kinds = {slot.name: slot.type for slot in entry.slots}
-            for number, phrase in enumerate(entry.phrases, 1):
+        for entries in self._vocabulary.entries.values():
+            phrases = ((entry, phrase) for entry in entries for phrase in entry.phrases)
+            for number, (entry, phrase) in enumerate(phrases, 1):
+                kinds = {slot.name: slot.type for slot in entry.slots}
                 said = forms(phrase, articles)
                 if entry.sort == "action":  # `the stairs is closed` is a command only at the start of a line
                     said = tuple(form for form in said if not defining.intersection(map(str, form)))
