@@ -152,7 +152,8 @@ class _VocabularyRules:
         def in_slot(slot: str) -> Part:
             return Text(value) if value else RuleName(_rule_of(slot))
 
-        phrases = [phrase for phrase in vocabulary.roles.get(role, ()) if phrase not in vocabulary.meanings]
+        unsure = {*vocabulary.meanings, *vocabulary.asking["making_sure"]}  # what these say depends on what follows
+        phrases = [phrase for phrase in vocabulary.roles.get(role, ()) if phrase not in unsure]
         ways = [self._row(form, in_slot) for phrase in phrases for form in forms(phrase, vocabulary.articles)]
         if role == "count":
             ways += [Text(word) for word, rounds in vocabulary.counts.items() if rounds > 0]
