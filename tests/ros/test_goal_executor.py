@@ -297,7 +297,17 @@ def test_some_of_them():
         "ReportBack",
         "SpeakLanguage",
         "Print",
-        *("Ask", "ListenForYesOrNo", "ListenFor", "Obey", "CallStaff", "RaiseAlarm", "GreetPerson", "TellPerson"),
+        *(
+            "Ask",
+            "ListenForYesOrNo",
+            "ListenFor",
+            "Obey",
+            "CallStaff",
+            "RaiseAlarm",
+            "GreetPerson",
+            "TellPerson",
+            "CountAloud",
+        ),
         "MoveForward",
         "TurnLeft",
     ]
