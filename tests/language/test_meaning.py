@@ -98,6 +98,7 @@ def test_numbers_that_are_said(sentence: str, tree: str) -> None:
         ("whenever bumped, wave\nOtherwise go to the lab", "BT151"),
         ("go to the lab. If that fails, try again twice, and then wave", "BT151"),
         ("repeat: wave until bumped, at most 4 times", "BT151"),
+        ("turn left up to 8 times until you see the book", "BT151"),
         ("wave or, if he doesn't answer, nod", "BT145"),
         ("go to the lab and the hall twice, and say hi in each room", "BT021"),
         ("pick up the book. If it is below 50%, wave", "BT010"),

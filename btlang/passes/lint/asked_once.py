@@ -67,8 +67,6 @@ def _sentence_before(items: Sequence[ast.Ast], at: int) -> Sequence[ast.Ast]:
 def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> Iterator[Diagnostic]:
     """Report a condition that decides about the journey before it, or watches what happens on it."""
     asked = node.condition.condition if isinstance(node.condition, ast.Not) else node.condition
-    if not isinstance(asked, ast.Phrase):
-        return
     timed = before[-1] if before and node.body.span.start > node.condition.span.start else None
     while isinstance(timed, ast.UntilTime | ast.For) and isinstance(timed.body, ast.Every):
         timed = timed.body
@@ -86,18 +84,26 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
     if not (is_timed or journeys):
         return
     last = before[-1].span.text
-    is_watched = asked.entry.id in _WHILE_DRIVING or (asked is not node.condition and asked.entry.id == _FREE)
-    is_watched = is_watched or (_is_low(asked) and any(map(_drives, ast.parents_first(node.body))))
-    is_driving = is_watched and any("navigation" in each.entry.needs for each in journeys)
-    if is_timed or is_driving or asked.entry.id in _ON_THE_WAY:
+    is_driving = isinstance(asked, ast.Phrase) and _is_about_driving(asked, node, journeys)
+    if is_timed or is_driving:
         each = f"{vocabulary.word('whenever')} {node.span.text[len(words.split(maxsplit=1)[0]) :].lstrip()}"
         advice = f"'{last}' is over by then. To do it {'meanwhile' if is_timed else 'on the way'}, write: {each}"
         yield diagnostic("BT068", node.span, words=words, advice=advice).replace(readings=((node.span, each),))
-    elif isinstance(node.condition, ast.Not) and any(
-        _find_things(journey) & _find_things(asked) for journey in journeys
+    elif (
+        isinstance(asked, ast.Phrase)
+        and isinstance(node.condition, ast.Not)
+        and any(_find_things(journey) & _find_things(asked) for journey in journeys)
     ):
         advice = f"'{last}' comes first, and fails if it can't be done. What decides about it stands before it."
         yield diagnostic("BT068", node.span, words=words, advice=advice)
+
+
+def _is_about_driving(asked: ast.Phrase, node: ast.If, journeys: Sequence[ast.Phrase]) -> bool:
+    """Return whether a condition is about what happens on journeys, and not at their end."""
+    is_watched = asked.entry.id in _WHILE_DRIVING or (asked is not node.condition and asked.entry.id == _FREE)
+    is_watched = is_watched or (_is_low(asked) and any(map(_drives, ast.parents_first(node.body))))
+    is_driving = is_watched and any("navigation" in each.entry.needs for each in journeys)
+    return is_driving or asked.entry.id in _ON_THE_WAY
 
 
 def _drives(node: ast.Ast) -> TypeGuard[ast.Phrase]:

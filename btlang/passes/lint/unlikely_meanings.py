@@ -2,7 +2,7 @@
 
 - `turn around three times` are half turns, as most people mean whole turns;
 - `turn around and drive back 1 m`: backwards, or the way back that the robot faces then;
-- `A until 5 pm. At 5 pm, B` waits for the next day;
+- `A until 5 pm. At 5 pm, B`, and `... At 4 pm, B`, wait for the next day;
 - `go to the lab until someone is near` starts again, though the command comes to an end by itself.
 """
 
@@ -15,6 +15,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
 from btlang.passes.lint.other_readings import Readings
 from btlang.passes.lint.two_readings import make_printer, make_warning
+from btlang.text.time_of_day import seconds_of
 from btlang.tree import ast
 from btlang.vocabulary.lexicon import Lexicon
 
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from typing import Any
 
 _ENDLESS = "-1"
+_HALF_DAY = 12 * 3600
 _HALF, _WHOLE = "TurnAround", "TurnOnceAround"
 _BACKWARD, _FORWARD = "MoveBackward", "MoveForward"
 _ENDS = frozenset(("place", "object", "person", "door", "length", "angle", "text"))
@@ -76,12 +78,31 @@ def find_next_day(compilation: Compilation) -> Iterator[Diagnostic]:
             ended = ""
             for item in node.items:
                 wait = waits.get(id(item))
-                if wait is not None and ended and ended in wait.time.split(";"):
-                    yield diagnostic("BT169", wait.span, words=wait.span.text)
+                if wait is not None and ended:
+                    yield from _next_day(wait, ended, compilation.vocabulary)
                 if isinstance(item, ast.Whenever):
                     continue
                 end = ends.get(id(item))
                 ended = "" if end is None else end.time
+
+
+def _next_day(wait: ast.WaitTime, ended: str, vocabulary: Lexicon) -> Iterator[Diagnostic]:
+    """Report a wait for a time that is over when what comes before has ended."""
+    times = wait.time.split(";")
+    over = ended if ended in times else next((time for time in times if _is_over(time, ended)), "")
+    words = vocabulary.word("whenever"), *vocabulary.asking["time_is"], vocabulary.asking["hours"][0], over
+    advice = "Leave it out." if over == ended else f"To do it meanwhile, write: {' '.join(words)}, ..."
+    if over:
+        end = "that time" if over == ended else ended
+        yield diagnostic("BT169", wait.span, words=wait.span.text, ended=end, advice=advice)
+
+
+def _is_over(time: str, ended: str) -> bool:
+    """Return whether a time of day is at most half a day before another one, or that time."""
+    try:
+        return 0 <= seconds_of(ended) - seconds_of(time) < _HALF_DAY
+    except ValueError:  # a value of the mission
+        return time == ended
 
 
 def _first_inside(nodes: Sequence[ast.Ast], kinds: Any) -> dict[int, Any]:

@@ -26,6 +26,7 @@ from btlang.frontends.mission.token import (
 from btlang.text.source import Span
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.value_type import PLACE
 
 _EXAMPLE = "it is after 6 pm"
 _OPEN = "OpenZone"
@@ -33,6 +34,8 @@ _ENDS = frozenset(("newline", "semi", "stop", "dedent", "close"))
 _IN_CONDITIONS = frozenset(("condition", "not", "open", "either", "neither", "both"))
 """What who stays somewhere does there meanwhile."""
 _ENDING = frozenset((*WAITING, "up_to"))
+_AT = {"SeesPerson": "PersonIsAt", "SeesSomeone": "SomeoneIsAt", "SeesObject": "ObjectIsAt"}
+"""What asks where somebody or something is, by what asks whether the robot sees it."""
 _WHILE = frozenset(("while", "if", "unless"))
 """Raw kinds behind which a condition says how long a zone stays closed."""
 
@@ -63,6 +66,7 @@ def with_ends(tokens: list[Token], vocabulary: Lexicon, span: Callable[[int, int
             _open_again(tokens, at, opening)
         elif until.kind in _WHILE and begins_condition(tokens, at + 2) and _keeps_out(tokens[at]):
             if begins and opening is not None:
+                _say_where(tokens, at, vocabulary, span)
                 _close_while(tokens, at, opening)
             elif not begins:
                 problems.append(_two_readings(tokens, at, vocabulary, span))
@@ -143,6 +147,26 @@ def _close_while(tokens: list[Token], at: int, opening: Entry) -> None:
     is_while = begin.kind != "unless"
     rules = [*rule(is_while, closing), semi, *rule(not is_while, command)]
     tokens[at : behind if behind > last else last] = [*rules, semi] if behind > last else rules
+
+
+def _say_where(tokens: list[Token], at: int, vocabulary: Lexicon, span: Callable[[int, int], Span]) -> None:
+    """Make `avoid the hall while Bob is there` ask whether he is in the hall, where the robot isn't."""
+    said = tokens[at].value
+    zones = texts_of(said) if isinstance(said, Called | Listed) else ()
+    there = tuple(f" {word}" for word, types in vocabulary.values.pronouns.items() if PLACE in types)
+    if len(zones) != 1 or zones[0] not in vocabulary.values.listed(PLACE):
+        return
+    for token in tokens[at + 2 : _condition_end(tokens, at + 2)[0]]:
+        value = token.value
+        if not isinstance(value, Called) or not span(token.start, token.end).text.lower().endswith(there):
+            continue
+        place = vocabulary.entry(_AT.get(value.entry.id, ""))
+        if place is not None:
+            token.value = Called(place, (*value.arguments, (_slot_of(place), zones[0])))
+
+
+def _slot_of(entry: Entry) -> str:
+    return next(slot.name for slot in entry.slots if slot.type == PLACE)
 
 
 def _two_readings(tokens: list[Token], at: int, vocabulary: Lexicon, span: Callable[[int, int], Span]) -> Diagnostic:

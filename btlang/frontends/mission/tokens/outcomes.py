@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Container
 
+from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import (
     JOINTS,
     STATEMENT_ENDS,
@@ -31,6 +32,7 @@ from btlang.frontends.mission.tokens.settling import (
     settle,
 )
 from btlang.frontends.mission.tokens.silent_words import begins
+from btlang.frontends.mission.tokens.tries import LIMIT
 from btlang.text.source import Span
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.value_type import PERSON, PLACE
@@ -53,6 +55,12 @@ class Outcomes(GoingOn):
         token, said = self._tokens[-1], match.meaning.role
         if role == "then" and len(self._tokens) > 1:
             self.found(match, at)
+        goes_on = self._text.words[match.last] in (",", *self._vocabulary.roles["and"])
+        if goes_on and match.meaning.role == "once" and len(self._tokens) > 1:
+            self._tokens.pop()  # `go to every room once and wave in each one`
+            return match.last
+        if role == "until" and len(self._tokens) > 1 and self._tokens[-2].role == LIMIT:
+            self._doubt_count(self._tokens[-2], match, at)
         if role in (FAILS, "if_unanswered", "otherwise"):
             token.kind = "or" if role != "otherwise" else role
             token.value = FAILS if said != "otherwise" else None
@@ -66,6 +74,13 @@ class Outcomes(GoingOn):
         if role == "if_unanswered":
             return self.unanswered(match.last)
         return self._limit_before(match.last, role) if said in (WORKS, FAILS) else match.last
+
+    def _doubt_count(self, count: Token, match: Match, at: int) -> None:
+        """BT151 for `turn left up to 8 times until C`: at most so often, or so often again and again."""
+        number = self._text.source.text[count.start : count.end]
+        span = Span(self._text.source, count.start, self._text.ends[match.last - 1])
+        one, other = f"... {number}", f"... {self._text.span(at, match.last).text} ..."
+        self._calls.problems.append(diagnostic("BT151", span, words=span.text, one=one, other=other))
 
     def _limit_before(self, end: int, role: str) -> int:
         """`if you find him within 60 s, A`, `if that doesn't work after two attempts, A`: of the command before."""

@@ -23,6 +23,8 @@ from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
 from btlang.tree.answers import asking_verbs
 from btlang.vocabulary.match import Match
 
+LIMIT = "limit"
+"""The role of a number that says how often at most."""
 _JOINTS = JOINTS | {"stop"}
 _STATEMENT_ENDS = (END_OF_STATEMENT, END_OF_TEXT)
 _OPERANDS = frozenset(("command", "name", "close", "wait", "nothing", "fail", "node"))
@@ -63,7 +65,7 @@ class Tries(SentenceReader):
         if fails and tokens[-1].kind == "comma":
             tokens.pop()
         count = self._calls.token(match, at)
-        count.kind = "count"
+        count.kind, count.role = "count", LIMIT
         tokens.append(count)
         return match.last
 
