@@ -232,6 +232,15 @@ def _number_misfit(
         units = [word for unit in measured.units for word in unit.words]
         written = text.words[number[1]]
         misspelt = [unit for unit in nearest(written, units)[:1] if is_respelling(written, unit, vocabulary)]
+        if (
+            not misspelt
+            and written.isalpha()
+            and written not in _NOT_A_VALUE
+            and not _is_connective(text, number[1], vocabulary)
+        ):
+            said = text.span(at, number[1] + 1)
+            reason = f"{wanted} is needed, and '{written}' is no unit of it"
+            return diagnostic("BT011", said, words=said.text, wanted=reason, example=f"{head} {measured.example}")
         unit = misspelt[0] if misspelt else units[0]
         value = with_unit(span.text, unit)
         reason = f"{wanted} has a unit"
