@@ -173,7 +173,7 @@ def _two_readings(tokens: list[Token], at: int, vocabulary: Lexicon, span: Calla
     """Return the error for `go to the lab and avoid the hall while C`: what depends on the condition isn't clear."""
     first = statement_start(tokens, at)
     last, _ = _condition_end(tokens, at + 2)
-    before = span(tokens[first].start, tokens[run_start(tokens, at, JOINTS) - 1].end).text
+    before = span(tokens[first].start, tokens[run_start(tokens, at, JOINTS | {"but"}) - 1].end).text
     whole, condition = (
         span(tokens[first].start, tokens[last - 1].end),
         span(tokens[at + 1].start, tokens[last - 1].end).text,

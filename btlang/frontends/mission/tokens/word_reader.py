@@ -171,7 +171,7 @@ class WordReader:
             if named is not None and (match is None or named.last >= match.last):
                 match, self._root = named, names
         if self._origin is not None and tokens[-1].kind in _JOINING:
-            if match is None or match.meaning.role == "not":
+            if match is None or match.meaning.role in ("not", "never"):  # `or don't answer`
                 shared, problem = with_words_before(
                     self._origin, tokens, self._text, match, at, self._vocabulary, names, self._context
                 )
