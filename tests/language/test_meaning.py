@@ -63,6 +63,7 @@ def test_numbers_that_are_said(sentence: str, tree: str) -> None:
     [
         ("go to the lab or avoid the hall", "BT155"),
         ("go to the lab, charge first", "BT151"),
+        ("careful is avoid the kitchen while Bob is there\ncareful", "BT152"),
         ("go to the lab, but stay out of the kitchen if Bob is in the kitchen", "BT151"),
         ("go to the lab and avoid the kitchen while Bob is in the kitchen", "BT151"),
         ("pick up the book. If you can't reach it, try again, max 3 times. Then wave", "BT151"),

@@ -30,6 +30,8 @@ from btlang.vocabulary.value_type import PLACE
 
 _EXAMPLE = "it is after 6 pm"
 _OPEN = "OpenZone"
+_NOT_DONE = "a definition is done once, and this holds all the time"
+_IN_THE_MISSION = "Write it as a sentence of the mission."
 _ENDS = frozenset(("newline", "semi", "stop", "dedent", "close"))
 _IN_CONDITIONS = frozenset(("condition", "not", "open", "either", "neither", "both"))
 """What who stays somewhere does there meanwhile."""
@@ -65,7 +67,10 @@ def with_ends(tokens: list[Token], vocabulary: Lexicon, span: Callable[[int, int
         elif constraint is not None and opening is not None and begins_condition(tokens, at + 2):
             _open_again(tokens, at, opening)
         elif until.kind in _WHILE and begins_condition(tokens, at + 2) and _keeps_out(tokens[at]):
-            if begins and opening is not None:
+            if at > 0 and tokens[at - 1].kind == "define":
+                whole = span(tokens[at].start, tokens[_condition_end(tokens, at + 2)[0] - 1].end)
+                problems.append(diagnostic("BT152", whole, words=whole.text, reason=_NOT_DONE, advice=_IN_THE_MISSION))
+            elif begins and opening is not None:
                 _say_where(tokens, at, vocabulary, span)
                 _close_while(tokens, at, opening)
             elif not begins:

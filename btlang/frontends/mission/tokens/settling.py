@@ -98,6 +98,8 @@ def turn_branches(tokens: list[Token]) -> None:
         end = statement_end(tokens, at)
         failing = tokens[form + 1 : run_start(tokens, at, ends)]
         working = tokens[at + 1 : run_start(tokens, end, STATEMENT_ENDS)]
+        if not working:
+            continue
         failing, working = (part[part[:1] != [] and part[0].kind == "comma" :] for part in (failing, working))
         here, there = tokens[form].start, token.start
         tokens[run_start(tokens, form, ends) : end] = [

@@ -74,7 +74,9 @@ def without_meaning(
             begin, end = text.starts[at], text.ends[going[1] - 1]
             if text.words[at] in vocabulary.asking["coming"] and not _goes(follows):
                 here = vocabulary.entry(_COME)
-                tokens += [Token("command", begin, end, Called(here, ())), Token("and", end, end)] if here else []
+                joint = text.starts[going[1] - 1] if joins else end
+                said = Token("command", begin, text.ends[at], Called(here, ())) if here else None
+                tokens += [said, Token("and", joint, end)] if said else []
             return going[1]  # `go charge`
     if not tokens:
         return 0
