@@ -34,7 +34,6 @@ _NOT_DONE = "a definition is done once, and this holds all the time"
 _IN_THE_MISSION = "Write it as a sentence of the mission."
 _ENDS = frozenset(("newline", "semi", "stop", "dedent", "close"))
 _IN_CONDITIONS = frozenset(("condition", "not", "open", "either", "neither", "both"))
-"""What who stays somewhere does there meanwhile."""
 _ENDING = frozenset((*WAITING, "up_to"))
 _AT = {"SeesPerson": "PersonIsAt", "SeesSomeone": "SomeoneIsAt", "SeesObject": "ObjectIsAt"}
 """What asks where somebody or something is, by what asks whether the robot sees it."""
@@ -56,7 +55,7 @@ def with_ends(tokens: list[Token], vocabulary: Lexicon, span: Callable[[int, int
     at = 0
     while at + 1 < len(tokens):
         until = tokens[at + 1]
-        begins = at == 0 or tokens[at - 1].kind in LINES
+        begins = _begins(tokens, at)
         constraint = constraint_of(tokens[at]) if begins and until.kind in _ENDING else None
         if constraint is not None and constraint.kind == "keep in" and until.kind in WAITING:
             _wait(tokens, at)
@@ -87,19 +86,19 @@ def _keeps_out(token: Token) -> bool:
 def _front(tokens: list[Token]) -> None:
     """Put what is forbidden in front: `while Bob is in the hall, avoid it`."""
     for at, token in enumerate(tokens):
-        if (
-            token.kind != "while"
-            or (at > 0 and tokens[at - 1].kind not in LINES)
-            or not begins_condition(tokens, at + 1)
-        ):
-            continue
-        last, behind = _condition_end(tokens, at + 1)
-        if (
-            behind > last
-            and _keeps_out(tokens[behind])
-            and (tokens[behind + 1 :] or [token])[0].kind in (*_ENDS, "while")
-        ):
-            tokens[at : behind + 1] = [tokens[behind], *tokens[at:last]]
+        if token.kind == "while" and _begins(tokens, at) and begins_condition(tokens, at + 1):
+            last, behind = _condition_end(tokens, at + 1)
+            if behind > last and _is_alone(tokens, behind):
+                tokens[at : behind + 1] = [tokens[behind], *tokens[at:last]]
+
+
+def _begins(tokens: list[Token], at: int) -> bool:
+    return at == 0 or tokens[at - 1].kind in LINES
+
+
+def _is_alone(tokens: list[Token], at: int) -> bool:
+    """Whether a constraint to keep out ends its statement."""
+    return _keeps_out(tokens[at]) and (at + 1 == len(tokens) or tokens[at + 1].kind in _ENDS)
 
 
 def _never_opened(
@@ -110,18 +109,12 @@ def _never_opened(
         return []
     problems = []
     for at, token in enumerate(tokens):
-        if token.kind not in ("whenever", "if") or (at > 0 and tokens[at - 1].kind not in LINES):
+        if token.kind not in ("whenever", "if") or not _begins(tokens, at):
             continue
         last, behind = _condition_end(tokens, at + 1)
-        if (
-            behind > last
-            and _keeps_out(tokens[behind])
-            and (tokens[behind + 1 :] or [token])[0].kind in (*_ENDS, token.kind)
-        ):
-            whole, forbidden = (
-                span(token.start, tokens[behind].end),
-                span(tokens[behind].start, tokens[behind].end).text,
-            )
+        if behind > last and _is_alone(tokens, behind):
+            whole = span(token.start, tokens[behind].end)
+            forbidden = span(tokens[behind].start, tokens[behind].end).text
             condition = span(tokens[at + 1].start, tokens[last - 1].end).text
             other = f"{vocabulary.word('while')} {condition}, {forbidden}"
             taken = f"{whole.text}, and it stays so"
