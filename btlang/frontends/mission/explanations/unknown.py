@@ -26,6 +26,7 @@ from btlang.frontends.mission.token import (
     Listed,
     Token,
     arguments_of,
+    drives,
     run_start,
 )
 from btlang.text.formatting import joined
@@ -60,13 +61,11 @@ def explain_unknown(
 
     It is one of BT010 to BT014, BT019, BT038, BT152, BT154 and BT160. `context` is that of the lexer, with pronouns.
     """
-    unnamed = next(
-        (i for i in range(at, end) if text.words[i] == "{" and context.named(text, i) == (None, i + 1)), None
-    )
-    if unnamed is not None:
-        last = next((i for i in range(unnamed, end) if text.words[i] == "}"), unnamed)
-        name = " ".join(text.words[unnamed + 1 : last])
-        return unknown_value(text.span(unnamed, last + 1), name, context.known or ())
+    brace = next((i for i in range(at, end) if text.words[i] == "{" and context.named(text, i) == (None, i + 1)), None)
+    if brace is not None:
+        last = next((i for i in range(brace, end) if text.words[i] == "}"), brace)
+        name = " ".join(text.words[brace + 1 : last])
+        return unknown_value(text.span(brace, last + 1), name, context.known or ())
     lacking = untold(text, at, end, vocabulary) or not_two(text, at, end, vocabulary)
     lacking = lacking or unreferred(text, at, vocabulary, context) or without_hour(text, at, end, vocabulary)
     if lacking is not None:
@@ -96,8 +95,18 @@ def explain_unknown(
     if (number is not None and not _asks(before)) or text.words[at][0] == '"':
         return diagnostic("BT019", text.span(at, end), example='say "hello"')
     goes_on = bool(before) and before[-1].kind == "command" and _ends_in_a_bare_text(before[-1])  # `say still here`
+    journey = vocabulary.asking["journey"]
+    if text.words[at] == journey[-1] and at + 1 < end and _journey_before(before):
+        understood = f"I understood '{' '.join(journey)} ...'. "
+        return unnamed(text.span(at + 1, end), [vocabulary.types[PLACE]], understood, vocabulary)
     part = None if goes_on else explain_fragment(text, at, end, _asks(before), vocabulary, context)
     return part or _unknown_phrase(text, at, end, vocabulary, definitions, before)
+
+
+def _journey_before(before: list[Token]) -> bool:
+    """Whether the latest command drives somewhere: `go to the lab, then to the attic`."""
+    said = next((token for token in reversed(before) if token.kind == "command"), None)
+    return said is not None and drives(said.value)
 
 
 def misread_head(text: Words, at: int, role: str, vocabulary: Lexicon) -> Diagnostic:
