@@ -20,7 +20,7 @@ from btlang.tree.ast import Fact, Program, all_facts, says_ports
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import Known
-from btlang.vocabulary.shipped import ENGLISH
+from btlang.vocabulary.shipped import DEFAULT_WORLD, ENGLISH
 from btlang.vocabulary.values import key_of
 
 TYPE_CHECKING = False
@@ -216,7 +216,7 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):
         """
         from btlang.session import Session
 
-        with Session(robot, world=self.world) as session:
+        with Session(robot, world=self.world or DEFAULT_WORLD) as session:
             return session.prepare(self, **options).execute()
 
     def explain(self, width: int = 100) -> str:

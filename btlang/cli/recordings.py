@@ -27,6 +27,7 @@ from btlang.run.logs import PlainLines
 from btlang.run.terminal import live_view
 from btlang.session import Session
 from btlang.text.output import show
+from btlang.vocabulary.shipped import DEFAULT_WORLD
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -136,7 +137,8 @@ def _robot_of(recording: Recording) -> Iterator[tuple[str, str | None]]:
 def _run_again(recording: Recording, mission: Mission, nodes: RecordedNodes) -> int:
     """Run the mission of a recording on the simulated robot, and show where it goes otherwise."""
     about, events = recording.about, list[Event]()
-    with _robot_of(recording) as (robot, over), Session(robot, world=mission.world, over=over) as session:
+    world = mission.world or DEFAULT_WORLD
+    with _robot_of(recording) as (robot, over), Session(robot, world=world, over=over) as session:
         session.run(
             mission, speed="max", rate=float(about.get("rate", 20)), seed=int(about.get("seed", 0)),
             time_limit=float(about["time_limit"]) if about.get("time_limit") else None, sinks=[events.append],
