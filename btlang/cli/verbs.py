@@ -197,6 +197,7 @@ _TABLE = (
                     help="mission, tree or folder of trees, or - for standard input; all XML files are one project",
                 ),
                 TEXT,
+                required=False,
             ),
             ROBOT_WORDS,
         ),

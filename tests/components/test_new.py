@@ -65,6 +65,23 @@ def test_a_robot_with_words_as_its_readme_says(folder: Path) -> None:
     assert " passed" in done.stdout
 
 
+def test_a_robot_file_is_checked_without_missions(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    make_project("robot", NAME)
+    path = f"{NAME}/robot.toml"
+    assert main(["check", "--robot", path]) == 0
+    assert capsys.readouterr().out == (
+        f"No problems found in {path}. To check missions for this robot: btc check FILE --robot {path}\n"
+    )
+    robot = folder / path
+    robot.write_text(robot.read_text("utf-8") + '[[device]]\nname = "lamp"\nkind = "lihgt"\ndriver = "simulated"\n')
+    assert main(["check", "--robot", path]) == 2
+    assert "robot.toml:36:1: error BT071" in capsys.readouterr().err
+    for words in ([], ["--robot", "simulated"]):
+        with pytest.raises(SystemExit):
+            main(["check", *words])
+        assert "btc check: it needs a FILE or -c TEXT\n" in capsys.readouterr().err
+
+
 @EVERY
 def test_its_own_tests_pass_inside_another_project(kind: str, folder: Path) -> None:
     (folder / "pyproject.toml").write_text('[tool.pytest.ini_options]\naddopts = ["--of-another-project"]\n', "utf-8")
