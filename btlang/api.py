@@ -20,13 +20,14 @@ from btlang.tree.ast import Fact, Program, all_facts, says_ports
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import Known
-from btlang.vocabulary.shipped import ENGLISH
+from btlang.vocabulary.shipped import DEFAULT_WORLD, ENGLISH
 from btlang.vocabulary.values import key_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any
+    from typing import Any, overload
 
+    from btlang.backends.targets import BinaryTarget, TextTarget
     from btlang.passes.compilation import Origins
     from btlang.robots.mission_vocabulary import Path
     from btlang.robots.registry import Connect
@@ -216,7 +217,7 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):
         """
         from btlang.session import Session
 
-        with Session(robot, world=self.world) as session:
+        with Session(robot, world=self.world or DEFAULT_WORLD) as session:
             return session.prepare(self, **options).execute()
 
     def explain(self, width: int = 100) -> str:
@@ -229,7 +230,7 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):
 
         program, tree = self.syntax, self.tree
         if program is None:
-            program = read_mission(Source(str(self.to("english"))), self.vocabulary).mission
+            program = read_mission(Source(self.to("english")), self.vocabulary).mission
             tree = lower_mission(program, self.vocabulary)
         return explain_mission(program, tree, self.vocabulary, self._described, width)
 
@@ -254,6 +255,17 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):
         problems = [*tree_problems(self.tree, self.vocabulary), *find_misnamed(self.tree, named)]
         if problems:
             raise MissionError(problems)
+
+    if TYPE_CHECKING:
+
+        @overload
+        def to(self, target: TextTarget, **options: Any) -> str: ...
+
+        @overload
+        def to(self, target: BinaryTarget, **options: Any) -> bytes: ...
+
+        @overload
+        def to(self, target: str, **options: Any) -> str | bytes: ...
 
     def to(self, target: str, **options: Any) -> str | bytes:
         """Return the tree as "xml", "english", "json" or another target of btlang.backends.targets.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from types import CoroutineType, GeneratorType
 from typing import TypeAlias
 
 from btlang.api import Mission, mission_of_tree, source_of
@@ -24,8 +25,9 @@ from btlang.vocabulary.shipped import ENGLISH
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     import os
-    from typing import Any
+    from typing import Any, overload
 
+    from btlang.backends.targets import BinaryTarget, TextTarget
     from btlang.run.outcome import Outcome
     from btlang.vocabulary.load import Keywords
 
@@ -76,6 +78,17 @@ class Behavior(Record, uncompared=("span",)):
     def run(self, **options: Any) -> Outcome:
         """Compile and run it; the options are those of `btlang.Mission.run`."""
         return self.mission().run(**options)
+
+    if TYPE_CHECKING:
+
+        @overload
+        def to(self, target: TextTarget, **options: Any) -> str: ...
+
+        @overload
+        def to(self, target: BinaryTarget, **options: Any) -> bytes: ...
+
+        @overload
+        def to(self, target: str, **options: Any) -> str | bytes: ...
 
     def to(self, target: str, **options: Any) -> str | bytes:
         """Return the tree as "english", "xml" or another target of `btlang.Mission.to`."""
@@ -142,6 +155,8 @@ def built(
     Raises TypeError if it doesn't fit.
     """
     kind, own = CATALOGUE[node_id], tuple(child for child in children if child is not None)
+    if None in (children if kind.most >= MOST_NODES else children[: kind.least]):
+        raise TypeError(_misfit(None))
     if not kind.least <= len(own) <= kind.most:
         most = "" if kind.most >= MOST_NODES else f" to {kind.most}" if kind.most != kind.least else ""
         least = f"at least {kind.least}" if kind.most >= MOST_NODES else f"{kind.least}{most}"
@@ -175,8 +190,36 @@ def _entry(what: object) -> Entry:
     entry = getattr(what, "btlang_entry", None)
     if isinstance(entry, Entry):
         return entry
-    name = getattr(what, "__name__", "") or described(what)
-    raise TypeError(f"{name} can't be a part of a tree; decorate a function with btlang.action or btlang.condition")
+    raise TypeError(_misfit(what))
+
+
+def _misfit(what: object) -> str:
+    """Say that something can't be a part of a tree, and what to write in its place."""
+    return f"{getattr(what, '__name__', '') or described(what)} can't be a part of a tree; {_advice(what)}"
+
+
+def _advice(what: object) -> str:
+    if isinstance(what, list | tuple):
+        return "give its children one by one, or with a star: sequence(*children)"
+    if isinstance(what, GeneratorType | CoroutineType):  # `weld(1)`, whose function is a leaf
+        return f"give the function and its values, and don't call it: {_as_leaf(what)}"
+    decorated = "decorate a function with btlang.action or btlang.condition"
+    return decorated if callable(what) else f"{decorated}, and give it its values with leaf(function, value)"
+
+
+def _as_leaf(called: GeneratorType[Any, Any, Any] | CoroutineType[Any, Any, Any]) -> str:
+    """Return the leaf that is meant by a call of a function that is to run later."""
+    frame = called.gi_frame if isinstance(called, GeneratorType) else called.cr_frame
+    values: dict[str, object] = {}
+    if frame is not None:
+        code = frame.f_code
+        names = code.co_varnames[: code.co_argcount + code.co_kwonlyargcount]
+        values = {name: frame.f_locals[name] for name in names if name in frame.f_locals}
+    called.close()  # nobody will run it
+    entry = getattr(frame and frame.f_globals.get(called.__name__), "btlang_entry", None)
+    slots = [slot.name for slot in entry.slots] if isinstance(entry, Entry) else list(values)
+    given = [repr(values[slot]) for slot in slots if slot in values]
+    return f"leaf({', '.join([called.__name__, *given])})"
 
 
 def _functions(waiting: list[Child]) -> list[Callable[..., object]]:

@@ -33,6 +33,7 @@ from btlang.run.snapshot import RunFollower, Snapshot
 from btlang.run.statuses import Status
 from btlang.text.formatting import RED
 from btlang.text.source import NOWHERE, Source
+from btlang.vocabulary.shipped import DEFAULT_WORLD
 from btlang.vocabulary.values import key_of
 
 TYPE_CHECKING = False
@@ -94,9 +95,9 @@ class Session:
 
     `robot` is "simulated", "ros", "actions", the path of a robot file or the name of one that ships, or a function that
     takes a World and returns a btlang.run.connection.Connection. `over` is what the robot in a file runs on, by default
-    what the file says. `world` is the path of a world file, or its text, by default the world that ships. `keywords`
-    are further words of the texts that it runs, as for `btlang.parse_tree`; those of the robot's components and
-    gestures are known. Raises MissionError if the world or the
+    what the file says. `world` is the path of a world file, or its text. By default it is that of the robot file, else
+    that of the first mission, else the one that ships. `keywords` are further words of the texts that it runs, as for
+    `btlang.parse_tree`; those of the robot's components and gestures are known. Raises MissionError if the world or the
     robot can't be read (BT070, BT071) or ROS 2 can't be used (BT100), ValueError for other names.
     """
 
@@ -113,9 +114,11 @@ class Session:
         connect = robot if callable(robot) else connector(os.fspath(robot), over)
         given = os.fspath(world) if isinstance(world, os.PathLike) else world
         body = getattr(connect, "body", None)
-        self._read_with = {"keywords": [*_words_of(body), *keywords], "world": given}
-        self.world = read_world(given, body)
-        self.connection: Connection = connect(self.world)
+        chosen = given or getattr(body, "world", "") or None
+        self._keywords, self._chosen = [*_words_of(body), *keywords], chosen
+        self._connect, self._is_used = connect, chosen is not None
+        self.world = read_world(chosen, body)
+        self._connection: Connection = connect(self.world)
         self._is_simulated = getattr(connect, "over", "") == "simulated"
         self.current: Run | None = None
         """The latest run."""
@@ -130,6 +133,12 @@ class Session:
         from btlang.pictures.terminal_map import TerminalMap
 
         return TerminalMap(self.world, unicode)
+
+    @property
+    def connection(self) -> Connection:
+        """What connects to the robot. From now on the world stays."""
+        self._is_used = True
+        return self._connection
 
     @property
     def robot(self) -> Any:
@@ -203,11 +212,24 @@ class Session:
         return run
 
     def _mission_of(self, given: Given) -> Runnable:
+        made: Runnable
         if hasattr(given, "says_ids"):
-            return given  # type: ignore[return-value]
-        module, function = _MISSION_OF
-        made: Runnable = getattr(import_module(module), function)(given, **self._read_with)
+            made = given  # type: ignore[assignment]
+        else:
+            module, function = _MISSION_OF
+            world = self._chosen or (DEFAULT_WORLD if self._is_used else None)
+            made = getattr(import_module(module), function)(given, keywords=self._keywords, world=world)
+        named = getattr(made, "world", None)
+        if named is not None and not self._is_used:
+            self._move_to(named)
         return made
+
+    def _move_to(self, world: str | Source) -> None:
+        """Begin again in the world of the first mission, as nobody has used the robot in another one yet."""
+        made = read_world(world, getattr(self._connect, "body", None))
+        self._connection.close()
+        self.world, self._connection = made, self._connect(made)
+        self._chosen = world
 
     def emergency_stop(self) -> None:
         """Stop the robot at once, from any thread, and end the current or prepared run before its next tick."""

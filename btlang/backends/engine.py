@@ -14,7 +14,7 @@ from types import ModuleType
 
 from btlang.engine.instance import EngineError
 from btlang.engine.leaves.leaf import Failed, LeafBinding, Unknown, describe_exception
-from btlang.engine.script.values import as_text
+from btlang.engine.script.values import as_text, as_whole
 from btlang.printer.phrase import leaf_words
 from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.node import Node, Tree
@@ -95,9 +95,13 @@ def leaf_binding(
 
 def _converter(slot: SlotSpec, vocabulary: Lexicon) -> Callable[[str], Any]:
     kind = vocabulary.types[slot.type]
-    if kind.kind == "quantity" or kind.kind == "number":
-        return int if kind.whole else float
-    return as_text
+    if kind.kind != "quantity" and kind.kind != "number":
+        return as_text
+    return as_whole if kind.whole or slot.otherwise == _WHOLE else float
+
+
+_WHOLE = "count"
+"""What a slot is `otherwise` whose parameter has the annotation int."""
 
 
 def _module(entry: Entry, name: str) -> ModuleType:

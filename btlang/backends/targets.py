@@ -12,7 +12,12 @@ from btlang.vocabulary.lexicon import Lexicon
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any
+    from typing import Any, Literal, TypeAlias
+
+    TextTarget: TypeAlias = Literal[
+        "xml", "english", "json", "python", "py_trees", "dot", "svg", "markdown", "tree", "keywords"
+    ]
+    BinaryTarget: TypeAlias = Literal["png"]
 
 
 class Target(Record):

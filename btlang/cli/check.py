@@ -13,6 +13,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, MissionError
 from btlang.diagnostics.files import has_mark, read_source
 from btlang.frontends.table import frontend_of
 from btlang.robots.mission_vocabulary import world_vocabulary
+from btlang.robots.platforms import ROBOTS
 from btlang.support.test_files import is_test_file
 from btlang.text.output import show
 from btlang.text.source import Source
@@ -22,6 +23,8 @@ _SUCCESS, _BAD_INPUT = 0, 2
 
 def check_files(options: argparse.Namespace) -> int:
     """Check what the options name; return the exit code: 2 if any of the files has an error."""
+    if options.text is None and not options.file:
+        return _check_robot_alone(options)
     check = _FileCheck(options)
     check.read()
     if options.fix:
@@ -30,6 +33,24 @@ def check_files(options: argparse.Namespace) -> int:
     if not check.failed and not options.report.is_for_programs:
         show("No errors found." if options.report.has_problems else "No problems found.")
     return _BAD_INPUT if check.failed else _SUCCESS
+
+
+def _check_robot_alone(options: argparse.Namespace) -> int:
+    """Check a robot file for which no missions are named, and say how to check these; return the exit code."""
+    path = options.robot
+    if path in ("", *ROBOTS) or not os.path.isfile(path):
+        options.refuse("it needs a FILE or -c TEXT", "A file, a folder, or - for standard input: btc check FILE")
+    from shlex import quote
+
+    from btlang.components.checking import check_robot
+
+    problems = check_robot(read_source(path))[1]
+    options.report.add(problems)
+    if any(problem.is_error for problem in problems):
+        return _BAD_INPUT
+    if not options.report.is_for_programs:
+        show(f"No problems found in {path}. To check missions for this robot: btc check FILE --robot {quote(path)}")
+    return _SUCCESS
 
 
 class _FileCheck:

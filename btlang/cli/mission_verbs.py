@@ -163,11 +163,12 @@ def list_words(options: argparse.Namespace) -> int:
         return _SUCCESS
     if options.out is not None:
         options.refuse("-o is for the words that --from makes")
-    from btlang.vocabulary.listing import listing, overview
+    from btlang.robots.worlds.name_listing import list_words as lines_for
+    from btlang.vocabulary.listing import overview
 
     vocabulary = world_vocabulary(options.keywords, options.world, options.language)
     if search or options.all:
-        show("\n".join(listing(vocabulary, search, listing_width())))
+        show("\n".join(lines_for(vocabulary, search, listing_width())))
     else:
         show("\n".join(overview(vocabulary, listing_width())))
     return _SUCCESS

@@ -17,7 +17,7 @@ from btlang.recording.bundle import ROBOT
 from btlang.recording.diff import first_difference
 from btlang.recording.reader import RecordedNodes, Recording, open_recording
 from btlang.recording.replay import Player, ReplayTimeline, adapt_picture
-from btlang.recording.story import Story
+from btlang.recording.story import Story, explain_recording
 from btlang.robots.bodies.body_file import shipped_bodies
 from btlang.robots.worlds.world_file import read_world
 from btlang.run.controls import Controls
@@ -27,6 +27,7 @@ from btlang.run.logs import PlainLines
 from btlang.run.terminal import live_view
 from btlang.session import Session
 from btlang.text.output import show
+from btlang.vocabulary.shipped import DEFAULT_WORLD
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -112,10 +113,12 @@ def _write_log(path: str, recording: Recording, mission: Mission, nodes: Recorde
 
 
 def explain_run(options: argparse.Namespace) -> int:
-    """Print what happened in a recorded run; return the exit code."""
-    with open_recording(options.file, options.keywords if options.as_mission else None) as (recording, mission, nodes):
-        story = Story(mission, nodes, recording.about).take(recording.events(nodes))
-        show("\n".join(story.lines()))
+    """Print what happened in a recorded run, or in a task by its number; return the exit code."""
+    if options.file.isdecimal() and not os.path.exists(options.file):
+        from btlang.cli.task import explain_task, number_of
+
+        return explain_task(options.name, number_of("why", options.file))
+    show(explain_recording(options.file))
     return 0
 
 
@@ -136,7 +139,8 @@ def _robot_of(recording: Recording) -> Iterator[tuple[str, str | None]]:
 def _run_again(recording: Recording, mission: Mission, nodes: RecordedNodes) -> int:
     """Run the mission of a recording on the simulated robot, and show where it goes otherwise."""
     about, events = recording.about, list[Event]()
-    with _robot_of(recording) as (robot, over), Session(robot, world=mission.world, over=over) as session:
+    world = mission.world or DEFAULT_WORLD
+    with _robot_of(recording) as (robot, over), Session(robot, world=world, over=over) as session:
         session.run(
             mission, speed="max", rate=float(about.get("rate", 20)), seed=int(about.get("seed", 0)),
             time_limit=float(about["time_limit"]) if about.get("time_limit") else None, sinks=[events.append],

@@ -13,7 +13,7 @@ from functools import partial
 from urllib.parse import parse_qs, urlsplit
 
 from btlang.cli.parser import check_act, check_count
-from btlang.cli.task import print_answer
+from btlang.cli.task import ask
 from btlang.components.words import words_of
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.robots.ears import read_answers
@@ -28,8 +28,8 @@ from btlang.task.execution.manager import DAY
 from btlang.task.execution.missions import MissionReader
 from btlang.task.layer import KEPT, TaskLayer, keep_ticks_in_time, make_robot_layer
 from btlang.task.store.backup import restore_backup
-from btlang.task.store.records import LibraryKind
-from btlang.task.store.task_store import open_store
+from btlang.task.store.records import ACTIVE, WAITING, LibraryKind
+from btlang.task.store.task_store import TaskStore, open_store
 from btlang.text.formatting import one_line
 from btlang.text.output import pass_on, show
 
@@ -60,6 +60,8 @@ _SECRET = """# The password of the store is in this file: let nobody else read i
 # Or leave it out of the URL, and write it into ~/.pgpass, where PostgreSQL looks for it.
 """
 _LIBRARY = "library:"
+_BODY = "body"
+"""The setting of the store that names the body that was up at last."""
 _FLEET_ACTS = ("invite", "revoke", "invited")  # about a server's robots elsewhere
 _CONTROL = re.compile(r"[\0-\x1f\x7f]")
 _PLAIN = re.compile(r"[\w@%+=:,./-]+", re.ASCII)
@@ -104,8 +106,7 @@ def run_act(options: argparse.Namespace) -> int:
         "release": messages.Release, "pause": messages.Pause, "resume": messages.Resume,
         "step": messages.Step, "say": partial(messages.Say, " ".join(options.item)), "visitor": messages.InviteVisitor,
     }  # fmt: skip
-    with RobotClient(options.name) as client:
-        return print_answer(client.send(commands[act]()), options.json)
+    return ask(options.name, commands[act](), options.json)
 
 
 def layer_options(options: argparse.Namespace, name: str) -> dict[str, Any]:
@@ -154,10 +155,13 @@ def _up(options: argparse.Namespace) -> int:
             try:
                 for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
                     signal.signal(number, lambda *_: ended.set())
+                left = left_over(layer.store, robot.body.name)
                 layer.start()
                 server.start()
                 keep_ticks_in_time()
                 show(f"The robot '{name}' is up. Give it work with: btc task add")
+                for line in left:
+                    show(line)
                 if layer.emergency.is_latched:
                     show(
                         f"It is stopped: {layer.emergency.reason}. To let it move: btc robot release", stream=sys.stderr
@@ -171,6 +175,19 @@ def _up(options: argparse.Namespace) -> int:
             ended_well = layer.close()
     show(f"The robot '{name}' is down.")
     return code or (0 if ended_well else 1)
+
+
+def left_over(store: TaskStore, body: str) -> list[str]:
+    """Say which tasks are left from before, and whether another robot file was used then; the store keeps this one."""
+    count, before = store.count_tasks(WAITING | ACTIVE), store.setting(_BODY)
+    store.set_setting(_BODY, body)
+    if not count:
+        return []
+    are = "1 task is" if count == 1 else f"{count} tasks are"
+    other = before not in ("", body)
+    whose = f" They were for another body, '{one_line(before)}'; this one is '{one_line(body)}'." if other else ""
+    whose = whose.replace("They were", "It was") if count == 1 else whose
+    return [f"{are} left from before.{whose} To see {'it' if count == 1 else 'them'}: btc task list"]
 
 
 def _from_library(options: argparse.Namespace, kept: Mapping[str, Any]) -> tuple[Connector, str | Source | None]:

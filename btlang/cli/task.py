@@ -31,11 +31,41 @@ _AGAIN = 0.5  # seconds between two looks of the live list
 def run_act(options: argparse.Namespace) -> int:
     """Do what the act says; return the exit code: 1 if the robot refuses. Raises MissionError."""
     _check_words(options)
+    if options.act == "why":
+        return explain_task(options.name, _number(options), options.json)
     command = _command(options)
-    with RobotClient(options.name) as client:
-        if options.live:
+    if options.live:
+        with RobotClient(options.name) as client:
             return _live(client, command)
-        return print_answer(client.send(command), options.json)
+    return ask(options.name, command, options.json)
+
+
+def ask(name: str, command: Command, as_json: bool) -> int:
+    """Print the answer of a robot, or of the store of one that is down; return the exit code. Raises MissionError."""
+    from btlang.task.commands.down import open_reader
+
+    with open_reader(name, command, _note) as client:
+        return print_answer(client.send(command), as_json)
+
+
+def explain_task(name: str, number: int, as_json: bool = False) -> int:
+    """Print what became of a task, and what happened in its recorded run; return the exit code. Raises MissionError."""
+    from btlang.task.commands.down import open_reader
+
+    command = messages.Show(number)
+    with open_reader(name, command, _note) as client:
+        answer = client.send(command)
+    code = print_answer(answer, as_json)
+    recording = answer.data.get("task", {}).get("recording", "")
+    if answer.ok and not as_json and os.path.isfile(recording):
+        from btlang.recording.story import explain_recording
+
+        show("\n" + explain_recording(recording))
+    return code
+
+
+def _note(text: str) -> None:
+    show(text, sys.stderr)
 
 
 def change_components(options: argparse.Namespace) -> int:
@@ -177,9 +207,13 @@ def _keywords(name: str) -> str:
 
 def _number(options: argparse.Namespace) -> int:
     kind = "schedule" if options.act == "unschedule" else "task"
-    word = _word(options, f"the number of a {kind}")
+    return number_of(options.act, _word(options, f"the number of a {kind}"), kind)
+
+
+def number_of(act: str, word: str, kind: str = "task") -> int:
+    """Return the number that a word is. Raises MissionError (BT198) if it's none."""
     if not word.isdecimal() or len(word) > _LONGEST:
-        raise wrong(options.act, f"'{word}' isn't the number of a {kind}")
+        raise wrong(act, f"'{word}' isn't the number of a {kind}")
     return int(word)
 
 

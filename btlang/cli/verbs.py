@@ -166,8 +166,16 @@ _TABLE = (
         examples=(("btc watch tea.mcap", "opens the browser"),),
     ),
     Verb(
-        "why", RUN, "explain what happened in a recorded run, and why it failed", "btlang.cli.recordings:explain_run",
-        (RECORDING,), examples=(("btc why tea.mcap", "what happened, command by command"),),
+        "why", RUN, "explain what happened in a recorded run or a task, and why it failed",
+        "btlang.cli.recordings:explain_run",
+        (
+            _NAME,
+            Option(
+                "file", metavar="FILE|NUMBER",
+                help="recording that btc run --record wrote, or the number of a task (see btc task list --all)",
+            ),
+        ),
+        examples=(("btc why tea.mcap", "what happened, command by command"),),
     ),
     Verb(
         "check", WRITE, "report mistakes in missions and trees", "btlang.cli.check:check_files",
@@ -189,6 +197,7 @@ _TABLE = (
                     help="mission, tree or folder of trees, or - for standard input; all XML files are one project",
                 ),
                 TEXT,
+                required=False,
             ),
             ROBOT_WORDS,
         ),
@@ -444,6 +453,7 @@ _TABLE = (
                 ("all", "live", "limit", "label", "json"), 0,
             ),
             "show": VerbAct("shows everything about a task: btc task show 3", ("json",)),
+            "why": VerbAct("explains what happened in a task, and why it failed: btc task why 3", ("json",)),
             "cancel": VerbAct("ends a task, and halts its commands: btc task cancel 3", ("reason", "json")),
             "kill": VerbAct("ends a task at once, like an emergency stop: btc task kill 3", ("reason", "json")),
             "interrupt": VerbAct(

@@ -19,7 +19,7 @@ from functools import cache
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.clock import Clock, LeafTimer
 from btlang.engine.leaves.leaf import REFUSED, ActionFailed, LeafBinding, NotThere, Reason
-from btlang.engine.script.values import as_text
+from btlang.engine.script.values import as_text, as_whole
 from btlang.engine.status import FAILURE
 from btlang.support.record import Record
 from btlang.tree.catalogue import CATALOGUE
@@ -310,7 +310,7 @@ def _always(value: int) -> Callable[[], int]:
 
 def _convert(scope: Blackboard, port: str, key: str, convert: Callable[[str], Any]) -> Any:
     value = value_of(scope, key)
-    if not isinstance(value, str) and convert is not as_text:
+    if not isinstance(value, str) and convert is not as_text and not (convert is as_whole and isinstance(value, float)):
         return value
     try:
         return convert(value)

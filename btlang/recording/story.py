@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from btlang.api import Mission
 from btlang.engine.engine import Failure
 from btlang.engine.status import FAILURE, IDLE, NAMES, RUNNING, SKIPPED
-from btlang.recording.reader import RecordedNodes
+from btlang.recording.reader import RecordedNodes, open_recording
 from btlang.run.events import Chosen, Ended, Event, FaultInjected, InTheWorld, Notice, PartChanged, StatusesChanged
 from btlang.run.failure_history import FailureHistory, failure_report
 from btlang.run.logs import is_asked_wait
@@ -114,3 +114,9 @@ class Story:
     @staticmethod
     def _line(t: float, text: str) -> str:
         return one_line(f"{t:8.1f} s  {text}")
+
+
+def explain_recording(path: str) -> str:
+    """Return what happened in a recorded run, in lines. Raises MissionError if the file isn't a recording."""
+    with open_recording(path) as (recording, mission, nodes):
+        return "\n".join(Story(mission, nodes, recording.about).take(recording.events(nodes)).lines())

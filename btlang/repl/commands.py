@@ -14,13 +14,14 @@ from btlang.frontends.mission.symbols.phrases import Phrases
 from btlang.repl.draft import DraftEntry, MissionDraft
 from btlang.repl.store import DraftStore
 from btlang.robots.robot import Robot, RobotError
+from btlang.robots.worlds.name_listing import list_words
 from btlang.robots.worlds.world import said
 from btlang.support.record import Record
 from btlang.text.formatting import TextTable
 from btlang.text.output import can_draw, listing_width
 from btlang.text.source import Source
 from btlang.text.words import split
-from btlang.vocabulary.listing import help_on, listing, overview
+from btlang.vocabulary.listing import help_on, overview
 from btlang.vocabulary.trie import longest
 
 TYPE_CHECKING = False
@@ -179,7 +180,7 @@ class ReplCommands:
     def _words(self, rest: str) -> None:
         vocabulary, width = self._draft.vocabulary, listing_width()
         if rest:
-            self._write("\n".join(listing(vocabulary, rest.removeprefix("--all"), width)))
+            self._write("\n".join(list_words(vocabulary, rest.removeprefix("--all"), width, "words")))
         else:
             self._write("\n".join(overview(vocabulary, width, "words")))
 

@@ -18,9 +18,10 @@ from btlang.diagnostics.formats import to_data
 from btlang.editing.partial import partial_reading
 from btlang.recording.film import simulate
 from btlang.robots.mission_vocabulary import world_vocabulary
+from btlang.robots.worlds.name_listing import list_words
 from btlang.run.logs import PlainLines
 from btlang.text.source import Source, Span
-from btlang.vocabulary.listing import listing, overview
+from btlang.vocabulary.listing import overview
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -73,7 +74,10 @@ class Tools:
 
     def words(self, search: str = "") -> dict[str, object]:
         """Return what missions can say: a topic, or phrases with these words. Without a search, the topics."""
-        lines = listing(self._vocabulary, search) if search.strip() else overview(self._vocabulary, command="words")
+        if search.strip():
+            lines = list_words(self._vocabulary, search, command="words")
+        else:
+            lines = overview(self._vocabulary, command="words")
         return {"ok": True, "lines": lines}
 
     @_answer_problems

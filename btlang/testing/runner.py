@@ -39,6 +39,7 @@ from btlang.testing.test import (
 from btlang.text.source import Span
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.shipped import DEFAULT_WORLD
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -264,7 +265,7 @@ def run_test(
     mission, controls = mission or test.mission, controls or Controls()
     observed, values, fakes = Observations(_commands(test)), Blackboard(), Fakes(test.fakes)
     outcome: Outcome | None = None
-    with Session(_connect(test, fakes), world=mission.world) as session:
+    with Session(_connect(test, fakes), world=mission.world or DEFAULT_WORLD) as session:
         run = session.prepare(
             mission, speed="max", time_limit=test.limit, seed=seed, controls=controls, values=values,
             sinks=[observed, *sinks],
@@ -295,7 +296,7 @@ def run_chaos(test: MissionTest, seed: int, sinks: Iterable[Sink] = ()) -> Resul
     What the test expects doesn't count, but its events at the start and its fakes do. Raises MissionError.
     """
     observed, controls, fakes = Observations({}), Controls(), Fakes(test.fakes)
-    with Session(_connect(test, fakes), world=test.mission.world) as session:
+    with Session(_connect(test, fakes), world=test.mission.world or DEFAULT_WORLD) as session:
         run = session.prepare(
             test.mission, speed="max", time_limit=test.limit, seed=seed, controls=controls, sinks=[observed, *sinks]
         )

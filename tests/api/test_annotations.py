@@ -53,6 +53,22 @@ def test_types_units_and_defaults() -> None:
         btlang.parse_tree("cheer for the table", keywords=[cheer])
 
 
+def test_a_parameter_that_says_int_gets_an_int() -> None:
+    got: list[object] = []
+
+    @btlang.action("weld part {number} to {percent} for {length}")
+    def weld(number: int, percent: int, length: float) -> None:
+        got.extend((number, percent, length))
+
+    for text in ("weld part 2 to 10% for 3 m", "set n to 0 then weld part n to 10% for 3 m"):
+        assert btlang.parse_tree(text, keywords=[weld]).run(speed="max").succeeded
+    assert list(map(repr, got)) == ["2", "10", "3.0", "0", "10", "3.0"]
+    with pytest.raises(btlang.MissionError, match=r"number cannot be '1\.5': a whole number is needed"):
+        btlang.parse_tree("weld part 1.5 to 10% for 3 m", keywords=[weld]).run(speed="max")
+    outcome = btlang.parse_tree("set n to 1.5 then weld part n to 10% for 3 m", keywords=[weld]).run(speed="max")
+    assert "a whole number is needed" in outcome.why()
+
+
 def test_errors_show_the_line_of_the_decorator() -> None:
     with pytest.raises(btlang.MissionError) as caught:
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import pytest
@@ -121,6 +122,16 @@ def test_a_replacing_function_without_an_id() -> None:
     assert done[2:] == ["wave"]
 
 
+@action("{manner} weld part {number}", slots={"manner": "text"})
+def weld(number: int, manner: str = "slow") -> Iterator[None]:
+    yield
+
+
+@action("listen to {text}")
+async def listen(text: str) -> None:
+    """Nothing is heard."""
+
+
 @pytest.mark.parametrize(
     ("call", "said"),
     [
@@ -129,6 +140,13 @@ def test_a_replacing_function_without_an_id() -> None:
         (lambda: builders.recovery_node("wave"), "RecoveryNode takes 2 children, not 1"),
         (lambda: sequence(3), "can't be a part of a tree"),
         (lambda: sequence(print), "print can't be a part of a tree"),
+        (lambda: repeat(weld(1), num_cycles=2), r"weld can't be a part of a tree; give .*: leaf\(weld, 'slow', 1\)$"),
+        (lambda: sequence(weld(2, "fast")), r"leaf\(weld, 'fast', 2\)"),
+        (lambda: sequence(listen("x")), r"leaf\(listen, 'x'\)"),
+        (lambda: repeat(shout(), num_cycles=2), r"None can't be a part of a tree; .* leaf\(function, value\)"),  # type: ignore[func-returns-value]
+        (lambda: sequence("wave", None), "None can't be a part of a tree"),  # type: ignore[arg-type]
+        (lambda: builders.if_then_else(None, "wave", "nod"), "None can't be a part of a tree"),  # type: ignore[arg-type]
+        (lambda: sequence(["wave"]), r"a list can't be a part of a tree; .* sequence\(\*children\)"),  # type: ignore[arg-type]
         (lambda: repeat("wave", times=3, num_cycles=1), "Repeat has no port 'times'"),
         (lambda: repeat("wave", num_cycles=[]), "num_cycles is a text, a number or a bool, not a list"),
         (lambda: leaf(cheer, "Bob", number=3), "CheerFor takes person, count, not 'number'"),

@@ -11,6 +11,7 @@ import pytest
 import btlang
 from btlang.run.events import Ended, Said
 from btlang.tree.node import Node
+from btlang.vocabulary.shipped import STANDARD_BODY
 
 
 @btlang.action("stumble")
@@ -41,6 +42,36 @@ def test_a_text_is_read_with_the_words_and_the_world_of_the_session(tmp_path: Pa
         assert not session.run("stumble", speed="max").outcome.succeeded  # type: ignore[union-attr]
         with pytest.raises(btlang.MissionError):
             session.run("go to the lab")
+
+
+_ROOM = 'start = {{ x = 1, y = 1 }}\nplaces = [{{ name = "{}", x = 2, y = 2 }}]\n'
+
+
+def test_a_session_is_in_the_world_of_its_robot_file(tmp_path: Path) -> None:
+    (tmp_path / "room.toml").write_text(_ROOM.format("bay"), encoding="utf-8")
+    robot = tmp_path / "robot.toml"
+    robot.write_text(f"{Path(STANDARD_BODY).read_text('utf-8')}\n", encoding="utf-8")
+    robot.write_text(f'world = "room.toml"\n{robot.read_text("utf-8")}', encoding="utf-8")
+    with btlang.Session(robot) as session:
+        assert session.run("go to the bay", speed="max").outcome.succeeded  # type: ignore[union-attr]
+        with pytest.raises(btlang.MissionError, match="lab"):
+            session.run("go to the lab")
+
+
+def test_a_session_is_in_the_world_of_its_first_mission(tmp_path: Path) -> None:
+    for name in ("bay", "pier"):
+        (tmp_path / f"{name}.toml").write_text(_ROOM.format(name), encoding="utf-8")
+        (tmp_path / f"{name}.txt").write_text(f'world "{name}.toml"\ngo to the {name}\n', encoding="utf-8")
+    for given in (tmp_path / "bay.txt", btlang.parse_file(tmp_path / "bay.txt")):
+        with btlang.Session() as session:
+            assert session.run(given, speed="max").outcome.succeeded  # type: ignore[union-attr]
+            assert [place.name for place in session.world.places] == ["bay"]
+            with pytest.raises(btlang.MissionError, match="pier"):  # the robot is in the other world
+                session.run(tmp_path / "pier.txt")
+    with btlang.Session() as session:
+        assert session.robot is not None  # who has used the robot keeps its world
+        with pytest.raises(btlang.MissionError, match="bay"):
+            session.run(tmp_path / "bay.txt")
 
 
 def test_a_str_is_never_a_path(tmp_path: Path) -> None:

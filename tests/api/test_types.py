@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from btlang.backends.targets import TARGETS
 from tests.profiles import only_long
 
 ROOT = Path(__file__).parents[2]
@@ -48,6 +49,27 @@ def test_a_script_passes_mypy_strict_and_mistakes_do_not(script: Path) -> None:
     first = {int(line.split(":")[1]): line for line in reversed(lines)}
     assert sorted(first) == wrong_lines(), done.stdout
     assert all(said in first[at] for at, said in zip(wrong_lines(), WRONG.values(), strict=True)), done.stdout
+
+
+@only_long
+def test_a_script_in_the_clone_gets_its_own_errors_alone(script: Path, tmp_path: Path) -> None:
+    """Also without the packages of extras, or any."""
+    bare = tmp_path / "bare"
+    subprocess.run([sys.executable, "-m", "venv", "--without-pip", str(bare)], check=True)
+    mypy = [sys.executable, "-m", "mypy", "--strict", f"--cache-dir={tmp_path / 'cache'}"]
+    words = [*mypy, f"--python-executable={bare / 'bin' / 'python'}", str(script)]
+    done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=False)
+    lines = [line for line in done.stdout.splitlines() if ": error:" in line]
+    assert lines, done.stderr
+    assert all(line.startswith(f"{script}:") for line in lines), done.stdout
+
+
+def test_type_checkers_know_what_each_target_gives() -> None:
+    text = (ROOT / "btlang" / "backends" / "targets.py").read_text(encoding="utf-8")
+    for alias, is_binary in (("TextTarget", False), ("BinaryTarget", True)):
+        literal = text.split(f"{alias}: TypeAlias = Literal[")[1].split("]")[0]
+        expected = [name for name, target in TARGETS.items() if target.binary is is_binary]
+        assert [name.strip(' "\n') for name in literal.split(",")] == expected
 
 
 @only_long

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -44,6 +45,49 @@ def test_its_own_tests_pass(kind: str, folder: Path) -> None:
     done = python("-m", "pytest", "-q", "-p", "no:xdist", "-W", "error", cwd=folder / NAME)
     assert done.returncode == 0, done.stdout
     assert " passed" in done.stdout
+
+
+def test_a_robot_with_words_as_its_readme_says(folder: Path) -> None:
+    make_project("robot", NAME)
+    home = folder / NAME
+    made = python("-m", "btlang", "new", "component", "nose", cwd=home)
+    assert made.returncode == 0, made.stderr
+    tables = (home / "nose" / "robot.toml").read_text("utf-8")
+    with (home / "robot.toml").open("a", encoding="utf-8") as robot:
+        robot.write("\n" + tables[tables.index("[[component]]") :])
+    for file in ("nose.py", "nose.toml"):
+        (home / "nose" / file).rename(home / file)
+    shutil.rmtree(home / "nose")
+    (home / "smell.txt").write_text('world "world.toml"\ngo to the shelf, then run the nose\n', "utf-8")
+    for words in (["btlang", "robot", "check", "robot.toml"], ["btlang", "test"], ["pytest", "-q", "-W", "error"]):
+        done = python("-m", *words, cwd=home)
+        assert done.returncode == 0, done.stdout + done.stderr
+    assert " passed" in done.stdout
+
+
+def test_a_robot_file_is_checked_without_missions(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    make_project("robot", NAME)
+    path = f"{NAME}/robot.toml"
+    assert main(["check", "--robot", path]) == 0
+    assert capsys.readouterr().out == (
+        f"No problems found in {path}. To check missions for this robot: btc check FILE --robot {path}\n"
+    )
+    robot = folder / path
+    robot.write_text(robot.read_text("utf-8") + '[[device]]\nname = "lamp"\nkind = "lihgt"\ndriver = "simulated"\n')
+    assert main(["check", "--robot", path]) == 2
+    assert "robot.toml:36:1: error BT071" in capsys.readouterr().err
+    for words in ([], ["--robot", "simulated"]):
+        with pytest.raises(SystemExit):
+            main(["check", *words])
+        assert "btc check: it needs a FILE or -c TEXT\n" in capsys.readouterr().err
+
+
+@EVERY
+def test_its_own_tests_pass_inside_another_project(kind: str, folder: Path) -> None:
+    (folder / "pyproject.toml").write_text('[tool.pytest.ini_options]\naddopts = ["--of-another-project"]\n', "utf-8")
+    make_project(kind, NAME)
+    done = python("-m", "pytest", "-q", cwd=folder / NAME)
+    assert done.returncode == 0, done.stdout + done.stderr
 
 
 @EVERY

@@ -13,6 +13,8 @@ from btlang.task.commands.socket_server import SocketServer
 from btlang.task.layer import TaskLayer
 from btlang.task.store.records import Task, TaskState
 
+Btc = Callable[..., tuple[int, str]]
+"""Runs a command of `btc`: its exit code, and what it prints anywhere."""
 LONG = 20.0
 """Seconds for what should happen soon."""
 

@@ -6,45 +6,16 @@ import json
 import re
 import stat
 import tempfile
-from collections.abc import Callable, Iterator
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from btlang.cli import main
 from btlang.task.layer import TaskLayer
 from btlang.task.store.records import TaskState
 
-from .layers import ask, refusal, robot_up, submit, task, wait_for, wait_until
-
-Btc = Callable[..., tuple[int, str]]
-
-
-@pytest.fixture
-def robot(monkeypatch: pytest.MonkeyPatch) -> Iterator[TaskLayer]:
-    """One that is up, and paused."""
-    with tempfile.TemporaryDirectory() as short:  # the path of a socket has to be
-        for variable in ("XDG_RUNTIME_DIR", "XDG_DATA_HOME"):
-            monkeypatch.setenv(variable, short)
-        with robot_up(Path(short, "data")) as layer:
-            ask(layer, "pause")
-            yield layer
-
-
-@pytest.fixture
-def btc(capsys: pytest.CaptureFixture[str]) -> Btc:
-    """Runs a command: its exit code, and what it prints anywhere."""
-
-    def run(*words: str) -> tuple[int, str]:
-        try:
-            code = main(words)
-        except SystemExit as ended:
-            code = int(ended.code or 0)
-        printed = capsys.readouterr()
-        return code, printed.out + printed.err
-
-    return run
+from .layers import Btc, ask, refusal, submit, task, wait_for, wait_until
 
 
 def data(btc: Btc, *words: str) -> dict[str, Any]:
@@ -229,6 +200,31 @@ def test_an_answer_and_a_visitor(robot: TaskLayer, btc: Btc) -> None:
     assert btc("task", "answer", "yes", "please") == (0, "The robot hears that.\n")
     wait_until(lambda: robot.session.robot.ears.answer == "yes please")
     assert btc("robot", "visitor") == (0, "A visitor comes.\n")
+
+
+def test_the_status_of_a_task_that_waits_for_an_answer_says_how_to_answer(robot: TaskLayer, btc: Btc) -> None:
+    ask(robot, "resume")
+    submit(robot, 'ask Alice "Coffee?" then wait 1 h')
+    wait_until(lambda: robot.world_input.question)
+    assert 'It waits for an answer to "Coffee?". To answer: btc task answer TEXT\n' in btc("robot", "status")[1]
+    assert data(btc, "robot", "status")["question"] == "Coffee?"
+    btc("task", "answer", "yes")
+    wait_until(lambda: not robot.world_input.question)
+    assert "answer" not in btc("robot", "status")[1]
+
+
+def test_a_task_for_later_says_when(robot: TaskLayer, btc: Btc, monkeypatch: pytest.MonkeyPatch) -> None:
+    now = datetime(2026, 11, 28, 14, 35).timestamp()
+    monkeypatch.setattr(robot.handler, "_now", lambda: now)
+    for words, said in (
+        (["--at", "14:30"], " It begins tomorrow, 2026-11-29 14:30, at the earliest."),
+        (["--at", "14:40"], " It begins at 14:40 at the earliest."),
+        (["--by", "14:30"], " It is skipped if it hasn't begun by tomorrow, 2026-11-29 14:30."),
+        (["--at", "24 December at 9:00"], " It begins at 2026-12-24 09:00 at the earliest."),
+        ([], ""),
+    ):
+        text = btc("task", "add", "-c", "wave", *words)[1]
+        assert text.partition("is queued.")[2] == f"{said}\n"
 
 
 def test_somebody_holds_the_button_to_talk(robot: TaskLayer) -> None:

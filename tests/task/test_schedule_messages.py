@@ -116,6 +116,37 @@ def test_corrections_mend_the_text(text: str, fixed: str) -> None:
     assert text[: span.start] + words + text[span.end :] == fixed
 
 
+def advice(read: Callable[[], object]) -> str:
+    """What the message about a text says to write."""
+    with pytest.raises(MissionError) as refused:
+        read()
+    [problem] = refused.value.diagnostics
+    return problem.hint.partition("Write for example: ")[2]
+
+
+@pytest.mark.parametrize(
+    ("length", "rule"),
+    [
+        ("5 minutes", "every 5 minutes"),
+        ("2 hours", "every 2 hours"),
+        ("half an hour", "every half an hour"),
+        ("1 h 30 min", "every 90 minutes"),
+        ("an hour and 10 minutes", "every 70 minutes"),
+        ("1 day", "every day at 9:00"),
+        ("2 weeks", "every Tuesday, or on the second Tuesday of every month"),
+    ],
+)
+def test_a_length_of_time_shows_how_to_say_it(length: str, rule: str) -> None:
+    moment = advice(lambda: read_moment(length, NOW, BERLIN))
+    assert moment == f"in {length}"
+    assert read_moment(moment, NOW, BERLIN) > NOW
+    past = advice(lambda: read_past_moment(length, NOW, BERLIN))
+    assert past == f"{length} ago"
+    assert read_past_moment(past, NOW, BERLIN) < NOW
+    assert advice(lambda: read_rule(length, BERLIN)) == rule
+    read_rule(f"{rule.partition(', or ')[0]}{' at 9:00' * (length == '2 weeks')}", BERLIN)
+
+
 @pytest.mark.parametrize(
     ("name", "advice"),
     [

@@ -60,6 +60,14 @@ def as_text(value: Any) -> str:
     return str(to_stored(round(number, 6) if isinstance(number, float) else number))
 
 
+def as_whole(value: str | float) -> int:
+    """Return a whole number, also one that is written `2.0`. Raises ValueError for a fraction."""
+    number = float(value)
+    if not number.is_integer():
+        raise ValueError("a whole number is needed")
+    return int(number)
+
+
 def literal(text: str) -> int | float | str:
     """Return a constant in a port of a SubTree as 4.9 and later read it: a whole number of 64 bits, a double, or a
     text.

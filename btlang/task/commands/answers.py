@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from datetime import date, timedelta
 from difflib import unified_diff
 from itertools import takewhile
 
@@ -40,6 +41,20 @@ def shorten(mission: MissionText) -> str:
     """Return the name of a mission or else its text, cut, in one line."""
     text = one_line(mission.name or " / ".join(line.strip() for line in mission.text.splitlines() if line.strip()))
     return text if len(text) <= _LONGEST else text[: _LONGEST - 3] + "..."
+
+
+def describe_times(earliest: float | None, deadline: float | None, now: float) -> Iterator[str]:
+    """Say in sentences when a new task may begin: a clock time may be one of tomorrow."""
+    if earliest is not None and earliest > now:
+        yield f"It begins {_day_of(earliest, now)} at the earliest."
+    if deadline is not None:
+        yield f"It is skipped if it hasn't begun by {_day_of(deadline, now).removeprefix('at ').rstrip(',')}."
+
+
+def _day_of(moment: float, now: float) -> str:
+    written = format_moment(moment, now)
+    there, today = (date.fromtimestamp(each) for each in (moment, now))
+    return f"tomorrow, {written}," if there - today == timedelta(1) else f"at {written}"
 
 
 def schedule_data(schedule: Schedule) -> dict[str, Any]:

@@ -97,7 +97,7 @@ def emergency_stop(name: str = "", reason: str = "") -> list[str]:
 
     Returns a line for each. Raises MissionError (BT185) if there is no such robot, BT195 if a latch can't be written.
     """
-    names = [name] if name else _find_listening() or robots_known()
+    names = [name] if name else find_listening() or robots_known()
     lines = [_report_stop(each, reason) for each in names]
     if not names or None in lines:
         raise _nobody(name or USUAL_NAME)
@@ -125,7 +125,7 @@ def _report_stop(name: str, reason: str) -> str | None:
 
 
 def _only_name() -> str:
-    listening = _find_listening()
+    listening = find_listening()
     if len(listening) > 1:
         names = ", ".join(listening)
         what = f"Several robots are up: {names}"
@@ -133,7 +133,7 @@ def _only_name() -> str:
     return listening[0] if listening else USUAL_NAME
 
 
-def _find_listening() -> list[str]:
+def find_listening() -> list[str]:
     """List the robots that are up."""
     found = []
     for name in names_up():

@@ -13,24 +13,22 @@ from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.diagnostics.report import report_crash
 from btlang.speech.marks import without_marks
 from btlang.task import messages
-from btlang.task.commands.answers import task_data, task_line, write_report
+from btlang.task.commands.answers import describe_times, task_data
 from btlang.task.commands.checks import (
-    HIGHEST,
     check_labels,
     check_priority,
     check_values,
     choose_member,
     refusal_error,
-    report_times,
     task_times,
 )
 from btlang.task.commands.robot_handlers import ComponentHandler, VoiceHandler, WorldHandler
 from btlang.task.commands.store_handlers import LibraryHandler, ScheduleHandler, unknown_text_error
+from btlang.task.commands.store_reader import StoreReader
 from btlang.task.execution.emergency import EmergencyLatch
 from btlang.task.execution.executor import Executor
 from btlang.task.execution.manager import TaskManager
 from btlang.task.messages import Answer, Command, wrong
-from btlang.task.schedule.calendar import format_moment
 from btlang.task.store.records import ACTIVE, FINAL, WAITING, Act, MissionText, RequestedEnd, Restart, Task, TaskState
 from btlang.task.store.task_store import TaskStore
 from btlang.text.formatting import one_line
@@ -72,11 +70,12 @@ class Handler:
     ) -> None:
         self._store, self._manager, self._executor, self._emergency = store, manager, executor, emergency
         self._session, self._admit, self._now, self._down, self._needs = session, admit, now, down, needs
+        self._reader, self._world_input = StoreReader(store, manager, now, executor.hindrance), world_input
         schedules = ScheduleHandler(store, executor.wake, self._mission, now)
         library = LibraryHandler(store, admit, now, getattr(session.robot, "body", None), overs)
         components, world = ComponentHandler(session), WorldHandler(session, world_input)
         self._does: dict[type[Command], Callable[[Any, str], Answer]] = {
-            messages.Submit: self._submit, messages.List: self._list, messages.Show: self._show,
+            messages.Submit: self._submit, messages.List: self._reader.list, messages.Show: self._reader.show,
             messages.Cancel: partial(self._end, TaskState.CANCELED),
             messages.Kill: partial(self._end, TaskState.KILLED),
             messages.Interrupt: self._interrupt, messages.Resume: self._resume, messages.Skip: self._skip,
@@ -85,7 +84,8 @@ class Handler:
             messages.Put: library.put, messages.Delete: library.delete, messages.Library: library.list,
             messages.Pause: self._pause, messages.Step: self._step, messages.EmergencyStop: self._stop,
             messages.Release: self._release, messages.Say: self._say, messages.Down: self._end_all,
-            messages.Status: self._status, messages.Report: self._report, messages.Trail: self._trail,
+            messages.Status: self._status, messages.Report: self._reader.report,
+            messages.Trail: self._reader.trail,
             messages.Components: components.list, messages.ChangeComponent: components.change,
             messages.Picture: components.picture, messages.AnswerQuestion: world.answer,
             messages.Talk: world.talk,
@@ -131,42 +131,8 @@ class Handler:
             labels=check_labels(command.labels, command.tag), earliest=earliest, deadline=deadline,
             restart=choose_member(Restart, command.restart, "restart", command.tag),
         )  # fmt: skip
-        return Answer(True, f"Task {task.id} is queued.", {"task": task_data(task)})
-
-    def _list(self, command: messages.List, person: str) -> Answer:
-        wanted = {choose_member(TaskState, state, "states", command.tag) for state in command.states}
-        states = wanted or WAITING | ACTIVE
-        found = self._store.tasks(states, label=command.label, newest=bool(wanted & FINAL), limit=command.limit)
-        found.sort(key=lambda task: task.state not in ACTIVE)
-        is_cut = command.limit is not None and len(found) >= command.limit
-        more = max(self._store.count_tasks(states, label=command.label) - len(found), 0) if is_cut else 0
-        hindrance, now = self._executor.hindrance(), self._now()
-        first = self._manager.first(now)
-        tasks = [task_data(task, self._manager.why_waiting(task, now, hindrance, first)) for task in found]
-        lines = [task_line(task) for task in tasks] or ["There are no tasks."]
-        lines += [f"and {more} more: --limit N lists so many, --all every one"] if more else []
-        return Answer(True, "\n".join(lines), {"tasks": tasks, "more": more, "hindrance": hindrance})
-
-    def _show(self, command: messages.Show, person: str) -> Answer:
-        task = self._known(command.task)
-        now, data = self._now(), self._data(task)
-        changes = [change for _, change in self._store.changes(task.id)]
-        data["changes"] = [
-            {"time": each.time, "state": each.state, "cause": each.cause, "person": each.person} for each in changes
-        ]
-        lines = [
-            task_line(data),
-            f"  asked for by {one_line(task.person) or 'nobody'} at {format_moment(task.created, now)}",
-        ]
-        if task.needs:
-            lines.append(f"  needs {', '.join(task.needs)}")
-        for each in changes:
-            by = f", by {one_line(each.person)}" if each.person else ""
-            cause = f": {one_line(each.cause)}" if each.cause else ""
-            lines.append(f"  {format_moment(each.time, now)}  {each.state}{cause}{by}")
-        if task.recording:
-            lines.append(f"  recorded in {one_line(task.recording)}")
-        return Answer(True, "\n".join(lines), {"task": {**data, "text": task.mission.text}})
+        text = " ".join((f"Task {task.id} is queued.", *describe_times(earliest, deadline, self._now())))
+        return Answer(True, text, {"task": task_data(task)})
 
     def _end(self, state: TaskState, command: messages.Cancel | messages.Kill, person: str) -> Answer:
         task = self._open(command.task)
@@ -179,14 +145,14 @@ class Handler:
             )
             if ended is None:  # it ends at this moment, or is about to begin
                 time.sleep(_MOMENT)
-                known = self._known(task.id)
+                known = self._reader.known(task.id)
                 ended = known if known.state in FINAL or time.monotonic() > until else None
         self._executor.wake()
         if ended.state is state:
-            return Answer(True, f"Task {task.id} is {state}.", {"task": self._data(ended)})
+            return Answer(True, f"Task {task.id} is {state}.", {"task": self._reader.data(ended)})
         if ended.state in FINAL:
             raise refusal_error(task.id, f"was already over: {ended.state}")
-        return Answer(True, f"Task {task.id} is about to be {state}.", {"task": self._data(ended)})
+        return Answer(True, f"Task {task.id} is about to be {state}.", {"task": self._reader.data(ended)})
 
     def _interrupt(self, command: messages.Interrupt, person: str) -> Answer:
         task = self._open(command.task)
@@ -196,14 +162,14 @@ class Handler:
             run.save()  # raises if it can't be kept
         ended = self._executor.end(task.id, RequestedEnd(TaskState.DELAYED, cause, person, token))
         if ended is None:
-            state = self._known(task.id).state
+            state = self._reader.known(task.id).state
             raise refusal_error(
                 task.id, "ends already" if state is TaskState.UNDERWAY else f"isn't under way: it's {state}"
             )
         if ended.state in FINAL:
             raise refusal_error(task.id, f"was already over: {ended.state}")
         text = f"Task {task.id} is interrupted. To let it go on, use the token {token}."
-        return Answer(True, text, {"task": self._data(ended), "token": token})
+        return Answer(True, text, {"task": self._reader.data(ended), "token": token})
 
     def _resume(self, command: messages.Resume, person: str) -> Answer:
         if not command.task:
@@ -223,7 +189,7 @@ class Handler:
         if resumed is None:
             raise refusal_error(task.id, "has changed meanwhile")
         self._executor.wake()
-        return Answer(True, f"Task {task.id} goes on when it's its turn.", {"task": self._data(resumed)})
+        return Answer(True, f"Task {task.id} goes on when it's its turn.", {"task": self._reader.data(resumed)})
 
     def _skip(self, command: messages.Skip, person: str) -> Answer:
         task, now = self._open(command.task), self._now()
@@ -234,7 +200,7 @@ class Handler:
         if skipped is None:
             raise refusal_error(task.id, "has begun, so it can't be skipped: cancel it")
         self._executor.wake()
-        return Answer(True, f"Task {task.id} is skipped.", {"task": self._data(skipped)})
+        return Answer(True, f"Task {task.id} is skipped.", {"task": self._reader.data(skipped)})
 
     def _reorder(self, command: messages.Reorder, person: str) -> Answer:
         task = self._open(command.task)
@@ -246,7 +212,7 @@ class Handler:
             moved = self._move_before(task, self._open(command.before))
         self._executor.wake()
         assert moved is not None
-        return Answer(True, f"Task {task.id} has a new place.", {"task": self._data(moved)})
+        return Answer(True, f"Task {task.id} has a new place.", {"task": self._reader.data(moved)})
 
     def _move_before(self, task: Task, other: Task) -> Task | None:
         if task.id == other.id:
@@ -257,7 +223,7 @@ class Handler:
         return self._store.move_before(task.id, other.id)
 
     def _again(self, command: messages.Again, person: str) -> Answer:
-        task = self._known(command.task)
+        task = self._reader.known(command.task)
         fresh = Task(
             0,
             task.mission,
@@ -319,29 +285,20 @@ class Handler:
         state = self._executor.robot_state
         data: dict[str, Any] = {
             "stopped": self._emergency.reason, "paused": self._executor.is_paused, "hindrance": hindrance,
-            "task": None if task is None else self._data(self._known(task.id)),
+            "task": None if task is None else self._reader.data(self._reader.known(task.id)),
             "running": [] if snapshot is None else list(snapshot.running),
             "battery": None if state is None else state.battery,
             "waiting": self._store.count_tasks(WAITING),
+            "question": "" if task is None else self._world_input.question,
         }  # fmt: skip
         running = f": {', '.join(data['running'])}" if data["running"] else ""
         doing = "It has nothing to do" if task is None else f"Task {task.id} is under way{running}"
         lines = [f"{hindrance[0].upper()}{hindrance[1:]}." if hindrance else f"{doing}."]
+        if data["question"]:
+            asked = f'It waits for an answer to "{one_line(data["question"])}".'
+            lines.append(f"{asked} To answer: btc task answer TEXT")
         lines.append(f"{data['waiting']} waiting." if data["waiting"] else "Nothing waits.")
         return Answer(True, "\n".join(lines), data)
-
-    def _report(self, command: messages.Report, person: str) -> Answer:
-        since, until = report_times(command.since, command.until, self._now())
-        lines = list(write_report(self._store, since, until))
-        return Answer(True, "\n".join(lines), {"lines": lines})
-
-    def _trail(self, command: messages.Trail, person: str) -> Answer:
-        now, found = self._now(), self._store.acts(command.limit)
-        lines = [
-            f"{format_moment(each.time, now)}  {one_line(each.person)}: {one_line(each.details)}" for each in found
-        ]
-        acts = [each.as_dict() for each in found]
-        return Answer(True, "\n".join(lines) or "Nobody has asked for anything.", {"acts": acts})
 
     def _mission(self, command: messages.Submit | messages.AddSchedule) -> MissionText:
         """Return the mission of a command, which this robot can do."""
@@ -357,20 +314,11 @@ class Handler:
         check_values(self._admit(mission), mission.values)
         return mission
 
-    def _known(self, number: int) -> Task:
-        task = self._store.task(number) if abs(number) <= HIGHEST else None
-        if task is None:
-            raise refusal_error(number, "isn't known")
-        return task
-
     def _open(self, number: int) -> Task:
-        task = self._known(number)
+        task = self._reader.known(number)
         if task.state in FINAL:
             raise refusal_error(number, f"was already over: {task.state}")
         return task
-
-    def _data(self, task: Task) -> dict[str, Any]:
-        return task_data(task, self._manager.why_waiting(task, self._now(), self._executor.hindrance()))
 
 
 def _cause(reason: str, person: str) -> str:

@@ -14,7 +14,7 @@ from datetime import date, datetime, timedelta
 from btlang.support.record import Record
 from btlang.task.schedule.calendar import Days, Rule, day_of, moment_of, read_zone
 from btlang.task.schedule.rules import EXAMPLE, read_rule_in
-from btlang.task.schedule.words import ScheduleWords, read_text
+from btlang.task.schedule.words import ScheduleWords, Unread, read_length, read_text
 from btlang.text.time_of_day import DAY
 
 TYPE_CHECKING = False
@@ -102,7 +102,7 @@ def read_moment(text: str, now: float, zone: str = "") -> float:
     Raises MissionError (BT194) for another text, and for an unknown zone.
     """
     read_zone(zone)
-    return read_text(text, "<time>", _MOMENT, lambda words: _Moment(words, now, zone).read())
+    return read_text(text, "<time>", _MOMENT, lambda words: _Moment(words, now, zone).moment())
 
 
 def read_past_moment(text: str, now: float, zone: str = "") -> float:
@@ -110,7 +110,7 @@ def read_past_moment(text: str, now: float, zone: str = "") -> float:
     `yesterday at 9:00`. Raises MissionError (BT194) also for a time that is still to come.
     """
     read_zone(zone)
-    return read_text(text, "<time>", _PAST_MOMENT, lambda words: _PastMoment(words, now, zone).read())
+    return read_text(text, "<time>", _PAST_MOMENT, lambda words: _PastMoment(words, now, zone).moment())
 
 
 class _Moment:
@@ -121,12 +121,23 @@ class _Moment:
     """The days that have a name, by their distance from today."""
     openers: ClassVar[tuple[str, ...]] = ("on",)
     otherwise = "is in the past"
+    away = "in {}"
+    """How to say a moment by its distance from now."""
 
     def __init__(self, words: ScheduleWords, now: float, zone: str) -> None:
         self.words, self.now, self.zone = words, now, zone
 
-    def read(self) -> float:
+    def moment(self) -> float:
         """Return the seconds since 1970. Raises Unread."""
+        try:
+            return self._read()
+        except Unread:
+            if read_length(self.words.source) is None:
+                raise
+        example = self.away.format(self.words.source.text.strip())
+        raise self.words.whole("is a length of time, not a time", example)
+
+    def _read(self) -> float:
         words = self.words
         if words.takes("now"):
             moment = self.now
@@ -224,6 +235,7 @@ class _PastMoment(_Moment):
     named: ClassVar[dict[str, int]] = {"yesterday": -1, "today": 0, "tomorrow": 1}
     openers: ClassVar[tuple[str, ...]] = ("on last", "last", "on")
     otherwise = "is still to come"
+    away = "{} ago"
 
     def relative(self) -> float | None:
         return self.shift(-1, "10 minutes ago", "ago") if self.words.ends_with("ago") else None

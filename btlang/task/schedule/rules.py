@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from btlang.task.schedule.calendar import LAST, Days, Rule
-from btlang.task.schedule.words import ScheduleWords, Unread
+from btlang.task.schedule.words import ScheduleWords, Unread, read_length
+from btlang.text.source import Source
 from btlang.text.time_of_day import DAY, EVERY_DAY, shown
 
 EXAMPLE = "every day at 9:00"
@@ -29,7 +30,25 @@ _LONG_UNITS = ("day", "days", "week", "weeks", "weekend", "weekends", "month", "
 
 def read_rule_in(words: ScheduleWords) -> Rule:
     """Read the rule that all of the words are. Raises Unread."""
-    return _RuleReader(words).rule()
+    try:
+        return _RuleReader(words).rule()
+    except Unread:
+        seconds = read_length(words.source)
+        if seconds is None:
+            raise
+    raise words.whole("is a length of time, not a schedule", _example_with(words.source, seconds))
+
+
+def _example_with(length: Source, seconds: float) -> str:
+    """Return the rule that is meant by a length of time."""
+    written = f"every {length.text.strip()}"
+    try:
+        _RuleReader(ScheduleWords(Source(written))).rule()
+    except Unread as unread:  # `every 1 h 30 min`, `every 2 weeks`
+        if seconds < DAY and seconds % _SHORTEST == 0:
+            return f"every {seconds / _SHORTEST:g} minutes"
+        return EXAMPLE if seconds <= DAY else unread.example or EXAMPLE
+    return written
 
 
 class _RuleReader:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection, Mapping
+from contextlib import suppress
 from datetime import date
 
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
@@ -11,7 +12,7 @@ from btlang.frontends.mission.explanations.times import explain_time
 from btlang.task.schedule.calendar import MONTHS, ORDINAL_ENDINGS, ORDINALS, YEARS
 from btlang.text.source import Source, Span
 from btlang.text.spelling import respellings
-from btlang.text.time_of_day import EVERY_DAY, WEEKDAYS, WEEKEND, WORKDAYS, seconds_of
+from btlang.text.time_of_day import DAY, EVERY_DAY, WEEKDAYS, WEEKEND, WORKDAYS, seconds_of
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, split
 from btlang.vocabulary.load import load_vocabulary
 
@@ -320,6 +321,10 @@ class ScheduleWords:
         shown = more and len(span.text) <= _LONGEST_HINT
         return Unread(span, problem, self._last, f"{span.text} {' '.join(more)}" if shown else "")
 
+    def whole(self, problem: str, example: str) -> Unread:
+        """Make the error to raise: what is wrong with the whole text, and what to write for all of it."""
+        return Unread(self._text.span(0, self._last), problem, self._last, example)
+
     def unknown(self, example: str) -> Unread:
         """Make the error to raise: the next word isn't understood, or one behind it that was looked at, or the text has
         ended.
@@ -338,6 +343,22 @@ def _from_to(first: tuple[int, ...], last: tuple[int, ...]) -> tuple[int, ...]:
     """Return the weekdays from the first to the last, which may be in the next week."""
     days = [(first[0] + more) % 7 for more in range((last[-1] - first[0]) % 7 + 1)]
     return tuple(day for day in EVERY_DAY if day in days)
+
+
+def read_length(source: Source) -> float | None:
+    """Return the seconds of a text that is a length of time and nothing else: `5 minutes`, `1 h 30 min`, `2 days`."""
+    seconds = 0.0
+    with suppress(Unread):
+        words = ScheduleWords(source)
+        while not words.is_over:
+            days = words.days()
+            more = words.duration() if days is None else days * DAY
+            if more is None:
+                return None
+            seconds += more
+            words.takes("and")
+        return seconds or None
+    return None
 
 
 _CAPITAL = {name.lower(): name for name in (*WEEKDAYS, *(f"{name}s" for name in WEEKDAYS), *MONTHS)}

@@ -11,6 +11,6 @@ MISSIONS = sorted(path for path in FOLDER.glob("*.txt") if not path.name.endswit
 
 @pytest.mark.parametrize("path", MISSIONS, ids=lambda path: path.name)
 def test_missions_succeed(path):
-    mission = btlang.parse_file(str(path))
-    outcome = mission.run(robot=str(FOLDER / "robot.toml"), speed="max", seed=0, time_limit=600)
+    with btlang.Session(FOLDER / "robot.toml") as session:  # knows the words of the robot's components and gestures
+        outcome = session.run(path, speed="max", seed=0, time_limit=600).outcome
     assert outcome.succeeded, outcome.why()

@@ -44,10 +44,16 @@ async def follow(session: Session) -> float:
     return outcome.seconds
 
 
-def tree() -> str | bytes:
+def tree() -> str:
     return sequence(
         is_free, bored, leaf(hop, 2), repeat(parallel("wave", "nod", success_count=1), num_cycles=2), name="greet"
     ).to("xml")
+
+
+def written(mission: btlang.Mission, target: str) -> list[str | bytes]:
+    again = btlang.parse_tree(mission.to("english"))
+    picture: bytes = again.to("png")
+    return [picture, mission.to(target)]
 
 
 def result() -> bool:

@@ -1,0 +1,83 @@
+"""What is known of tasks that are over, and of a robot that is down; what it says when it comes up again."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from btlang.cli.robot import left_over
+from btlang.task.commands.client import data_folder
+from btlang.task.layer import TaskLayer
+from btlang.task.store.records import MissionText, Task, TaskState
+from btlang.task.store.task_store import open_store
+
+from .layers import Btc, ask, robot_up, submit, wait_for
+
+
+def test_why_answers_for_a_task(robot: TaskLayer, btc: Btc, tmp_path: Path) -> None:
+    ask(robot, "resume")
+    done = submit(robot, "say hi")
+    wait_for(robot, done, TaskState.COMPLETED)
+    shown = btc("task", "show", str(done))[1]
+    assert btc("why", str(done)) == btc("task", "why", str(done)) == (0, shown)
+    recording = str(tmp_path / "run.mcap")
+    assert btc("run", "-c", "say hi", "--speed", "max", "--quiet", "--record", recording)[0] == 0
+    robot.store.amend(done, recording=recording)
+    code, text = btc("why", str(done))
+    assert code == 0
+    assert text == btc("task", "show", str(done))[1] + "\n" + btc("why", recording)[1]
+    assert "Task 99 isn't known" in btc("why", "99")[1]
+    assert "isn't the number of a task" in btc("why", "9" * 5000)[1]
+    assert "isn't the number of a task" in btc("task", "why", "now")[1]
+
+
+@pytest.mark.parametrize("name", ["robot", "rover"])
+def test_a_robot_that_is_down_still_says_what_it_did(name: str, btc: Btc, short: Path) -> None:
+    with robot_up(Path(data_folder(name)), name) as layer:
+        wait_for(layer, submit(layer, "say hi"), TaskState.COMPLETED)
+        ask(layer, "pause")
+        submit(layer, "wave", labels=["tour"])
+        ask(layer, "put", name="q", text="wave")
+        ask(layer, "schedule", rule="every day at 9:00", text="wave")
+    start = f"btc robot up{f' --name {name}' * (name != 'robot')}"
+    down = f"The robot '{name}' is down; this is from its store. To bring it up: {start}\n"
+    for words, said in (
+        ("task list", "   2  queued     wave  [the robot is down]\n"),
+        ("task list --all", "   1  completed  say hi\n"),
+        ("task show 1", "completed"),
+        ("task why 1", "completed"),
+        ("why 1", "completed"),
+        ("robot report", "1 of 2 done, 1 not over yet"),
+        ("task trail", "submit"),
+        ("task library", "q, revision 1"),
+        ("task schedules", "every day at 09:00: wave"),
+    ):
+        code, text = btc(*words.split())
+        assert code == 0, text
+        assert down in text
+        assert said in text
+    code, text = btc("task", "show", "9")
+    assert (code, "Task 9 isn't known" in text) == (1, True)
+    for words in ("task add -c wave", "task cancel 2", "robot status", "task list --live", "robot resume"):
+        code, text = btc(*words.split())
+        assert (code, "No robot is up" in text) == (2, True), text
+
+
+def test_a_robot_that_never_was_up_has_no_store(btc: Btc, short: Path) -> None:
+    for words in (["task", "list"], ["why", "1"], ["task", "list", "--name", "rover"]):
+        code, text = btc(*words)
+        assert (code, "BT185" in text) == (2, True)
+    assert not any(short.rglob("*.db"))
+
+
+def test_what_is_left_from_before_is_said_when_the_robot_comes_up(short: Path) -> None:
+    with open_store(str(short / "tasks.db")) as store:
+        assert left_over(store, "standard") == []
+        store.add(Task(0, MissionText("wave"), "ann", 0.0))
+        assert left_over(store, "standard") == ["1 task is left from before. To see it: btc task list"]
+        store.add(Task(0, MissionText("nod"), "ann", 0.0))
+        assert left_over(store, "rover") == [
+            "2 tasks are left from before. They were for another body, 'standard'; this one is 'rover'. "
+            "To see them: btc task list"
+        ]
