@@ -14,7 +14,7 @@ from btlang.vocabulary.trie import longest
 
 NAMES = world_names()
 VOCABULARY = load_vocabulary((), NAMES.by_type)
-ENTRIES = [entry for entries in VOCABULARY.entries.values() for entry in entries]
+ENTRIES = [entry for entries in VOCABULARY.entries.values() for entry in entries if entry.call]  # not further phrases
 
 
 def meaning(text):

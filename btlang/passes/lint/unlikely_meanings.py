@@ -79,17 +79,19 @@ def find_next_day(compilation: Compilation) -> Iterator[Diagnostic]:
             for item in node.items:
                 wait = waits.get(id(item))
                 if wait is not None and ended:
-                    yield from _next_day(wait, ended, compilation.vocabulary)
+                    is_first = item is wait or (isinstance(item, ast.Chain) and item.items[0] is wait)
+                    yield from _next_day(wait, ended, is_first, compilation.vocabulary)
                 if isinstance(item, ast.Whenever):
                     continue
                 end = ends.get(id(item))
                 ended = "" if end is None else end.time
 
 
-def _next_day(wait: ast.WaitTime, ended: str, vocabulary: Lexicon) -> Iterator[Diagnostic]:
-    """Report a wait for a time that is over when what comes before has ended."""
+def _next_day(wait: ast.WaitTime, ended: str, is_first: bool, vocabulary: Lexicon) -> Iterator[Diagnostic]:
+    """Report a wait for a time that is over when what comes before has ended; `every day at noon` may wait."""
     times = wait.time.split(";")
-    over = ended if ended in times else next((time for time in times if _is_over(time, ended)), "")
+    earlier = (time for time in times if is_first and _is_over(time, ended))
+    over = ended if ended in times else next(earlier, "")
     words = vocabulary.word("whenever"), *vocabulary.asking["time_is"], vocabulary.asking["hours"][0], over
     advice = "Leave it out." if over == ended else f"To do it meanwhile, write: {' '.join(words)}, ..."
     if over:

@@ -359,6 +359,6 @@ class Calls:
         return text
 
     def _unknown_value(self, span: Span, key: str) -> None:
-        from btlang.frontends.mission.explanations.unknown import unknown_value
+        from btlang.frontends.mission.explanations.mission_values import unknown_value
 
         self.problems.append(unknown_value(span, key, self._context.known or ()))

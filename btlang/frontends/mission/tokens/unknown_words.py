@@ -86,7 +86,9 @@ class UnknownWords:
 
     def why(self, at: int, end: int, match: Match | None) -> Diagnostic:
         """What is wrong with words that are no phrase, or one that stands where it cannot."""
-        from btlang.frontends.mission.explanations import fragments, unknown  # most missions have nothing to explain
+        # Most missions have nothing to explain.
+        from btlang.frontends.mission.explanations import fragments, unknown
+        from btlang.frontends.mission.explanations.mission_values import misread_head
 
         role = match.meaning.role if match is not None else ""
         if match is not None and role in ("arrival", "arrival_at"):
@@ -111,7 +113,7 @@ class UnknownWords:
             )
         if role == INCLUDE:
             return misplaced(self._text.span(at, end), self._vocabulary)
-        return unknown.misread_head(self._text, at, role, self._vocabulary)
+        return misread_head(self._text, at, role, self._vocabulary)
 
     def _which_first(self, at: int, end: int) -> Diagnostic:
         """BT151 for `A, B first`."""
