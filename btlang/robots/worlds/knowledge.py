@@ -56,6 +56,7 @@ class Knowledge:
         self.sight = sight
         self._given_to: dict[str, str] = {}
         self._places = {place.name: place for place in world.places}
+        self._regions = {zone.name: zone for zone in world.regions}
 
     def name_places(self, places: Iterable[Place]) -> None:
         """Set the places of a mission, in addition to those of the world."""
@@ -64,11 +65,9 @@ class Knowledge:
 
     def place(self, name: str) -> Place | None:
         """Return the place of a name as the world spells it; of a region the point that is farthest from its border."""
-        found = self._places.get(name)
-        region = next((zone for zone in self.world.regions if zone.name == name), None) if found is None else None
-        if region is not None:
-            found = self._places[name] = Place(name, *_middle(region, self.world.boxes))
-        return found
+        if name not in self._places and name in self._regions:
+            self._places[name] = Place(name, *_middle(self._regions[name], self.world.boxes))
+        return self._places.get(name)
 
     def whereabouts(self) -> tuple[Whereabouts, ...]:
         """Return where walking people and unknown things are, to the centimetre, and whether they are in view."""

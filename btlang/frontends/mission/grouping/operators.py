@@ -19,9 +19,9 @@ from btlang.frontends.mission.grouping.readings import otherwise_of_another, rep
 from btlang.frontends.mission.grouping.scan import ENDS, Scan, Unit
 from btlang.frontends.mission.grouping.stack import StackEntry
 from btlang.frontends.mission.token import Token, constraint_of
+from btlang.frontends.mission.tokens.settling import FAILS
 from btlang.vocabulary.language_tables import CONNECTIVES
 
-_FAILS = "if_fails"
 _JOINTS = {"in_parallel": "MEANWHILE", "while_doing": "MEANWHILE", "before": "THEN"}
 
 
@@ -45,7 +45,7 @@ def connective(scan: Scan, token: Token) -> None:
 def _answers_try(scan: Scan, token: Token) -> bool:
     """`try to A; if that fails, B`: makes these words the `otherwise` of the nearest `try`."""
     owner = scan.stack[-1].else_owner
-    if token.value != _FAILS or owner is None or owner.opener is None or owner.opener.role != "try":
+    if token.value != FAILS or owner is None or owner.opener is None or owner.opener.role != "try":
         return False
     token.kind = "otherwise"
     return True
@@ -58,7 +58,7 @@ def _skip_comma(scan: Scan) -> None:
 
 def _join(scan: Scan, token: Token, kind: str) -> None:
     entry = scan.stack[-1]
-    if token.value == _FAILS:
+    if token.value == FAILS:
         entry.settle("AND")  # `go to Bob, pick up the cup, and if that fails, A`: all of them fail
     before = [*entry.joints, *entry.commas]
     entry.begin_chain()

@@ -84,7 +84,7 @@ class StackEntry:
         if follows_comma and token.kind in ("WIDE_AND", "WIDE_MEANWHILE", "WIDE_OR"):
             token.kind = token.kind[5:]
         meaning = token.kind if token.kind in ("AND", "MEANWHILE", "OR") else ""
-        self._settle(meaning)
+        self.settle(meaning)
         if token.kind == "WIDE_OR":
             token.kind = "OR_ELSE"
         if condition:
@@ -98,21 +98,18 @@ class StackEntry:
 
     def stop(self, token: Token) -> None:
         """A stop before a word that goes on: no comma before it looks any further."""
-        self._settle("")
+        self.settle()
         self.last = token
-
-    def settle(self, meaning: str = "") -> None:
-        """The commas before this place look no further: they have a meaning, or else mean `then`."""
-        self._settle(meaning)
 
     def close_chain(self) -> None:
         """The chain of operands ends here: commas that no connective has decided mean `then` (or `and`)."""
         if self.commas:
-            self._settle("")
+            self.settle()
         self.last = None
         self.joints.clear()
 
-    def _settle(self, meaning: str) -> None:
+    def settle(self, meaning: str = "") -> None:
+        """The commas before this place look no further: they have a meaning, or else mean `then` (or `and`)."""
         if not self.commas:
             return
         kind = ("COND_" + (meaning or "AND")) if self.is_condition else (meaning or "THEN")

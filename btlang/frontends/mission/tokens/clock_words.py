@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from bisect import bisect_left
-
 from btlang.frontends.mission.token import Called, OnDays, Token, constraint_of
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.frontends.mission.tokens.silent_words import BEGINS
@@ -65,21 +63,6 @@ class ClockWords(SentenceReader):
         condition.kind = "condition"
         tokens += [Token("while", start, start), condition]
         return match.last
-
-    def once_more(self, at: int) -> int:
-        """`count the people, wave and count again`: the latest command with this verb."""
-        again = self._phrase(at + 1)
-        if again is None or again.meaning.role != "again":
-            return 0
-        text = self._text
-        commands = (token for token in reversed(self._tokens) if token.kind == "command")
-        said = next(
-            (each for each in commands if text.words[bisect_left(text.starts, each.start)] == text.words[at]), None
-        )
-        if said is None:
-            return 0
-        self._tokens.append(Token("command", text.starts[at], text.ends[again.last - 1], said.value))
-        return again.last
 
     def _is_singular(self, days: SlotValue) -> bool:
         """Whether days are said by the names that they have, `Friday`: not `Fridays`, `weekdays`."""

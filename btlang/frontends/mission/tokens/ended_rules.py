@@ -127,24 +127,24 @@ def _close_while(tokens: list[Token], at: int, opening: Entry) -> None:
     closing, begin = tokens[at], tokens[at + 1]
     last, behind = _condition_end(tokens, at + 2)
     condition, end = tokens[at + 2 : last], tokens[last - 1].end
-
-    def rule(holds: bool, command: Token) -> list[Token]:
-        return [Token("whenever", begin.start, begin.end), *(condition if holds else denied), comma, command]
-
     comma, semi = Token("comma", end, end), Token("semi", end, end)
-    is_single = len(condition) == 1
-    denied = [Token("not", begin.start, begin.start)] * is_single + condition
-    if not is_single:
-        around = Token("open", begin.start, begin.start), Token("close", end, end)
-        denied = (
-            condition[1:]
-            if len(condition) == 2 and condition[0].kind == "not"
-            else [Token("not", begin.start, begin.start), around[0], *condition, around[1]]
-        )
+    held, over = condition, _denied(condition, begin.start, end)
+    if begin.kind == "unless":
+        held, over = over, held
     command = Token("command", end, end, _opened(closing, opening))
-    is_while = begin.kind != "unless"
-    rules = [*rule(is_while, closing), semi, *rule(not is_while, command)]
-    tokens[at : behind if behind > last else last] = [*rules, semi] if behind > last else rules
+    first, second = (Token("whenever", begin.start, begin.end) for _ in range(2))
+    rules = [first, *held, comma, closing, semi, second, *over, comma, command]
+    tokens[at:behind] = [*rules, semi] if behind > last else rules
+
+
+def _denied(condition: list[Token], start: int, end: int) -> list[Token]:
+    """Return the tokens of a condition that holds where another one doesn't, which is at some characters."""
+    denial = Token("not", start, start)
+    if len(condition) == 1:
+        return [denial, *condition]
+    if len(condition) == 2 and condition[0].kind == "not":
+        return condition[1:]
+    return [denial, Token("open", start, start), *condition, Token("close", end, end)]
 
 
 def _say_where(tokens: list[Token], at: int, vocabulary: Lexicon, span: Callable[[int, int], Span]) -> None:
@@ -172,10 +172,8 @@ def _two_readings(tokens: list[Token], at: int, vocabulary: Lexicon, span: Calla
     first = statement_start(tokens, at)
     last, _ = _condition_end(tokens, at + 2)
     before = span(tokens[first].start, tokens[run_start(tokens, at, JOINTS | {"but"}) - 1].end).text
-    whole, condition = (
-        span(tokens[first].start, tokens[last - 1].end),
-        span(tokens[at + 1].start, tokens[last - 1].end).text,
-    )
+    whole = span(tokens[first].start, tokens[last - 1].end)
+    condition = span(tokens[at + 1].start, tokens[last - 1].end).text
     forbidden = span(tokens[at].start, tokens[at].end).text
     commands = span(tokens[first].start, tokens[at].end).text
     one, other = f"{forbidden} {condition}. {before}", f"{condition}, {commands}"

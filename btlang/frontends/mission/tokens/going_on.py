@@ -116,7 +116,7 @@ class GoingOn(SentenceReader):
     def going_on(self, role: str, words: Span) -> str:
         """The role of words that go on with the statement before: `if you don't find it` denies `if you find it`.
 
-        BT168 for what goes on with a failure where something stands between: `A. If that fails, B. Otherwise C`.
+        BT168 for what goes on with a failure where something stands between: `if C, A. If that fails, B. Otherwise D`.
         BT145 for silence behind what is no question: `ask "Tea?". If she says no, A. If she says nothing, B`.
         """
         if role == _UNANSWERED and self._has_answered():
@@ -148,14 +148,14 @@ class GoingOn(SentenceReader):
         self._check_asked(self._text.span(at, match.last))
 
     def _check_asked(self, words: Span) -> None:
-        word = self._vocabulary.word
-        if not self._asks():
-            said = next((token for token in reversed(self._tokens) if token.kind == "command"), None)
-            question = f'"{_question_in(said)}"'
-            verb = self._vocabulary.entry(ASK)
-            begin = verb.phrases[0].split()[0] if verb is not None else ""
-            example = f"{begin} {question}. {word(WORKS).capitalize()}, wave. {word('otherwise').capitalize()} nod"
-            self._calls.problems.append(diagnostic("BT145", words, words=words.text.rstrip(","), example=example))
+        said = next((token for token in reversed(self._tokens) if token.kind == "command"), None)
+        if said is not None and hears(said):
+            return
+        word, verb = self._vocabulary.word, self._vocabulary.entry(ASK)
+        begin = verb.phrases[0].split()[0] if verb is not None else ""
+        question = f'{begin} "{_question_in(said)}"'
+        example = f"{question}. {word(WORKS).capitalize()}, wave. {word('otherwise').capitalize()} nod"
+        self._calls.problems.append(diagnostic("BT145", words, words=words.text.rstrip(","), example=example))
 
     def _unclear(self, words: Span) -> None:
         """BT168: about which command the words are."""
@@ -234,11 +234,6 @@ class GoingOn(SentenceReader):
             return False
         at = next(at for at in reversed(range(len(self._tokens))) if self._tokens[at].kind == WORKS)
         return hears(self._tokens[run_start(self._tokens, at, _JOINTS | MEASURES) - 1])
-
-    def _asks(self) -> bool:
-        """Whether the latest command waits for what somebody says."""
-        said = next((token for token in reversed(self._tokens) if token.kind == "command"), None)
-        return said is not None and hears(said)
 
     def give_up(self, end: int) -> None:
         """`A. If that fails, say "no" and stop`: the command that ends at a word ends the mission, which has failed.

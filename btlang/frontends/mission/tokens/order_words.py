@@ -93,7 +93,7 @@ class OrderWords(ClockWords, JourneyWords):
         text = self._text
         return (
             self._go_and_see(at)
-            or self.once_more(at)
+            or self._once_more(at)
             or self._start_of_leg(at)
             or self._pace(at)
             or self._journey_of_constraint(at)
@@ -290,6 +290,21 @@ class OrderWords(ClockWords, JourneyWords):
             return 0
         self._partial.append(journey, at)
         return journey.last
+
+    def _once_more(self, at: int) -> int:
+        """`count the people, wave and count again`: the latest command with this verb."""
+        again = self._phrase(at + 1)
+        if again is None or again.meaning.role != "again":
+            return 0
+        text = self._text
+        commands = (token for token in reversed(self._tokens) if token.kind == "command")
+        said = next(
+            (each for each in commands if text.words[bisect_left(text.starts, each.start)] == text.words[at]), None
+        )
+        if said is None:
+            return 0
+        self._tokens.append(Token("command", text.starts[at], text.ends[again.last - 1], said.value))
+        return again.last
 
     def _on_way(self, at: int, end: int) -> int:
         """`A, and on the way B`, `A and B on the way`: with the journey, before it if it is a task."""

@@ -55,10 +55,10 @@ class Outcomes(GoingOn):
         token, said = self._tokens[-1], match.meaning.role
         if role == "then" and len(self._tokens) > 1:
             self.found(match, at)
-        goes_on = self._text.words[match.last] in (",", *self._vocabulary.roles["and"])
-        if goes_on and match.meaning.role == "once" and len(self._tokens) > 1:
-            self._tokens.pop()  # `go to every room once and wave in each one`
-            return match.last
+        if said == "once" and len(self._tokens) > 1:
+            if self._text.words[match.last] in (",", *self._vocabulary.roles["and"]):
+                self._tokens.pop()  # `go to every room once and wave in each one`
+                return match.last
         if role == "until" and len(self._tokens) > 1 and self._tokens[-2].role == LIMIT:
             self._doubt_count(self._tokens[-2], match, at)
         if role in (FAILS, "if_unanswered", "otherwise"):
