@@ -149,6 +149,7 @@ def test_a_leaf_wakes_the_run_from_another_thread() -> None:
 
         thread = threading.Timer(0.05, work)
         thread.start()
+        yield  # in a busy process the thread may have ended by now
         while thread.is_alive() and not ended:
             yield
         ended.append(time.monotonic())
