@@ -8,8 +8,9 @@ from btlang.support.record import Record
 from btlang.text.words import Words
 from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.entry import MANNER
+from btlang.vocabulary.match import SlotValue
 from btlang.vocabulary.nouns import Description
-from btlang.vocabulary.references import ALL, LATEST, NAMES, SELF, Choice, Parts, choice_of, is_one
+from btlang.vocabulary.references import ALL, LATEST, NAMES, SELF, Choice, Parts, choice_of, is_one, is_related
 from btlang.vocabulary.value_type import DOOR, OBJECT, PLACE, WORLD, ZONE, format_number
 from btlang.vocabulary.values import Values, key_of
 from btlang.vocabulary.word_tree import find
@@ -173,6 +174,19 @@ class ReadingContext:
                 continue  # `put it on the table` isn't about what is on the table
             if self.values.likenesses.may_say(kind, parts, more):
                 yield self._described(kind, how, (*parts, *more)), last
+
+    def wider_list(self, text: Words, listed: SlotValue) -> Iterator[SlotValue]:
+        """The lists that what stands behind one makes of all its values: `the cup and the bottle from the lab`.
+
+        None where a value has such words of its own: the last one has them alone then.
+        """
+        kind, end = listed.type, listed.last
+        if kind not in WORLD or text.words[end] not in self.modifiers or any(map(is_related, listed.texts)):
+            return
+        ways = [{last: said for said, last in self.wider(kind, text, end - 1, (each, end))} for each in listed.texts]
+        for last, said in ways[0].items():
+            if all(last in way for way in ways):
+                yield listed.replace(text=said, more=tuple(way[last] for way in ways[1:]), last=last)
 
     def _named_after(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
         """A name with what may stand before it: `the red ball 2`, `my phone`, `any door`."""

@@ -112,6 +112,12 @@ def choice_of(text: str) -> Choice | None:
     return Choice(words[0], words[1], words[2], tuple((name, value) for name, _, value in named))
 
 
+def is_related(text: str) -> bool:
+    """Return whether a port text is a choice that another thing describes: `the cup on the table`."""
+    choice = choice_of(text) if "|" in text else None
+    return choice is not None and not RELATIONS.keys().isdisjoint(dict(choice.parts))
+
+
 def choice_by(ports: Mapping[str, str]) -> Choice:
     """The choice that a node with these ports makes."""
     parts = ((name, text) for name, text in ports.items() if name not in _NO_PARTS)

@@ -15,7 +15,7 @@ from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.nouns import Description
 from btlang.vocabulary.pattern import Form, Slot
 from btlang.vocabulary.reading_context import ReadingContext
-from btlang.vocabulary.references import RELATIONS, choice_of
+from btlang.vocabulary.references import choice_of, is_related
 from btlang.vocabulary.value_type import OBJECT, TEXT, WORLD, ZONE, ValueType
 from btlang.vocabulary.values import Values
 from btlang.vocabulary.verbs import fill
@@ -127,13 +127,14 @@ def longest(
                     if lists and words[value[1]] in context.joiners and not is_second and _may_go_on(child, text):
                         listed = _listed(root, text, one, context, names, is_subject=i == at and not found)
                         if listed is not None:
-                            paths.append((child, listed.last, (*found, listed)))
+                            wider_lists = (listed, *context.wider_list(text, listed))
+                            paths += [(child, every.last, (*found, every)) for every in wider_lists]
             node = node.get(word)
             i += 1
         if not paths:
             break
         node, i, found = paths.pop()
-    holds_place = any(map(_is_related, best_values)) if verbs else False
+    holds_place = any(is_related(value.text) for value in best_values) if verbs else False
     is_about_zone = any(map(_is_zone, best_values)) if verbs else False
     if verbs and (best is None or holds_place or is_about_zone or _may_be_longer(words, best_last, context)):
         for node, i in verbs:
@@ -159,12 +160,6 @@ def _may_be_listed(value: SlotValue, role: str) -> bool:
 def _is_zone(value: SlotValue) -> bool:
     """Whether a value gives way to a place of the same name."""
     return value.type == ZONE
-
-
-def _is_related(value: SlotValue) -> bool:
-    """Whether what describes a thing could be a role of the verb: `drop the cup in the lab`."""
-    choice = choice_of(value.text) if "|" in value.text else None
-    return choice is not None and not RELATIONS.keys().isdisjoint(dict(choice.parts))
 
 
 def _may_be_longer(words: Sequence[str], at: int, context: ReadingContext) -> bool:
@@ -259,11 +254,13 @@ def _listed(
 ) -> SlotValue | None:
     """The list that a value begins. It goes on while a value of the type follows that starts no longer phrase.
 
+    Behind `the cup on the table` each further value has what describes it, too: `and the book from the lab`.
     A list that `is_subject` begins the phrase itself (`Alice or Bob is near`), as its last value alone would.
     """
     if context.types[first.type].kind == "text":
         return None
     more: list[str] = []
+    is_described = is_related(first.text)
     last, joiner = first.last, ""
     while True:
         at = last
@@ -282,6 +279,8 @@ def _listed(
             break
         if _is_command(root, text, at, value[1], context):
             break
+        if is_described:
+            *_, value = value, *context.wider(first.type, text, at, value)
         more.append(value[0])
         last, joiner = value[1], role
     if not more:

@@ -210,4 +210,5 @@ class _Filling:
             if text.words[one.last] in context.joiners:
                 listed = self._list_of(one)
                 if listed is not None and not self._is_container(role) and not (role.name == PATH and listed.more):
-                    self._go_on(listed.last, {**filled, role.name: listed}, has_particle)
+                    for every in (listed, *context.wider_list(text, listed)):
+                        self._go_on(every.last, {**filled, role.name: every}, has_particle)
