@@ -178,6 +178,21 @@ class Words:
             first -= 1
         return self, first, at
 
+    def drop(self, first: int, last: int) -> None:
+        """Take words `first` to `last` (exclusive) of a line out; only before anybody has looked for anything."""
+        del self.words[first:last], self.starts[first:last], self.ends[first:last]
+        number = last - first
+        self.lines = [
+            line
+            if line.last <= first
+            else line.replace(first=line.first - number * (line.first > first), last=line.last - number)
+            for line in self.lines
+        ]
+        self.articles = {
+            at - number * (at >= last): place for at, place in self.articles.items() if not first <= at < last
+        }
+        self._distinct = None
+
     def begin(self, at: int) -> int:
         """Return the character at which a word begins, or the article before it."""
         return self.articles[at][0] if at in self.articles else self.starts[at]

@@ -108,7 +108,7 @@ def _round(nodes: Sequence[ast.Ast], at: int, choice: Choice, parents: dict[int,
         own = _set_of(nodes[later])
         if (own is not None and own.key == key) or key in ast.chosen_keys(nodes[later]):
             break
-        if f"{{{key}}}" in (text for _, text in getattr(nodes[later], "arguments", ())):
+        if key in ast.keys_of(nodes[later]):
             last = later
     path = _path(node, parents)
     if last > at:

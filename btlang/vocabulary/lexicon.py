@@ -123,6 +123,8 @@ class Lexicon:
         """The words of a journey that is behind somebody: `have been in`."""
         self.staying = tree_of((words, True) for words in self.asking["staying"])
         """What does nothing where it stands alone: `stay here`."""
+        self.in_turn = tree_of((words, True) for words in self.asking["in_turn"])
+        """The words beside a list that say nothing: `in that order`."""
         self.and_back = tree_of((words, True) for words in self.asking["and_back"])
         """The words for a journey back: `to the lab and back`."""
         self.going = tree_of((words, True) for words in self.asking["going"])

@@ -16,6 +16,14 @@ from btlang.vocabulary.values import Values, key_of
 from btlang.vocabulary.word_tree import find
 
 
+def _description(written: str) -> tuple[str, Parts] | None:
+    """Return how a value is chosen and by what, of a name too; None for a reference or a point."""
+    choice = choice_of(written)
+    if choice is not None:
+        return choice.how, choice.parts
+    return None if written[:1] in ("", "{", "(") else ("nearest", ((NAME, written),))
+
+
 class Known(Record):
     """A value that the mission names itself: its key on the blackboard, and the types that it can be used as.
 
@@ -161,19 +169,32 @@ class ReadingContext:
         """What a value is with what describes it (`the cup` as `the cup on the table`), the shortest first."""
         if value is None or kind not in WORLD or text.words[value[1]] not in self.modifiers:
             return  # as nearly always
-        written, end = value
-        choice = choice_of(written)
-        if choice is None and written[:1] in ("", "{", "("):
+        end = value[1]
+        described = _description(value[0])
+        if described is None:
             return
-        how, parts = (choice.how, choice.parts) if choice is not None else ("nearest", ((NAME, written),))
-        there = self.latest.get(PLACE, "") if kind == PLACE and PLACE in self.pronouns.get(text.words[end], ()) else ""
-        if there and there[:1] != "{" and self.values.likenesses.may_say(kind, parts, (("inside", there),)):
-            yield self._described(kind, how, (*parts, ("inside", there))), end + 1  # `on the table there`
+        how, parts = described
+        is_there = kind in (PLACE, OBJECT) and PLACE in self.pronouns.get(text.words[end], ())
+        there = self.latest.get(PLACE, "") if is_there else ""
+        if there and (kind == OBJECT or there[:1] != "{"):  # `on the table there`
+            placed = self.inside(kind, value[0], there)
+            if placed:
+                yield placed, end + 1
         for more, last in self.values.modifiers.behind(kind, text, end, self.values.names_tree):
             if text.words[at] in self.values.pronoun_words and any(part != "off" for part, _ in more):
                 continue  # `put it on the table` isn't about what is on the table
             if self.values.likenesses.may_say(kind, parts, more):
                 yield self._described(kind, how, (*parts, *more)), last
+
+    def inside(self, kind: str, written: str, place: str) -> str:
+        """What a value is in a place, which may be a reference; "" where it can't be described so."""
+        how, parts = _description(written) or ("", ())
+        more = (("inside", place),)
+        return (
+            self._described(kind, how, (*parts, *more))
+            if how and self.values.likenesses.may_say(kind, parts, more)
+            else ""
+        )
 
     def wider_list(self, text: Words, listed: SlotValue) -> Iterator[SlotValue]:
         """The lists that what stands behind one makes of all its values: `the cup and the bottle from the lab`.

@@ -142,10 +142,13 @@ def pieces(text: str) -> list[str | Reference]:
 
 
 def keys_in(text: str) -> Iterator[str]:
-    """The keys that a port text refers to, in their order; what is chosen needs none."""
+    """The keys that a port text refers to, in their order; what is chosen needs those that describe it."""
     if "{" in text:
-        if choice_of(text) is None:
+        choice = choice_of(text)
+        if choice is None:
             yield from (piece.key for piece in pieces(text) if isinstance(piece, Reference))
+        else:
+            yield from (key for _, part in choice.parts for key in keys_in(part))
 
 
 def keys_set_in(text: str) -> list[str]:

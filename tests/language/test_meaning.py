@@ -137,6 +137,8 @@ def test_numbers_that_are_said(sentence: str, tree: str) -> None:
         ("I have lost my way", "BT164"),
         ("Bob is coming for tea", "BT164"),
         ("go to the lab. If you can't lift it, wave", "BT010"),
+        ("in every room, pick up the red cup", "BT151"),
+        ("go to every room. In every room, pick up the red cup", "BT151"),
         ("do the round", "BT010"),
         ("ask Bob if the man who is tall is ready", "BT159"),
         ("wave through the door", "BT179"),

@@ -77,6 +77,8 @@ class Calls:
             match = self._with_lists(match) if self._context.listed else match
             for value in values if self._alternatives else ():
                 self._write_down(value.text)
+                for key in keys_in(value.text):
+                    self._write_down(f"{{{key}}}")
             made = Token(kind, start, end, self._called(meaning.entry, match, at))
             if isinstance(made.value, Listed) and made.value.joiner in ("and", "") and kind == "command":
                 listed = next(value for value in match.values if value.more)

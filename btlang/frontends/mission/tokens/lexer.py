@@ -14,9 +14,10 @@ from btlang.frontends.mission.tokens.rules_inside import with_rules_inside
 from btlang.frontends.mission.tokens.settling import turn_branches, with_rounds
 from btlang.frontends.mission.tokens.word_reader import WordReader
 from btlang.text.source import Source, Span
-from btlang.text.words import Words, split
+from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, split
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import Known, ReadingContext
+from btlang.vocabulary.word_tree import find
 
 
 class Lexer:
@@ -40,6 +41,7 @@ class Lexer:
             diagnostic("BT004", span, fix=(Span(source, span.end, span.end), '"')) for span in self.text.open_quotes
         ]
         self.problems += [diagnostic("BT003", span, characters=span.text[:20]) for span in self.text.unreadable]
+        _drop_words_of_turns(self.text, vocabulary)
         self.names = Names(self.text, vocabulary, load, known)
         self.problems += self.names.problems
         self.vocabulary = self.names.vocabulary
@@ -99,3 +101,21 @@ class Lexer:
     def _last_span(self) -> Span:
         last = self.tokens[-1]
         return Span(self.text.source, last.start, last.end)
+
+
+def _drop_words_of_turns(text: Words, vocabulary: Lexicon) -> None:
+    """Take out what says nothing beside a list, with its commas: `the lab, the hall and the dock, in that order`."""
+    words, roles = text.words, vocabulary.roles
+    if text.distinct.isdisjoint(vocabulary.in_turn):
+        return  # as nearly always
+    joining = {phrase.split()[0] for role in ("and", "then", "or", "but") for phrase in roles[role]}
+    at = 0
+    while at < len(words):
+        found = find(vocabulary.in_turn, words, at) if words[at] in vocabulary.in_turn else None
+        begins = at == 0 or words[at - 1] in (END_OF_STATEMENT, END_OF_TEXT, ":")
+        if found is not None and (not begins or words[found[1]] == ","):
+            first = at - (words[at - 1] == "," and not begins)
+            is_inserted = words[found[1]] == "," and words[found[1] + 1] not in joining
+            text.drop(first, found[1] + (is_inserted and (begins or first < at)))
+            at = first
+        at += 1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import (
     JOINTS,
     LINES,
@@ -17,13 +18,15 @@ from btlang.frontends.mission.token import (
 )
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, leads_to
 from btlang.frontends.mission.tokens.silent_words import TRAVELS, begins
-from btlang.vocabulary.match import Match
+from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.references import ALL, NAMES, choice_of
-from btlang.vocabulary.value_type import OBJECT, PLACE
+from btlang.vocabulary.value_type import OBJECT, PERSON, PLACE
 from btlang.vocabulary.word_tree import find
 
 _HOLD = "Hold"
 _JOINS = ("and", "then", "or")
+_BEHIND = (*_JOINS, "at", "every", "every_day", "weekly", "count", "within", "until_time", "if", "unless", "until")
+"""Raw kinds that may stand behind where a command is done: `wave in the hall at 6 pm`."""
 _AND = frozenset(("and", "comma"))
 _COMMANDS = frozenset(("command", "name", "wait", "nothing"))
 _DONE = ("command", "name", "close", "wait")
@@ -108,11 +111,14 @@ class Places(SentenceReader):
             return 0
         following = self._phrase(journey.last)
         ends = self._is_end(journey.last) or self._text.words[journey.last] == ","
-        if not ends and (following is None or following.meaning.role not in _JOINS):
+        if not ends and (following is None or following.meaning.role not in _BEHIND):
             return 0
         is_to_speaker = self._text.words[at - 1] in self._vocabulary.values.role_words.speaker
         if isinstance(value, Called | Listed) and TRAVELS in value.entry.needs and not is_to_speaker:
-            return 0
+            placed = self._placed(value, journey.values[0])
+            if placed is None:
+                return 0
+            value = tokens[-1].value = placed
         if self._goes_there(journey, len(tokens) - 1):
             return journey.last
         if self._repeats(journey, len(tokens)):
@@ -129,26 +135,38 @@ class Places(SentenceReader):
         tokens += [Token("and", said.start, said.start), said, Token("close", end, end)]
         return journey.last
 
+    def _placed(self, said: Called | Listed, goal: SlotValue) -> Called | None:
+        """`turn off the light in every room`: the one that is there; None where nothing shows what is in the rooms."""
+        choice = choice_of(goal.group)
+        if choice is None or not isinstance(said, Called):
+            return None
+        things = [name for name, _ in said.arguments if said.entry.slot(name).type == OBJECT]
+        text = dict(said.arguments)[things[0]] if len(things) == 1 and len(said.arguments) == 1 else ""
+        placed = self._context.inside(OBJECT, text, f"{{{choice.key}}}")
+        return Called(said.entry, ((things[0], placed),)) if placed else None
+
     def in_place_of_command(self, match: Match, at: int) -> int:
         """A condition where a command stands: where one is done, or the rest of a command that leaves words out."""
         tokens = self._tokens
         before = run_start(tokens, len(tokens), JOINTS)
         goes_on = 0 < before < len(tokens) and tokens[before - 1].kind in _DONE
-        if (goes_on or begins(tokens)) and (end := self._before(at)):
+        if (goes_on or begins(tokens)) and (end := self.before(at)):
             return end
         if goes_on and tokens[before - 1].kind == "command":  # `go to the kitchen and then in the lab`
             return self._partial.add_left_out(at, match.last)
         return self._partial.add_third(at + 1, None) if begins(tokens) else 0
 
-    def _before(self, at: int) -> int:
+    def before(self, at: int) -> int:
         """`in the kitchen, wave`: goes there first, unless it just did: `visit A and B. In each room, wave`."""
         journey = self._to(at)
         if journey is None:
             return 0
         behind = self._behind_comma(journey.last)
+        following = self._phrase(behind)
+        if following is not None and journey.values[0].group:
+            self._doubt_round(at, behind, following)
         if self._goes_there(journey, len(self._tokens)):
             return behind
-        following = self._phrase(behind)
         if following is None or following.meaning.role not in _COMMANDS:
             return 0
         if any(value.group or value.more for value in journey.values) and not self._are_commands(behind):
@@ -159,6 +177,21 @@ class Places(SentenceReader):
         end = self._text.ends[journey.last - 1]
         self._tokens.append(Token("and", end, end))
         return behind
+
+    def _doubt_round(self, at: int, behind: int, command: Match) -> None:
+        """BT151 for `in every room, turn off the light`: the one that is there, or one that may be anywhere."""
+        entry, types = command.meaning.entry, [value.type for value in command.values]
+        text, words = self._text, self._vocabulary
+        if entry is None or entry.first or TRAVELS not in entry.needs or OBJECT not in types or PLACE in types:
+            return
+        if self._is_there(command.last):
+            return
+        said = text.span(at, command.last)
+        journey = f"{' '.join(words.asking['journey'])} {text.span(at + 1, behind).text.rstrip(' ,')}"
+        doing = text.span(behind, command.last).text
+        here = next(iter(words.values.role_words.directions - set(words.asking["home"])), "")
+        one, other = f"{journey} {words.word('and')} {doing} {here}", f"{journey}, {words.word('then')} {doing}"
+        self._calls.problems.append(diagnostic("BT151", said, words=said.text, one=one, other=other))
 
     def _goes_there(self, journey: Match, end: int) -> bool:
         """Whether the journey before some token is to the same places: what comes behind is done at each of them."""
@@ -191,11 +224,16 @@ class Places(SentenceReader):
             command = self._phrase(at)
             if command is None or command.meaning.role not in _COMMANDS:
                 return False
-            if self._is_end(command.last):
+            at = command.last + self._is_there(command.last)
+            if self._is_end(at):
                 return True
-            if self._text.words[command.last] not in joints:
+            if self._text.words[at] not in joints:
                 return False
-            at = command.last + 1
+            at += 1
+
+    def _is_there(self, at: int) -> bool:
+        """Whether a pronoun for a place stands at a word: `in every room, turn off the light there`."""
+        return tuple(self._context.pronouns.get(self._text.words[at], ())) == (PLACE,)
 
     def _to(self, at: int) -> Match | None:
         """The journey to where words say that something is done."""
@@ -204,4 +242,5 @@ class Places(SentenceReader):
         journey = self._with_front(at, at + 1, "journey")
         goal = journey.values[0] if journey is not None and journey.values else None
         is_list = goal is not None and bool(goal.more) and not goal.group  # `wave in the kitchen and the lab`
-        return journey if goal is not None and goal.type == PLACE and not is_list else None
+        is_there = goal is not None and (goal.type == PLACE or (goal.type == PERSON and bool(goal.group)))
+        return journey if is_there and not is_list else None  # `at each person, wave`

@@ -229,6 +229,8 @@ class WordReader:
         if (match is None or role == "condition") and tokens and tokens[-1].kind in ("command", "wait"):
             if end := self._places.at_goal(at) or self._places.behind(at):
                 return end
+        if match is None and begins(tokens) and (end := self._places.before(at)):
+            return end
         if match is None or (role == "command" and not match.values and self._text.words[match.last] == self._joint):
             return self._partial.add_sharing(at, match)
         return 0
