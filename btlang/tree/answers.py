@@ -71,7 +71,7 @@ def _gather(node: ast.Ast, problems: list[Diagnostic]) -> ast.Ast:
             if behind is not None:
                 made[asking] = behind
                 continue
-            form = _form_that_asks(made[asking])
+            form = [] if _asks_anew(made, asking) else _form_that_asks(made[asking])
             problem = _problem(made, asking, form, item)
             if problem:
                 words = item.span.text.split(",")[0]
@@ -162,6 +162,13 @@ def _form_that_asks(node: ast.Ast) -> list[Any]:
     while path and isinstance(path[-1][0], _ONCE):
         path.pop()
     return path
+
+
+def _asks_anew(made: Sequence[ast.Ast], at: int) -> bool:
+    """Whether the question before is asked again and again while an answer is given, so that the latest one counts."""
+    loop, before = made[at], _questions(made[at - 1]) if at else []
+    repeats = isinstance(loop, ast.Repeat) and any(map(_depends, ast.parents_first(loop)))
+    return repeats and bool(before) and {each.arguments for each in _questions(loop)} == {before[-1].arguments}
 
 
 def _with_last(form: Sequence[Any], item: ast.Ast) -> ast.Ast:

@@ -44,6 +44,9 @@ DEFINING = ("define_strong", "define")
 NODE_ROLES = ("do", "test")
 """Roles whose words begin a node that is said by its id, a command or a condition."""
 
+_CONDITIONAL = ("if", "unless", "whenever", "as_soon_as", "once", "while", "until", "check", "provided")
+"""Roles of words behind which a condition stands."""
+
 _REPLIES = (("if_yes", True), ("if_no", False))
 
 
@@ -147,6 +150,10 @@ class Lexicon:
         """The verbs of a journey: `go from the lab to the hall`."""
         self.purpose = tree_of((phrase, True) for phrase in language["purpose"])
         """Words between a command and what it is for: `go through the hall to get to the lab`."""
+        self.before_conditions = frozenset(
+            phrase.split()[0] for role in _CONDITIONAL for phrase in self.roles.get(role, ())
+        )
+        """The first words of what stands before a condition."""
         self.continuing = frozenset(
             str(form[0]) for role in GOES_ON for phrase in self.roles.get(role, ()) for form in self._forms(phrase)
         )

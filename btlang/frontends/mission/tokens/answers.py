@@ -104,7 +104,9 @@ class Answers(AddressedTexts):
         tokens = self._tokens
         last = run_start(tokens, len(tokens), _STOPS)
         first = statement_start(tokens, last)
-        if not 0 < first < last < len(tokens) or tokens[first].kind != "if":
+        if not 0 < first < last < len(tokens):
+            return False
+        if tokens[first + 2 * (tokens[first].kind == "repeat")].kind != "if":  # in the bracket of a loop
             return False
         values = [token.value for token in tokens[first:last] if isinstance(token.value, Called | Listed)]
         if not values or values[0].entry.id not in ABOUT_ANSWERS or values[-1].entry.id != ASK:
@@ -231,7 +233,8 @@ class Answers(AddressedTexts):
                 first -= 1
             values = [token.value for token in tokens[first:last] if isinstance(token.value, Called | Listed)]
             last = run_start(tokens, last, _LIMITS)
-            if tokens[last - 1].kind == "command" and values and values[-1].entry.id == ASK:
+            asks_anew = tokens[first].kind == "repeat" and tokens[last - 1].kind == "count"
+            if (tokens[last - 1].kind == "command" or asks_anew) and values and values[-1].entry.id == ASK:
                 return values[-1]
             if right_before or tokens[first].kind != "if" or not values or values[0].entry.id not in ABOUT_ANSWERS:
                 return None

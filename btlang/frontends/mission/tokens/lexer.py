@@ -42,6 +42,7 @@ class Lexer:
         ]
         self.problems += [diagnostic("BT003", span, characters=span.text[:20]) for span in self.text.unreadable]
         _drop_words_of_turns(self.text, vocabulary)
+        _drop_still(self.text, vocabulary)
         self.names = Names(self.text, vocabulary, load, known)
         self.problems += self.names.problems
         self.vocabulary = self.names.vocabulary
@@ -119,3 +120,14 @@ def _drop_words_of_turns(text: Words, vocabulary: Lexicon) -> None:
             text.drop(first, found[1] + (is_inserted and (begins or first < at)))
             at = first
         at += 1
+
+
+def _drop_still(text: Words, vocabulary: Lexicon) -> None:
+    """Take out `still` and `already` before what a condition says: `if he still says no`; but not `if he is still`."""
+    still = vocabulary.asking["still"]
+    for at in reversed(range(1, len(text.words))) if not text.distinct.isdisjoint(still) else ():
+        if text.words[at] in still and text.words[at + 1].isalpha():
+            _, first, _ = text.earlier(at)
+            first = max((i + 1 for i in range(first, at) if text.words[i] == ","), default=first)
+            if any(word in vocabulary.before_conditions for word in text.words[first:at]):
+                text.drop(at, at + 1)

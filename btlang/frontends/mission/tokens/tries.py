@@ -29,6 +29,7 @@ _JOINTS = JOINTS | {"stop"}
 _STATEMENT_ENDS = (END_OF_STATEMENT, END_OF_TEXT)
 _OPERANDS = frozenset(("command", "name", "close", "wait", "nothing", "fail", "node"))
 _IN_ALL = frozenset(("count", "at_most", "up_to_times", "tries"))
+_ASKED = frozenset(("condition", "not"))
 _TWICE = "2"
 _REPAIRS = _OPERANDS | JOINTS | {"open"}
 
@@ -103,6 +104,8 @@ class Tries(SentenceReader):
         asks = self._text.words[at] in self._asking_verbs or self._text.words[at] in self._vocabulary.asking["letting"]
         tried = tokens[last - 1] if form and last else None
         if tried is None or tried.kind not in _OPERANDS or (asks and not is_question(tried)):
+            if end := self._while_so(match, at, asks):
+                return end
             return self._ask_again(match, at) if asks else self._after_repair(match, at) or self._try_that(match, at)
         first = _first_of_form(tokens, statement_start(tokens, last), last)
         number, end = self._attempts(match)
@@ -176,6 +179,48 @@ class Tries(SentenceReader):
             left = str(int(number) - 1) if number.isdecimal() else number
             tokens += [Token("close", stop, stop), Token("count", start, stop, left)]
         return behind
+
+    def _while_so(self, match: Match, at: int, asks: bool) -> int:
+        """`if it is shut, wait 5 s and check again, up to 3 times`: while it is so, and it is asked so often in all.
+
+        0 where it isn't said how often, or what is done on the later answers.
+        """
+        tokens, text = self._tokens, self._text
+        delay = self._phrase(match.last)
+        is_delayed = delay is not None and delay.meaning.role == "delay"
+        behind = self._behind_comma(delay.last if delay is not None and is_delayed else match.last)
+        amount = self._phrase(behind + (text.words[behind] in self._vocabulary.roles["but"]))
+        first, end = statement_start(tokens, len(tokens)), self._behind(len(tokens))
+        comma = next((i for i in range(first, end) if tokens[i].kind == "comma"), end)
+        if amount is None or amount.meaning.role not in _IN_ALL or tokens[first:first + 1] == [] or tokens[first].kind != "if":
+            return 0
+        number, last = self._attempts(match.replace(last=behind - (text.words[behind - 1] == ",")))
+        asked = next((token for token in reversed(tokens) if is_question(token)), None) if asks else None
+        follows = self._phrase(last + 1) if text.words[last] == END_OF_STATEMENT else None
+        body = tokens[comma + 1 : end]
+        if not number.isdecimal() or int(number) < 2 or not tokens[first + 1 : comma]:
+            return 0
+        if any(token.kind not in _ASKED for token in tokens[first + 1 : comma]):
+            return 0
+        if any(token.kind not in _REPAIRS for token in body) or not (body or asks) or (asks and asked is None):
+            return 0
+        if asks and any(is_answer(token) for token in tokens[tokens.index(asked) : first]) if asked else False:
+            return 0
+        if follows is not None and follows.meaning.role in ("otherwise", FAILS):
+            return 0
+        start, stop = text.starts[at], text.ends[last - 1]
+        further: list[Token] = []
+        if delay is not None and is_delayed:
+            further = [Token("then", start, start), Token("wait", start, stop, self._calls.token(delay, match.last).value)]
+        if asked is not None:
+            further += [Token("then", start, start), Token("command", start, text.ends[match.last - 1], asked.value)]
+        here = tokens[first].start
+        form = [*tokens[first:comma], Token("comma", tokens[comma - 1].end, tokens[comma - 1].end), *body]
+        tokens[first:] = [
+            Token("repeat", here, here), Token("open", here, here), *form, *(further if body else further[1:]),
+            Token("close", stop, stop), Token("count", start, stop, str(int(number) - 1)),
+        ]  # fmt: skip
+        return last
 
     def _ask_again(self, match: Match, at: int) -> int:
         """`ask Bob "Tea?". If he says no, ask again`: what was asked before."""
