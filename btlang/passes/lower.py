@@ -303,6 +303,7 @@ _LOWER: dict[type[ast.Ast], Callable[[Any, list[Lowered], LoweringScope], Lowere
     **TIMED,
     ast.Constrained: _constrained,
     ast.Check: _check,
+    ast.WaitForever: lambda item, _done, _scope: Lowered(_for_ever(item.span), False, True),
     ast.Nothing: _always("AlwaysSuccess"),
     ast.Fail: _always("AlwaysFailure"),
     ast.Exact: _exact,

@@ -363,6 +363,7 @@ PRINTERS: dict[type[ast.Ast], Callable[[Any, list[Doc], Printer], Doc]] = {
     ast.WaitTime: _wait_time,
     ast.UntilTime: _until_time,
     ast.Check: _test("check"),
+    ast.WaitForever: _single("wait_forever"),
     ast.Nothing: _single("nothing"),
     ast.Fail: _single("fail"),
     ast.Exact: exact,

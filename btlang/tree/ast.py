@@ -1,8 +1,8 @@
 """The syntax tree of a mission, as both parsers make it: what was said, with the exact characters of each part.
 
 Commands: Phrase, Name, Chain, If, IfWorks, While, Provided, StopWhen, Repeat, Retry, Try, Within, For, UpTo, Every,
-UntilTime, Apart, Delay, Constrained, Wait, WaitUntil, WaitTime, Check, Nothing, Fail, Assign, Remember, ForEach,
-Exact; Whenever in a sequence.
+UntilTime, Apart, Delay, Constrained, Wait, WaitUntil, WaitTime, WaitForever, Check, Nothing, Fail, Assign, Remember,
+ForEach, Exact; Whenever in a sequence.
 Conditions: Phrase, Name, Compared, Chain ("all", "any"), AtLeast, Not, Exact. `parts` are fields with subtrees.
 Amounts and values are port texts in base units (seconds); they may refer to values of the mission: `{level}`, in a
 text also `it is {level} percent` (see btlang/vocabulary/references.py).
@@ -293,6 +293,10 @@ class Check(Ast):
     condition: Ast
     span: Span
     parts = ("condition",)
+
+
+class WaitForever(Ast):
+    span: Span
 
 
 class Nothing(Ast):

@@ -44,7 +44,7 @@ ASKING = (
     "reminder", "addressed", "informing", "informed", "staying", "resuming", "interrupting", "and_back",
     "if_yes", "if_no", "told_of", "standing", "able", "unable", "reaching", "finishing", "waiting", "apiece",
     "between_joint",    "standing_verbs", "events", "duties", "reasons", "performing", "naming", "named_as", "in_turn",
-    "still",
+    "still", "motionless", "who", "somebody",
 )  # fmt: skip
 """What the table `asking` of a language may have; without it there are no questions, and no remarks."""
 
@@ -69,7 +69,8 @@ _NO_SLOT = (
     "followed_by", "arrival", "on_way", "on_way_to", "start_at", "wait_at", "back_and_forth", "any_time", "instead",
     "try_again",
     "there_are", "mind", *QUESTIONS,
-    "repeat", "try", "retry", "if_possible", "wait_until", "wait_for", "check", "nothing", "never", "fail",
+    "repeat", "try", "retry", "if_possible", "wait_until", "wait_for", "wait_forever", "check", "nothing",
+    "never", "fail",
     "in_parallel", "in_order",
     "define_strong", "define", "fact", "facing",
     "set", "set_to", "increase", "decrease", "by", "add", "add_to", "subtract", "subtract_from",

@@ -281,6 +281,11 @@ def _nothing(_node: Node, _children: tuple[Candidate, ...], _checked: Checked) -
     yield ast.Nothing(NOWHERE)
 
 
+def _wait_forever(node: Node, _children: tuple[Candidate, ...], _checked: Checked) -> Iterator[ast.Ast]:
+    if [(child.id, child.ports) for child in node.children] == [("AlwaysSuccess", ())]:
+        yield ast.WaitForever(NOWHERE)
+
+
 def _fail(_node: Node, _children: tuple[Candidate, ...], _checked: Checked) -> Iterator[ast.Ast]:
     yield ast.Fail(NOWHERE)
 
@@ -293,6 +298,7 @@ INVERSE_RULES: dict[str, Form] = {
     "WhileDoElse": _while_do_else,
     "ReactiveSequence": _provided,
     "Whenever": _whenever,
+    "KeepRunningUntilFailure": _wait_forever,
     "Repeat": _repeat,
     "RetryUntilSuccessful": _retry,
     "ForceSuccess": _ignoring_failure,

@@ -119,7 +119,7 @@ STATEMENTS = {
     "do-that": 'lasting ". " (<do_that> " " (<count> | <again> | <more>) | <repeat_that> " " <count> | <again>)',
     "meanwhile-next": "<together . meanwhile>",
     "finally": '<ordinal> ", " unit',
-    "last": "forever | retry-forever | every-round | every-day | on-days | start-over | failing",
+    "last": "<wait_forever> | forever | retry-forever | every-round | every-day | on-days | start-over | failing",
     "forever": '<repeat> " " lasting | lasting " " <forever>',
     "retry-forever": '<retry> " " lasting',
     "every-round": '<every> ", " lasting (" " <count>)? | lasting " " <every>',

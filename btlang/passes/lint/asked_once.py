@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 _SENTENCE_END = re.compile(r"[.;!?\n]")
 _QUOTED_ENDS = ('."', '!"', '?"')
-_ON_THE_WAY = ("SomeoneInTheWay", "SomethingInTheWay")
+ON_THE_WAY = ("SomeoneInTheWay", "SomethingInTheWay")
 _WHILE_DRIVING = ("Bumped", "WallInFront", "ObstacleWithin")
 _FREE, _BATTERY, _LOW = "PathClear", "Battery", "BatteryLow"
 
@@ -103,7 +103,7 @@ def _is_about_driving(asked: ast.Phrase, node: ast.If, journeys: Sequence[ast.Ph
     is_watched = asked.entry.id in _WHILE_DRIVING or (asked is not node.condition and asked.entry.id == _FREE)
     is_watched = is_watched or (_is_low(asked) and any(map(_drives, ast.parents_first(node.body))))
     is_driving = is_watched and any("navigation" in each.entry.needs for each in journeys)
-    return is_driving or asked.entry.id in _ON_THE_WAY
+    return is_driving or asked.entry.id in ON_THE_WAY
 
 
 def _drives(node: ast.Ast) -> TypeGuard[ast.Phrase]:

@@ -101,7 +101,8 @@ def find_busy_loops(compilation: Compilation) -> list[Diagnostic]:
             return TAKES_TIME if kind is None or kind.takes_time else most
         if most == ASKS and (kind.again == ON_FAILURE or not kind.rounds):
             return TAKES_TIME  # it waits for a condition to become true, or false
-        busy.append(node)
+        if kind.rounds or any(child.children or child.ports for child in node.children):
+            busy.append(node)  # else it waits for ever, as it says
         return most
 
     if any(id in CATALOGUE and CATALOGUE[id].again for id in compilation.ids):

@@ -11,6 +11,7 @@
 - two sentences that could exclude one another: `if C, A. If D, B. Otherwise E`;
 - a search for a time: `look for Alice for 5 min`;
 - what follows a command that is tried: `try to A, then B`;
+- a rule about people behind a journey: `go to the door. Whenever somebody comes near, B`: on the way, or there;
 - `A, or B if C`: B if A fails, or B instead of A. Brackets can't give the second reading.
 """
 
@@ -22,6 +23,7 @@ from collections.abc import Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
+from btlang.passes.lint.asked_once import ON_THE_WAY
 from btlang.passes.lint.other_form import find_in_form, find_in_pace, find_in_sentences, find_in_time
 from btlang.passes.lint.other_readings import (
     Attachment,
@@ -35,10 +37,14 @@ from btlang.passes.lint.other_readings import (
 )
 from btlang.text.source import Source, Span
 from btlang.tree import ast
+from btlang.vocabulary.capabilities import MOVES
+from btlang.vocabulary.value_type import PERSON
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.printer.printer import Printer
+    from btlang.vocabulary.entry import Entry
+    from btlang.vocabulary.lexicon import Lexicon
 
 
 _SENTENCE_END = re.compile(r"[\n;]|[.!?](?=\s)")
@@ -142,3 +148,30 @@ def _alternative_readings(chain: ast.Chain, last: ast.If) -> Readings:
     body, otherwise = (before, last.body) if last.negated else (last.body, before)
     other = last.replace(negated=False, body=body, otherwise=otherwise)
     return Readings(chain, other, balance_brackets(chain.span), add_brackets(last.span))
+
+
+def find_rules_at_goals(compilation: Compilation) -> Iterator[Diagnostic]:
+    """Report `go to the door. Whenever somebody comes near, wave`: the rule ends at the door, or the robot stays."""
+    body, vocabulary = compilation.mission.body, compilation.vocabulary
+    items = sort_by_place(body.items) if isinstance(body, ast.Chain) else ()
+    rule, journey = items[-1] if items else None, items[-2] if len(items) > 1 else None
+    if not isinstance(rule, ast.Whenever) or not isinstance(journey, ast.Phrase):
+        return
+    asked = rule.condition
+    is_about_people = isinstance(asked, ast.Phrase) and _is_about_people(asked.entry, vocabulary)
+    if MOVES not in journey.entry.resources or not is_about_people:
+        return
+    whole = Span(journey.span.source, journey.span.start, rule.span.end)
+    if "\n" in whole.text:
+        return
+    taken = f"{rule.span.text}. {journey.span.text}"
+    other = f"{journey.span.text}, {vocabulary.word('then')} {vocabulary.word('wait_forever')}. {rule.span.text}"
+    problem = diagnostic("BT050", whole, taken=taken, fixed=taken, other=other)
+    yield problem.replace(readings=((whole, taken), (whole, other)))
+
+
+def _is_about_people(entry: Entry, vocabulary: Lexicon) -> bool:
+    """Whether a condition asks about somebody, but not whether somebody is in the way."""
+    words = {word for phrase in entry.phrases[:1] for word in phrase.split()}
+    somebody = bool(entry.phrases) and not words.isdisjoint(vocabulary.negative_subjects)
+    return (somebody or any(slot.type == PERSON for slot in entry.slots)) and entry.id not in ON_THE_WAY

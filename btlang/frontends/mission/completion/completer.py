@@ -33,7 +33,7 @@ _MOST_TOKENS_BACK = 6  # a phrase that is being written may look like that many 
 _LONG_ENOUGH = 3  # letters; a shorter word is no misspelling yet
 _MOST_CORRECTIONS = 3
 _ALIKE = {
-    **dict.fromkeys(("wait", "wait_time", "nothing", "fail"), "command"), "negated": "condition",
+    **dict.fromkeys(("wait", "wait_time", "wait_forever", "nothing", "fail"), "command"), "negated": "condition",
     "unless": "if", "until": "while",
     "if_possible": "within", "if_it_works": "within", "once": "within", "stop_when": "provided", "as_soon_as": "if",
     "first_time": "whenever",  "retry": "try", "one_of": "try", "wait_until": "check",

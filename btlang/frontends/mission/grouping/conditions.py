@@ -10,7 +10,8 @@ from btlang.frontends.mission.grouping.stack import StackEntry
 from btlang.frontends.mission.token import CORRELATIVES, QUANTIFIERS, Token
 
 STARTS_OPERAND = frozenset((
-    "command", "condition", "unknown", "wait", "wait_time", "nothing", "fail", "not", "open", "repeat", "try", "retry",
+    "command", "condition", "unknown", "wait", "wait_time", "wait_forever", "nothing", "fail", "not", "open", "repeat",
+    "try", "retry",
     "check", "wait_until", "wait_for", "wait_up_to", "whenever", "first_time", "in_parallel", "in_order", "each",
     "node", "one_of", *QUANTIFIERS, *CORRELATIVES,
 ))  # fmt: skip

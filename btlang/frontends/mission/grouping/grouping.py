@@ -52,7 +52,7 @@ def group(source: Source, raw: list[Token], conditions: set[str], word: Callable
 
 
 _OPERAND: dict[str, Callable[[Scan, Token], None]] = {
-    **dict.fromkeys(("command", "condition", "wait", "wait_time", "nothing", "fail"), operands.operand),
+    **dict.fromkeys(("command", "condition", "wait", "wait_time", "wait_forever", "nothing", "fail"), operands.operand),
     "unknown": operands.unknown,
     **dict.fromkeys(("if", "unless", "while", "until", "as_soon_as"), operands.form),
     **dict.fromkeys(("check", "wait_until", "wait_for", "wait_up_to"), operands.test),

@@ -10,7 +10,7 @@ from btlang.text.source import Span
 
 _WANTED = {"neither": "nor", "not_both": "and", "either": "or", "both": "and"}
 """The word that must stand between the parts."""
-_COMMANDS = frozenset(("command", "wait", "nothing", "fail", "open", "unknown"))
+_COMMANDS = frozenset(("command", "wait", "wait_forever", "nothing", "fail", "open", "unknown"))
 _PLAIN = frozenset((
     *_COMMANDS, "condition", "not", "close", "comma", "again",
     "count", "for", "up_to", "apart", "within", "every", "delay", "if_possible",

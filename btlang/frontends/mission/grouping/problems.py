@@ -7,7 +7,7 @@ from btlang.frontends.mission.token import Token
 from btlang.text.source import Span
 from btlang.vocabulary.language_tables import CONNECTIVES, GOES_ON
 
-_COMMANDS = frozenset(("command", "wait", "wait_time", "nothing", "fail", "open"))
+_COMMANDS = frozenset(("command", "wait", "wait_time", "wait_forever", "nothing", "fail", "open"))
 _FORBIDS = frozenset(("if", "until", "while", "as_soon_as", "provided"))
 _FOUND = {
     "newline": "the line ends",

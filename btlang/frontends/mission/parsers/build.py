@@ -47,6 +47,7 @@ from btlang.tree.ast import (
     UntilTime,
     UpTo,
     Wait,
+    WaitForever,
     WaitTime,
     WaitUntil,
     Whenever,
@@ -87,6 +88,8 @@ class Builder:
             return Wait(_amount(token), span)
         if token.role == "wait_time":
             return WaitTime(_amount(token), span)
+        if token.role == "wait_forever":
+            return WaitForever(span)
         if token.role:
             return Nothing(span) if token.role == "nothing" else Fail(span)
         return self._stated(value, token.kind == "CONDITION", span)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from btlang.frontends.mission.token import JOINTS, RULES, Token, run_start, statement_start
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
+from btlang.frontends.mission.tokens.settling import STAYS
 from btlang.frontends.mission.tokens.silent_words import BEGINS, begins_item
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.language_tables import NOT_ALONE
@@ -115,6 +116,7 @@ class JourneyWords(SentenceReader):
         waiting = self._with_front(at, journey.last, "waiting")
         self._partial.append(journey, at)
         if waiting is None:
+            self._tokens[-1].role = STAYS
             return journey.last
         joint = self._text.ends[journey.last - 1]
         self._tokens.append(Token("then", joint, joint))

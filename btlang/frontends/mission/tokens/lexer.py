@@ -11,7 +11,7 @@ from btlang.frontends.mission.token import Token
 from btlang.frontends.mission.tokens.condition_names import condition_names, settle
 from btlang.frontends.mission.tokens.ended_rules import with_ends
 from btlang.frontends.mission.tokens.rules_inside import with_rules_inside
-from btlang.frontends.mission.tokens.settling import turn_branches, with_rounds
+from btlang.frontends.mission.tokens.settling import turn_branches, with_rounds, with_stays
 from btlang.frontends.mission.tokens.word_reader import WordReader
 from btlang.text.source import Source, Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, split
@@ -53,6 +53,7 @@ class Lexer:
         self._lines()
         turn_branches(self.tokens)
         with_rounds(self.tokens)
+        with_stays(self.tokens, source, vocabulary.asking["standing_verbs"])
         with_rules_inside(self.tokens)
         self.problems += with_ends(self.tokens, self.vocabulary, partial(Span, source))
         self.conditions = condition_names(self.tokens, self.names.included_conditions())
@@ -124,10 +125,10 @@ def _drop_words_of_turns(text: Words, vocabulary: Lexicon) -> None:
 
 def _drop_still(text: Words, vocabulary: Lexicon) -> None:
     """Take out `still` and `already` before what a condition says: `if he still says no`; but not `if he is still`."""
-    still = vocabulary.asking["still"]
-    for at in reversed(range(1, len(text.words))) if not text.distinct.isdisjoint(still) else ():
-        if text.words[at] in still and text.words[at + 1].isalpha():
+    words, still, motionless = text.words, vocabulary.asking["still"], vocabulary.asking["motionless"]
+    for at in reversed(range(1, len(words))) if not text.distinct.isdisjoint(still) else ():
+        if words[at] in still and words[at - 1] not in motionless and words[at + 1].isalpha():
             _, first, _ = text.earlier(at)
-            first = max((i + 1 for i in range(first, at) if text.words[i] == ","), default=first)
-            if any(word in vocabulary.before_conditions for word in text.words[first:at]):
+            first = max((i + 1 for i in range(first, at) if words[i] == ","), default=first)
+            if any(word in vocabulary.before_conditions for word in words[first:at]):
                 text.drop(at, at + 1)

@@ -5,24 +5,29 @@ The condition is about the search alone, so that A isn't done where the key was 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Container, Sequence
 
 from btlang.frontends.mission.token import (
     JOINTS,
+    RULES,
     STATEMENT_ENDS,
     Called,
     Listed,
     Token,
+    constraint_of,
     drives,
     run_start,
     statement_end,
     statement_start,
     texts_of,
 )
+from btlang.text.source import Source
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.references import ALL, choice_of
 
 FAILS, WORKS = "if_fails", "if_works"
+STAYS = "stays"
+"""The role of a command with which the robot stays where it is then."""
 TURNED = "turned"
 """The role of an `otherwise` behind words about a failure."""
 MEASURES = frozenset(("for", "up_to", "within", "count"))
@@ -120,6 +125,33 @@ def with_rounds(tokens: list[Token]) -> None:
         if isinstance(value, Called | Listed) and not value.entry.accompaniment:
             start = tokens[first].start
             tokens[first : at + 1] = [token, Token("comma", start, start), *tokens[first:at]]
+
+
+def with_stays(tokens: list[Token], source: Source, standing: Container[str]) -> None:
+    """Make `wait at the door. Whenever somebody comes near, wave` wait on there: else the rule would end at once.
+
+    `standing` are the verbs that say so, `stand`.
+    """
+    starts = [at for at in range(len(tokens)) if at == 0 or tokens[at - 1].kind in STATEMENT_ENDS]
+    starts = [at for at in starts if tokens[at].kind not in ("define", *STATEMENT_ENDS)]
+    depth = 0
+    outside = []
+    for at, token in enumerate(tokens):
+        depth += (token.kind == "indent") - (token.kind == "dedent")
+        if depth == 0 and at in starts:
+            outside.append(at)
+    commands = [at for at in outside if tokens[at].kind not in RULES]
+    if len(commands) == len(outside) or not commands:
+        return
+    end = run_start(tokens, statement_end(tokens, commands[-1]), STATEMENT_ENDS)
+    last = tokens[end - 1]
+    constraint = constraint_of(tokens[commands[-1]])
+    if last.kind == "nothing" and last.role == STAYS:
+        last.kind = "wait_forever"
+    elif last.role == STAYS or source.text[last.start : last.end].split(" ")[0].lower() in standing:
+        tokens[end:end] = [Token("then", last.end, last.end), Token("wait_forever", last.end, last.end)]
+    elif constraint is not None and constraint.kind == "keep in" and end == commands[-1] + 1:
+        tokens[end:end] = [Token("semi", last.end, last.end), Token("wait_forever", last.end, last.end)]
 
 
 def _is_sequence(before: Sequence[Token]) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from btlang.frontends.mission.token import JOINTS, LINES, Called, Token, constraint_of
+from btlang.frontends.mission.tokens.settling import STAYS
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match
@@ -63,7 +64,7 @@ def without_meaning(
     """
     staying = find(vocabulary.staying, text.words, at)
     if staying is not None and text.words[staying[1]] in (*_STAYS_BEFORE, *vocabulary.roles["and"]):
-        tokens.append(Token("nothing", text.starts[at], text.ends[staying[1] - 1]))
+        tokens.append(Token("nothing", text.starts[at], text.ends[staying[1] - 1], role=STAYS))
         return staying[1]
     going = find(vocabulary.going, text.words, at)
     if going is not None and going[1] not in text.articles:

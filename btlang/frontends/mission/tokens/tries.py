@@ -186,39 +186,33 @@ class Tries(SentenceReader):
         0 where it isn't said how often, or what is done on the later answers.
         """
         tokens, text = self._tokens, self._text
-        delay = self._phrase(match.last)
-        is_delayed = delay is not None and delay.meaning.role == "delay"
-        behind = self._behind_comma(delay.last if delay is not None and is_delayed else match.last)
-        amount = self._phrase(behind + (text.words[behind] in self._vocabulary.roles["but"]))
         first, end = statement_start(tokens, len(tokens)), self._behind(len(tokens))
         comma = next((i for i in range(first, end) if tokens[i].kind == "comma"), end)
-        if amount is None or amount.meaning.role not in _IN_ALL or tokens[first:first + 1] == [] or tokens[first].kind != "if":
+        condition, body = tokens[first + 1 : comma], tokens[comma + 1 : end]
+        if not condition or tokens[first].kind != "if" or any(token.kind not in _ASKED for token in condition):
             return 0
-        number, last = self._attempts(match.replace(last=behind - (text.words[behind - 1] == ",")))
         asked = next((token for token in reversed(tokens) if is_question(token)), None) if asks else None
+        is_new = asks and (asked is None or any(map(is_answer, tokens[tokens.index(asked) : first])))
+        if is_new or not (body or asks) or any(token.kind not in _REPAIRS for token in body):
+            return 0
+        delay = self._phrase(match.last)
+        delay = delay if delay is not None and delay.meaning.role == "delay" else None
+        number, last = self._attempts(match.replace(last=delay.last) if delay is not None else match)
         follows = self._phrase(last + 1) if text.words[last] == END_OF_STATEMENT else None
-        body = tokens[comma + 1 : end]
-        if not number.isdecimal() or int(number) < 2 or not tokens[first + 1 : comma]:
+        is_limited = last > (delay or match).last and number.isdecimal() and int(number) > 1
+        if not is_limited or (follows is not None and follows.meaning.role in ("otherwise", FAILS)):
             return 0
-        if any(token.kind not in _ASKED for token in tokens[first + 1 : comma]):
-            return 0
-        if any(token.kind not in _REPAIRS for token in body) or not (body or asks) or (asks and asked is None):
-            return 0
-        if asks and any(is_answer(token) for token in tokens[tokens.index(asked) : first]) if asked else False:
-            return 0
-        if follows is not None and follows.meaning.role in ("otherwise", FAILS):
-            return 0
-        start, stop = text.starts[at], text.ends[last - 1]
-        further: list[Token] = []
-        if delay is not None and is_delayed:
-            further = [Token("then", start, start), Token("wait", start, stop, self._calls.token(delay, match.last).value)]
+        here, start, stop = tokens[first].start, text.starts[at], text.ends[last - 1]
+        then = Token("then", start, start)
+        if delay is not None:
+            body += [then, Token("wait", start, stop, self._calls.token(delay, match.last).value)]
         if asked is not None:
-            further += [Token("then", start, start), Token("command", start, text.ends[match.last - 1], asked.value)]
-        here = tokens[first].start
-        form = [*tokens[first:comma], Token("comma", tokens[comma - 1].end, tokens[comma - 1].end), *body]
+            body += [then, Token("command", start, text.ends[match.last - 1], asked.value)]
+        body = body[body[0] is then :]
         tokens[first:] = [
-            Token("repeat", here, here), Token("open", here, here), *form, *(further if body else further[1:]),
-            Token("close", stop, stop), Token("count", start, stop, str(int(number) - 1)),
+            Token("repeat", here, here), Token("open", here, here), tokens[first], *condition,
+            Token("comma", body[0].start, body[0].start), *body, Token("close", stop, stop),
+            Token("count", start, stop, str(int(number) - 1)),
         ]  # fmt: skip
         return last
 

@@ -32,6 +32,7 @@ from btlang.frontends.mission.tokens.silent_words import (
 )
 from btlang.frontends.mission.tokens.tries import Tries
 from btlang.frontends.mission.tokens.unknown_words import UnknownWords
+from btlang.frontends.mission.tokens.visitors import Visitors
 from btlang.text.words import END_OF_STATEMENT, Words
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.language_tables import CONNECTIVES, NOT_ALONE, ORDER, QUESTIONS
@@ -76,7 +77,7 @@ class WordReader:
         self._partial = PartialCommands(text, vocabulary, self._named, context, self._calls, tokens)
         shared = text, vocabulary, context, self._calls, self._partial, tokens
         self._order, self._places, self._tries = OrderWords(*shared), Places(*shared), Tries(*shared)
-        self._requests, self._outcomes = Requests(*shared), Outcomes(*shared)
+        self._requests, self._outcomes, self._visitors = Requests(*shared), Outcomes(*shared), Visitors(*shared)
         self._partial.with_text = self._requests.value_in
         self._remarks = Remarks(text, vocabulary, context)
         self._verb_forms = verb_forms(text, vocabulary)
@@ -227,7 +228,8 @@ class WordReader:
         """Where a command is done, and commands that share their thing."""
         tokens = self._tokens
         if (match is None or role == "condition") and tokens and tokens[-1].kind in ("command", "wait"):
-            if end := self._places.at_goal(at) or self._places.behind(at):
+            if end := self._places.at_goal(at) or self._places.behind(at) or self._visitors.read(at):
+                self._is_apart |= tokens[statement_start(tokens, len(tokens))].kind in RULES
                 return end
         if match is None and begins(tokens) and (end := self._places.before(at)):
             return end
