@@ -6,13 +6,14 @@ from btlang.frontends.mission.token import JOINTS, RULES, Token, run_start, stat
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.frontends.mission.tokens.settling import STAYS
 from btlang.frontends.mission.tokens.silent_words import BEGINS, begins_item
+from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.language_tables import NOT_ALONE
 from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.value_type import DOOR, PERSON, PLACE
 from btlang.vocabulary.word_tree import find
 
-_COMES, _COMES_BACK, _DURATION = "WaitForPerson", "ComeBack", "duration"
+COMES, _COMES_BACK, _DURATION = "WaitForPerson", "ComeBack", "duration"
 
 
 class JourneyWords(SentenceReader):
@@ -128,7 +129,7 @@ class JourneyWords(SentenceReader):
 
     def _wait_for(self, at: int) -> int:
         """`wait for Bob`, `wait up to 5 min for Bob`: until he comes."""
-        tokens, entry = self._tokens, self._vocabulary.entry(_COMES)
+        tokens, entry = self._tokens, self._vocabulary.entry(COMES)
         waits = bool(tokens) and tokens[-1].kind in ("wait_for", "wait_up_to")
         found = self._context.read(PERSON, self._text, at) if waits else None
         if found is None or entry is None or not found[0]:
@@ -141,6 +142,42 @@ class JourneyWords(SentenceReader):
         self._partial.append(Match(Meaning("command", entry), found[1], tuple(values)), at)
         tokens[-1].start = wait.start
         return found[1]
+
+    def wait_for_event(self, match: Match, at: int) -> int:
+        """`wait for Bob to come to the lab`, `wait for the door to open`: until he comes to the lab, until it opens."""
+        text, vocabulary = self._text, self._vocabulary
+        first = match.values[0].first if match.meaning.entry is not None and match.values else match.last
+        ends = (i for i in range(first + 1, self._end_of_statement(first)) if text.words[i] in vocabulary.purpose)
+        behind = next(ends, 0)
+        if not behind or (match.meaning.entry is None and match.meaning.role not in ("wait_for", "wait_up_to")):
+            return 0
+        verb, found = text.words[behind + 1], None
+        forms = [
+            verb.removesuffix(end) + ending
+            for ending, ends_of_verb in vocabulary.third_person.items()
+            for end in ends_of_verb
+            if verb.endswith(end)
+        ]
+        is_being = verb == vocabulary.asking["being"][0]
+        places = [*range(first, behind), *rest_of(text, behind + 1)]
+        for form in vocabulary.asking["being"][1:] if is_being else forms:
+            asked = match_of(text, places, {behind - first: form}, (vocabulary.trie,), self._context)
+            if asked is not None and asked.meaning.role == "condition" and (found is None or asked.last > found.last):
+                found = asked
+        found = relocated(found, places) if found is not None else None
+        if found is None or found.last <= max(behind, match.last):
+            return 0
+        waiting = self._calls.token(match, at)
+        start, end = text.starts[at], text.ends[first - 1]
+        is_limited = match.meaning.role == "wait_up_to"
+        condition = self._calls.token(found, first)
+        condition.kind = "condition"
+        self._tokens += [
+            Token("wait_up_to" if is_limited else "wait_until", start, end, waiting.value if is_limited else None),
+            condition,
+        ]
+        self._calls.note(found)
+        return found.last
 
     def inspection(self, at: int, end: int) -> int:
         """`check the lab`: no condition, but a place that is looked at."""

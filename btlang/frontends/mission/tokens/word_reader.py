@@ -15,6 +15,7 @@ from btlang.frontends.mission.symbols.prefixes import SEPARATORS, Prefix, span_o
 from btlang.frontends.mission.token import BEFORE_CONDITIONS, RULES, Token, constraint_of, go_on, statement_start
 from btlang.frontends.mission.tokens.calls import NEGATED, Calls
 from btlang.frontends.mission.tokens.condition_words import check_negation, with_words_before
+from btlang.frontends.mission.tokens.journey_words import COMES
 from btlang.frontends.mission.tokens.order_words import BEFORE_ASIDE, OrderWords
 from btlang.frontends.mission.tokens.outcomes import Outcomes
 from btlang.frontends.mission.tokens.partial_commands import PartialCommands, may_be_doing
@@ -302,6 +303,9 @@ class WordReader:
             return self._tries.retry(match, at)
         if role == "check":
             return self._order.inspection(at, match.last)
+        is_wait = match.meaning.entry is not None and match.meaning.entry.id == COMES
+        if (is_wait or role in ("wait_for", "wait_up_to")) and (end := self._order.wait_for_event(match, at)):
+            return end
         if role == "command" and at in self._text.articles:  # `then the dock`: with an article it is a name
             return self._partial.add_left_out(at, match.last)
         return 0
