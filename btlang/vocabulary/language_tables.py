@@ -198,6 +198,7 @@ TABLES: dict[str, tuple[Callable[[object], bool], str]] = {
     "numbers": (_number, "a number"),
     "multipliers": (_number, "a number"),
     "fractions": (_number, "a number"),
+    "clock": (_words, "a list of words"),
     "parts_of_day": (_hour, "an hour from 0 to 23"),
     "times": (_time, 'a time such as "12:00", or the hours to add: 0 or 12'),
 }
@@ -269,7 +270,7 @@ _LANGUAGE: dict[str, Any] = {
     "third_person": {}, "direct": {},
     "negative_subjects": {}, "plurals": {}, "asking": {}, "plural_endings": {}, "nouns": {}, "everyone": {},
     "pronouns": {}, "nodes": {}, "meanings": {}, "numbers": {}, "multipliers": {}, "fractions": {}, "times": {},
-    "parts_of_day": {},
+    "parts_of_day": {}, "clock": {},
 }  # fmt: skip
 
 

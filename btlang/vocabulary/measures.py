@@ -31,6 +31,8 @@ class Measures:
         self._one_each, self._every_second = frozenset(language["one_each"]), frozenset(language["every_second"])
         self._further = frozenset(language["further"])
         self.parts_of_day: dict[str, int] = language["parts_of_day"]
+        self._past_words = [(language["clock"].get(name, ()), sign) for name, sign in (("past", 1), ("to", -1))]
+        self._hour_words = frozenset(language["clock"].get("hour", ()))
         self._fractions = tree_of(language["fractions"].items())
         self._times = tree_of(language["times"].items())
         self._number_starts = frozenset((*self._numbers, *self._multipliers, *self._fractions))
@@ -56,11 +58,16 @@ class Measures:
                 return None
             number: tuple[float, int] | None = float(hours), at + 1
         else:
-            minutes, number = "", self.number(text, at)
+            past, after = self._past(text, at)
+            number = self.number(text, after)
+            minutes = f"{int(past) % 60:02}" if number is not None and past else ""
+            number = (number[0] - (past < 0), number[1]) if number is not None else None  # `quarter to nine`
         if number is None:
             return None
         hour, end = number
+        end += text.words[end] in self._hour_words
         half = self.half_of_day(text, end)
+        half = (half[0], half[1] + (text.words[half[1]] in self._hour_words)) if half is not None else None
         part = self.parts_of_day.get(text.words[at - 2]) if half is None and at > 1 else None
         if half is not None:
             hour, end = (hour % 12 + half[0] if 1 <= hour <= 12 else -1), half[1]
@@ -69,6 +76,18 @@ class Measures:
         if hour not in range(24) or not (minutes or half):
             return None
         return f"{int(hour):02}:{int(minutes or 0):02}", end
+
+    def _past(self, text: Words, at: int) -> tuple[int, int]:
+        """The minutes past an hour, below 0 before it, and where that stands: `half past 7`, `quarter to 8`."""
+        number = self.number(text, at)
+        if number is None:
+            return 0, at
+        value, end = number
+        minutes = round(value * 60) if value < 1 else int(value)
+        for words, sign in self._past_words:
+            if text.words[end] in words and 0 < minutes < 60:
+                return sign * minutes, end + 1
+        return 0, at
 
     def half_of_day(self, text: Words, at: int) -> tuple[int, int] | None:
         """The hours that a word such as `pm` behind a number adds, and where it ends."""

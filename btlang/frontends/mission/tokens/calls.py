@@ -134,7 +134,8 @@ class Calls:
                 return False
             self._make_round(choice, token, slots[0])
             return True
-        return any(of.text == choice.text for of in _sets_of(token))
+        members = self._vocabulary.values.likenesses.members
+        return any(of.text == choice.text or (members(of) or ()) == members(choice) for of in _sets_of(token))
 
     def _make_round(self, choice: Choice, token: Token, slot: str) -> None:
         """Makes a set of the list that a command has, whose thing is from there on that of the round."""

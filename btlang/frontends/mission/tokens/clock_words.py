@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from btlang.frontends.mission.token import Called, OnDays, Token, constraint_of
+from btlang.frontends.mission.token import JOINTS, Called, OnDays, Token, constraint_of, statement_start
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.frontends.mission.tokens.silent_words import BEGINS
 from btlang.text.time_of_day import WEEKDAYS
@@ -10,6 +10,7 @@ from btlang.vocabulary.match import Match, SlotValue
 
 _TIME = "time_of_day"
 _WEEKDAYS = frozenset(map(str.lower, WEEKDAYS))
+_SIMPLE = frozenset(("command", "name", "wait", "nothing", *JOINTS))
 _TODAY, _DAYTIME = "TodayIs", "TimeOfDay"
 
 
@@ -74,13 +75,14 @@ class ClockWords(SentenceReader):
         tokens, words, entry = self._tokens, self._text.words, self._vocabulary.entry(_DAYTIME)
         joins = words[match.last] in self._vocabulary.asking["between_joint"]
         last = self._context.read(_TIME, self._text, match.last + 1) if joins else None
-        if last is None or entry is None or words[last[1]] != ",":
+        if last is None or entry is None:
             return 0
         start, end = self._text.starts[at], self._text.ends[last[1] - 1]
         asked = Token("condition", start, end, Called(entry, _times(match.values[0].text, last[0])))
         if tokens and tokens[-1].kind == "every":
-            tokens += [Token("comma", start, start), Token("if", start, start), asked]
-            return last[1]
+            return self._in_each_round(asked, last[1])
+        if words[last[1]] != ",":
+            return 0
         lasts = words[at] in self._vocabulary.roles["start_at"] or self._is_repeated(last[1])
         if not lasts or (tokens and tokens[-1].kind not in BEGINS):
             return 0
@@ -88,6 +90,22 @@ class ClockWords(SentenceReader):
             Token("wait_until", start, start), asked, Token("then", end, end), Token("until_time", start, end, last[0]),
         ]  # fmt: skip
         return last[1]
+
+    def _in_each_round(self, asked: Token, end: int) -> int:
+        """`every 15 minutes between 10 pm and 6 am, A`, `A every 15 minutes between ...`: each round asks first."""
+        tokens, start = self._tokens, asked.start
+        first = statement_start(tokens, len(tokens))
+        form = [Token("comma", start, start), Token("if", start, start), asked]
+        if first == len(tokens) - 1 and self._text.words[end] == ",":
+            tokens += form
+            return end
+        behind = self._phrase(self._behind_comma(end))
+        joins = behind is not None and behind.meaning.role in ("and", "then")
+        if any(token.kind not in _SIMPLE for token in tokens[first:-1]) or not (joins or self._is_end(end)):
+            return 0
+        every = tokens.pop()
+        tokens[first:first] = [every, *form, Token("comma", start, start)]
+        return self._behind_comma(end)
 
     def _is_repeated(self, at: int) -> bool:
         """Whether the rest of the statement is done again and again: `wave every 5 minutes`."""

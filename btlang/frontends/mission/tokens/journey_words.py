@@ -167,15 +167,13 @@ class JourneyWords(SentenceReader):
         found = relocated(found, places) if found is not None else None
         if found is None or found.last <= max(behind, match.last):
             return 0
-        waiting = self._calls.token(match, at)
-        start, end = text.starts[at], text.ends[first - 1]
-        is_limited = match.meaning.role == "wait_up_to"
+        wait = self._calls.token(match, at)
+        wait.end = text.ends[first - 1]
+        if match.meaning.role != "wait_up_to":
+            wait.kind, wait.value = "wait_until", None
         condition = self._calls.token(found, first)
         condition.kind = "condition"
-        self._tokens += [
-            Token("wait_up_to" if is_limited else "wait_until", start, end, waiting.value if is_limited else None),
-            condition,
-        ]
+        self._tokens += [wait, condition]
         self._calls.note(found)
         return found.last
 

@@ -30,6 +30,8 @@ _BEHIND = (*_JOINS, "at", "every", "every_day", "weekly", "count", "within", "un
 _AND = frozenset(("and", "comma"))
 _COMMANDS = frozenset(("command", "name", "wait", "nothing"))
 _DONE = ("command", "name", "close", "wait")
+_HEADS = frozenset(("every", "every_day", "condition"))
+"""The kinds of tokens behind which the commands of a form begin."""
 _PLAIN = frozenset(("command", "name", "comma", "open", "close", *_JOINS))
 """The kinds of tokens of a statement that does each of its commands once."""
 
@@ -196,18 +198,20 @@ class Places(SentenceReader):
     def _goes_there(self, journey: Match, end: int) -> bool:
         """Whether the journey before some token is to the same places: what comes behind is done at each of them."""
         tokens, goal = self._tokens, journey.values[0].group or journey.values[0].text
-        last = run_start(tokens, end, JOINTS | STATEMENT_ENDS)
-        if not goal or not 0 < last < end or self._journey(tokens[:last]) is not tokens[last - 1]:
+        behind = run_start(tokens, end, JOINTS | STATEMENT_ENDS)
+        last = behind - (behind > 1 and tokens[behind - 1].kind == "every")  # `visit every room every hour and wave`
+        if not goal or not 0 < behind < end or self._journey(tokens[:last]) is not tokens[last - 1]:
             return False
         if any(token.kind == "then" for token in tokens[last:end]):
             return False  # `go to A and B, then wave in each room`
         first = statement_start(tokens, last)
+        first = max((i + 1 for i in range(first, last) if tokens[i].kind in _HEADS), default=first)
         if any(token.kind not in _PLAIN for token in tokens[first:last]):
             return False
         if not self._calls.make_round(tokens[last - 1], goal):
             return False
         at = tokens[last - 1].end
-        tokens[last:end] = [Token("and", at, at)]
+        tokens[behind:end] = [Token("and", at, at)]
         return True
 
     def _repeats(self, journey: Match, last: int) -> bool:

@@ -108,13 +108,9 @@ def without_meaning(
         goes_on = role in ("then", "and") or (bool(role) and not is_behind)
         return match.last if start.kind == "but" or is_last or goes_on else 0
     purpose = find(vocabulary.purpose, text.words, at) if before.kind == "command" else None
-    if purpose is not None and _verb(text, before) in vocabulary.asking["causing"]:
+    if purpose is None or purpose[1] in text.articles or _verb(text, before) in vocabulary.asking["causing"]:
         return 0  # `wait for Bob to pick up the cup`: he does that
-    if (
-        purpose is not None
-        and purpose[1] not in text.articles
-        and longest(vocabulary.trie, text, purpose[1], context) is not None
-    ):
+    if longest(vocabulary.trie, text, purpose[1], context) is not None:
         kind = "and" if constraint_of(before) is not None else "then"
         tokens.append(Token(kind, text.starts[at], text.ends[purpose[1] - 1]))
         return purpose[1]
