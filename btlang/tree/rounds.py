@@ -14,7 +14,7 @@ from btlang.tree import ast
 from btlang.tree.visit import fold
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import ALL, Choice, choice_of
-from btlang.vocabulary.value_type import PERSON, PLACE
+from btlang.vocabulary.value_type import PERSON, PLACE, TEXT
 
 _TRAVELS = "navigation"
 
@@ -146,7 +146,10 @@ def _goes_along(chain: ast.Chain, first: int, last: int, choice: Choice) -> int:
     node = chain.items[first]
     goes = isinstance(node, ast.Phrase) and _TRAVELS in node.entry.needs
     if choice.type in (PLACE, PERSON) and goes:
+        tells = any(slot.type == TEXT for slot in node.entry.slots)
         while last + 1 < len(chain.items) and _is_joined(chain, last) and not _travels(chain.items[last + 1]):
+            if tells and isinstance(chain.items[last + 1], ast.Wait):
+                break  # `tell everyone "Bye", wait 1 min and dock`
             last += 1
     return last
 

@@ -16,15 +16,17 @@ from btlang.vocabulary.entry import MANNER, Entry
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.reading_context import ReadingContext
-from btlang.vocabulary.references import ALL, NAMES, Choice, choice_of, free_key, keys_in, point_ports, renamed
+from btlang.vocabulary.references import ALL, NAMES, SELF, Choice, choice_of, free_key, keys_in, point_ports, renamed
 from btlang.vocabulary.trie import TrieNode, longest
-from btlang.vocabulary.value_type import PERSON, PLACE, WORLD, ZONE
+from btlang.vocabulary.value_type import OBJECT, PERSON, PLACE, WORLD, ZONE
 from btlang.vocabulary.values import key_of
 from btlang.vocabulary.word_tree import find
 
 NEGATED = frozenset(("negated", "negated_twice"))
 """The roles of conditions that say `not` themselves."""
 _ENDS = (END_OF_STATEMENT, END_OF_TEXT, ";", ")")
+_COUNTED, _KINDS = {"CountPeople": PERSON, "CountObjects": OBJECT, "CountKind": OBJECT}, "kinds"
+"""What commands count, by their ids, and the type of their kinds."""
 _ODD = ("", "{", "(")  # how texts begin that are no plain values: of unknown names, references, choices and points
 
 
@@ -206,6 +208,8 @@ class Calls:
         if self.speaks_of_people and match.meaning.entry is not None and match.meaning.role != "negated":
             self._note_somebody(match.meaning.entry, match)
         self._note_values(match)
+        if match.meaning.entry is not None and match.meaning.role == "command":
+            self._note_counted(match.meaning.entry, match)
         for kind, value in before.items():
             if self._context.latest.get(kind, value) != value:
                 del self._context.latest[kind]
@@ -223,6 +227,19 @@ class Calls:
         key = self._context.keys.get(PERSON, PERSON)
         self._context.latest[PERSON] = Choice("nearest", PERSON, key, parts).text
         self._context.listed.pop(PERSON, None)
+
+    def _note_counted(self, entry: Entry, match: Match) -> None:
+        """`count the people in the lab, then greet them`: all of those that are there, or in view."""
+        kind = _COUNTED.get(entry.id, "")
+        place = next((value.text for value in match.values if value.type == PLACE and not value.more), "")
+        if not kind or place[:1] in _ODD[1:]:
+            return
+        kinds = tuple(("kind", value.text) for value in match.values if value.type == _KINDS)
+        relation = "at" if kind == PERSON else "inside"
+        where = ((relation, place),) if place else (("seen_by", SELF),)
+        key = self._context.keys.get(kind, kind)
+        self._lists.pop(kind, None)
+        self._context.listed[kind] = Choice(ALL, kind, key, tuple(sorted((*kinds, *where)))).text
 
     def _note_values(self, match: Match) -> None:
         for value in sorted(match.values, key=lambda value: value.name == value.type):  # a theme last: `it` prefers it
