@@ -462,6 +462,14 @@ def says_ports(mission: Program) -> bool:
     return any(type(node) is Exact or (type(node) is Phrase and node.ports) for node in nodes)
 
 
+def is_list(node: Ast) -> bool:
+    """Whether it is a list of values in one phrase, whose parts all stand for the same words."""
+    if not isinstance(node, Chain):
+        return False
+    start, end = node.span.start, node.span.end
+    return all(item.span.start == start and item.span.end == end for item in node.items)
+
+
 def keys_of(node: Ast) -> list[str]:
     """List the keys of values of the mission that a node itself uses, not those in its parts."""
     texts_of = _TEXTS.get(type(node))

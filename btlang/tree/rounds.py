@@ -7,26 +7,32 @@ by `and` or a comma and neither travels nor names a place.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from btlang.support.record import Record
+from btlang.text.source import Source
+from btlang.text.words import split
 from btlang.tree import ast
 from btlang.tree.visit import fold
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import ALL, Choice, choice_of
+from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import PERSON, PLACE, TEXT
 
 _TRAVELS = "navigation"
+ONE_FAILS = "if_one_fails"
+"""The role of words for what is done for each thing of a round that fails."""
 
 
 def with_rounds(mission: ast.Program, vocabulary: Lexicon) -> ast.Program:
     """Return the mission with a loop for each set that a command of it speaks of."""
-    if not any(map(_set_of, (node for body in _own_bodies(mission) for node in ast.parents_first(body)))):
+    nodes = [node for body in _own_bodies(mission) for node in ast.parents_first(body)]
+    if not any(_set_of(node) or (isinstance(node, ast.Chain) and node.operator == "fallback") for node in nodes):
         return mission
     if mission.facts:
         vocabulary = vocabulary.with_places(tuple(fact.name for fact in ast.all_facts(mission)))
     return ast.with_bodies(
-        mission, lambda body: _add_loops(body, vocabulary), lambda included: with_rounds(included, vocabulary)
+        mission, lambda body: _with_loops(body, vocabulary), lambda included: with_rounds(included, vocabulary)
     )
 
 
@@ -55,13 +61,17 @@ class _Round(Record):
     last: int = 0
 
 
+def _with_loops(root: ast.Ast, vocabulary: Lexicon) -> ast.Ast:
+    if any(map(_set_of, ast.parents_first(root))):
+        root = _add_loops(root, vocabulary)
+    return fold(root, ast.parts, lambda node, done: _with_each_tried(node, done, vocabulary))
+
+
 def _add_loops(root: ast.Ast, vocabulary: Lexicon) -> ast.Ast:
     if any(isinstance(node, ast.Remember) for node in ast.parents_first(root)):
         root = fold(root, ast.parts, _with_what_says_it)
     nodes = ast.parents_first(root)
     sets = [(at, choice) for at, node in enumerate(nodes) if (choice := _set_of(node)) is not None]
-    if not sets:
-        return root
     parents = {id(part): node for node in nodes for part in ast.parts(node)}
     of_chain: dict[int, list[_Round]] = {}
     alone: dict[int, Choice] = {}
@@ -83,6 +93,38 @@ def _add_loops(root: ast.Ast, vocabulary: Lexicon) -> ast.Ast:
         return made
 
     return fold(root, ast.parts, combine)
+
+
+def _with_each_tried(node: ast.Ast, done: Sequence[ast.Ast], vocabulary: Lexicon) -> ast.Ast:
+    """Put `If one is missing, B` into the round before it: B for each thing for which that fails."""
+    made = ast.with_parts(node, done)
+    if not isinstance(made, ast.Chain) or made.operator != "fallback":
+        return made
+    tried, *others = made.items
+    gap = split(Source(tried.span.source.text[tried.span.end : others[0].span.start]), vocabulary.orthography)
+    found = (longest(vocabulary.trie, gap, at, vocabulary.context, lists=False) for at in range(len(gap.words)))
+    if all(match is None or match.meaning.role != ONE_FAILS for match in found):
+        return made
+    return _in_each(tried, lambda part: ast.Chain("fallback", (part, *others), True, made.span)) or made
+
+
+def _says_one_verb(chain: ast.Chain) -> bool:
+    """Whether a chain is one command for several things: `take the cup to the lab and the book to the hall`."""
+    entries = {item.entry.id if isinstance(item, ast.Phrase) else "" for item in chain.items}
+    return chain.operator in ("and", "sequence") and len(entries) == 1 and "" not in entries
+
+
+def _in_each(node: ast.Ast, change: Callable[[ast.Ast], ast.Ast]) -> ast.Ast | None:
+    """Return a command whose rounds, or parts for single things, are changed; None if it has none."""
+    if isinstance(node, ast.ForEach):
+        return node.replace(body=change(node.body))  # type: ignore[no-any-return]
+    if isinstance(node, ast.Chain) and (ast.is_list(node) or _says_one_verb(node)):
+        return node.replace(items=tuple(map(change, node.items)))  # type: ignore[no-any-return]
+    parts = ast.parts(node)
+    changed = [_in_each(part, change) for part in parts]
+    if all(part is None for part in changed):
+        return None
+    return ast.with_parts(node, [new or old for new, old in zip(changed, parts, strict=True)])
 
 
 def _with_what_says_it(node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
@@ -146,7 +188,7 @@ def _goes_along(chain: ast.Chain, first: int, last: int, choice: Choice) -> int:
     node = chain.items[first]
     goes = isinstance(node, ast.Phrase) and _TRAVELS in node.entry.needs
     if choice.type in (PLACE, PERSON) and goes:
-        tells = any(slot.type == TEXT for slot in node.entry.slots)
+        tells = isinstance(node, ast.Phrase) and any(slot.type == TEXT for slot in node.entry.slots)
         while last + 1 < len(chain.items) and _is_joined(chain, last) and not _travels(chain.items[last + 1]):
             if tells and isinstance(chain.items[last + 1], ast.Wait):
                 break  # `tell everyone "Bye", wait 1 min and dock`

@@ -19,8 +19,8 @@ CONNECTIVES = {
 """The roles that join commands, each with the operator of the chain that it makes; see `conjunctions.py` for "and"."""
 
 GOES_ON = frozenset((
-    "otherwise", "or", "if_fails", "if_unanswered", "meanwhile", "in_parallel", "if_works", "if_it_works",
-    "in_any_case", "do_that", "repeat_that", "again",
+    "otherwise", "or", "if_fails", "if_one_fails", "if_unanswered", "meanwhile", "in_parallel", "if_works",
+    "if_it_works", "in_any_case", "do_that", "repeat_that", "again",
 ))  # fmt: skip
 """The roles that don't begin a new statement: what they begin continues the statement before it."""
 
@@ -61,7 +61,7 @@ NOT_ALONE = frozenset(("ordinal", "keep", "fails", "there_are", "mind", *ORDER, 
 """The roles whose words are ordinary words everywhere but in one place."""
 
 _NO_SLOT = (
-    *CONNECTIVES, "if_fails", "if_unanswered", "otherwise", "if_works", "if_it_works", "in_any_case",
+    *CONNECTIVES, "if_fails", "if_one_fails", "if_unanswered", "otherwise", "if_works", "if_it_works", "in_any_case",
     "if", "unless", "while", "until", "whenever", "first_time", "as_soon_as", "once", "provided", "stop_when", "not",
     "but", "may", "or_stay",
     "either", "both", "neither", "nor", "not_both", "any_of", "all_of", "none_of", "one_of",

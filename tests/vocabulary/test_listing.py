@@ -239,7 +239,7 @@ def test_the_overview_counts_what_each_topic_lists() -> None:
     for line in lines:
         topic, count = line[2:16].strip(), int(line[16:18])
         assert count == sum(item.topic == topic for item in ITEMS)
-    assert "  joining       27  then, and, but, or, one of, at the same time, after, ..." in lines
+    assert "  joining       28  then, and, but, or, one of, at the same time, after, ..." in lines
     assert f"{more} {last}" == (
         "btc words motion lists a topic, btc words battery finds a word, btc words --all lists everything."
     )

@@ -12,7 +12,6 @@ from btlang.passes.lint.other_readings import (
     Readings,
     add_brackets,
     is_in_brackets,
-    is_list,
     replace_part,
     sort_by_place,
 )
@@ -50,7 +49,7 @@ def find_in_form(node: ast.If | ast.Try, vocabulary: Lexicon) -> Iterator[Attach
     part: Any = node.body
     while not _has_otherwise(part):
         path.append(part)
-        if isinstance(part, ast.Chain) and not part.bracketed and not is_list(part):
+        if isinstance(part, ast.Chain) and not part.bracketed and not ast.is_list(part):
             part = sort_by_place(part.items)[-1]
         elif isinstance(part, ast.If | ast.Try | ast.Chain) or is_in_brackets(part.span):
             return

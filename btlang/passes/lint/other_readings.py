@@ -266,16 +266,8 @@ class _GapPlace:
         return Readings(whole, changed, balance_brackets(span), fix)
 
 
-def is_list(node: ast.Ast) -> bool:
-    """Whether it is a list of values in one phrase, whose parts all stand for the same words."""
-    if not isinstance(node, ast.Chain):
-        return False
-    start, end = node.span.start, node.span.end
-    return all(item.span.start == start and item.span.end == end for item in node.items)
-
-
 def _is_sequence(node: ast.Ast) -> bool:
-    return is_list(node) and getattr(node, "operator", "") == "sequence"
+    return ast.is_list(node) and getattr(node, "operator", "") == "sequence"
 
 
 def _is_open(node: ast.Ast) -> bool:
@@ -293,7 +285,7 @@ def _after_its_body(node: ast.Ast) -> list[Any]:
     while body is not None and body.span.start == node.span.start and body.span.end < node.span.end:
         forms.append(node)
         node, body = body, getattr(body, "body", None)
-    return [] if isinstance(node, ast.Chain) and node.bracketed and not is_list(node) else forms
+    return [] if isinstance(node, ast.Chain) and node.bracketed and not ast.is_list(node) else forms
 
 
 def sort_by_place(items: Sequence[ast.Ast]) -> Sequence[ast.Ast]:

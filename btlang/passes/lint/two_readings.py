@@ -32,7 +32,6 @@ from btlang.passes.lint.other_readings import (
     add_brackets,
     balance_brackets,
     find_in_chain,
-    is_list,
     sort_by_place,
 )
 from btlang.text.source import Source, Span
@@ -78,7 +77,7 @@ def _attachments(root: ast.Ast, compilation: Compilation) -> Iterator[Attachment
         node, is_part = stack.pop()
         if isinstance(node, ast.Chain):
             items = sort_by_place(node.items)
-            if (items is not node.items or any(item.parts for item in items)) and not is_list(node):
+            if (items is not node.items or any(item.parts for item in items)) and not ast.is_list(node):
                 yield from find_in_chain(node, items, is_part, compilation.vocabulary)
                 yield from find_in_sentences(node, compilation.vocabulary)
                 stack += reversed(_parts(items, compilation))

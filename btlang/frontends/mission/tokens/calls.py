@@ -114,6 +114,11 @@ class Calls:
         """A round doesn't reach beyond its statement: there `them` is another one of the same things."""
         self._lists.clear()
 
+    @staticmethod
+    def is_set(token: Token) -> bool:
+        """Whether a command is done once for each thing of a set."""
+        return bool(_sets_of(token))
+
     def is_round(self, token: Token, goal: str) -> bool:
         """Whether a command is done once for each thing of a set, or of a list that is made one: `goal`."""
         choice = choice_of(goal)

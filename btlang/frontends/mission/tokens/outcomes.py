@@ -34,6 +34,7 @@ from btlang.frontends.mission.tokens.settling import (
 from btlang.frontends.mission.tokens.silent_words import begins
 from btlang.frontends.mission.tokens.tries import LIMIT
 from btlang.text.source import Span
+from btlang.tree.rounds import ONE_FAILS
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.value_type import PERSON, PLACE
 from btlang.vocabulary.word_tree import find
@@ -61,7 +62,10 @@ class Outcomes(GoingOn):
                 return match.last
         if role == "until" and len(self._tokens) > 1 and self._tokens[-2].role == LIMIT:
             self._doubt_count(self._tokens[-2], match, at)
-        if role in (FAILS, "if_unanswered", "otherwise"):
+        if role == ONE_FAILS and not self._in_round():
+            words = self._text.span(at, match.last - (self._text.words[match.last - 1] == ","))
+            self._calls.problems.append(diagnostic("BT067", words, words=words.text))
+        if role in (FAILS, ONE_FAILS, "if_unanswered", "otherwise"):
             token.kind = "or" if role != "otherwise" else role
             token.value = FAILS if said != "otherwise" else None
         if role == said == "otherwise":
@@ -74,6 +78,16 @@ class Outcomes(GoingOn):
         if role == "if_unanswered":
             return self.unanswered(match.last)
         return self._limit_before(match.last, role) if said in (WORKS, FAILS) else match.last
+
+    def _in_round(self) -> bool:
+        """Make one round for each thing of the list or set in the statement before; False without such a one."""
+        tokens, listed = self._tokens, self._context.listed
+        last = run_start(tokens, len(tokens) - 1, JOINTS | STATEMENT_ENDS)
+        said = [token for token in tokens[statement_start(tokens, last) : last] if token.kind == "command"]
+        entries = {token.value.entry.id for token in said if isinstance(token.value, Called | Listed)}
+        if any(self._calls.is_set(token) for token in said) or (len(said) > 1 and len(entries) == 1):
+            return True
+        return any(self._calls.is_round(token, goal) for token in said for goal in listed.values() if goal)
 
     def _doubt_count(self, count: Token, match: Match, at: int) -> None:
         """BT151 for `turn left up to 8 times until C`: at most so often, or so often again and again."""
