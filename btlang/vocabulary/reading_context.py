@@ -24,6 +24,10 @@ def _description(written: str) -> tuple[str, Parts] | None:
     return None if written[:1] in ("", "{", "(") else ("nearest", ((NAME, written),))
 
 
+_OTHER_SORT = {PLACE: ZONE, ZONE: PLACE}
+"""What a region is, too."""
+
+
 class Known(Record):
     """A value that the mission names itself: its key on the blackboard, and the types that it can be used as.
 
@@ -355,8 +359,9 @@ class ReadingContext:
         """What a pronoun stands for."""
         word, end = find(self.values.pronoun_words, text.words, at) or ("", at)
         types = self.pronouns.get(word, ())
-        is_region = ZONE in types and self.latest.get(ZONE, "") == self.latest.get(PLACE, "")
-        is_one = kind in types or (kind == PLACE and is_region)  # `avoid the lab while Bob is in it`
+        is_one = kind in types
+        if not is_one and _OTHER_SORT.get(kind) in types:  # `avoid the lab while Bob is in it`, `don't go in there`
+            is_one = self.latest.get(ZONE, "") == self.latest.get(PLACE, "")
         if is_one and word in self.values.ones:
             return self._another(kind, text, end)
         if is_one and word in self.values.plural_pronouns and self._stands_for_several(kind):

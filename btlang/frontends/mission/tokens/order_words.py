@@ -331,17 +331,25 @@ class OrderWords(ClockWords, JourneyWords):
     def _goes_along(self) -> bool:
         """Joins the last command to the journey just before it. A journey alone stays as it is."""
         tokens = self._tokens
-        journey = self._journey(tokens[:-1])
-        if journey is None or constraint_of(tokens[-1]) is not None:
-            return bool(tokens) and self._journey() is not None
-        first = len(tokens) - 1
+        last = self._last_command()
+        journey = self._journey(tokens[:last])
+        if journey is None or constraint_of(tokens[last]) is not None:
+            return bool(tokens) and last == len(tokens) - 1 and self._journey() is not None
+        first = last
         while tokens[first - 1].kind in JOINTS or tokens[first - 1].kind in LINES:
             first -= 1
-        if tokens[-1].kind != "command" or tokens[first - 1] is not journey:
+        if tokens[last].kind != "command" or tokens[first - 1] is not journey:
             return False
-        joint = self._joint(tokens[-1])
-        tokens[first:-1] = [Token("after" if joint == "then" else joint, tokens[-1].start, tokens[-1].start)]
+        joint, start, end = self._joint(tokens[last]), tokens[last].start, tokens[-1].end
+        done = tokens[last:]
+        if len(done) > 1:
+            done = [Token("open", start, start), *done, Token("close", end, end)]
+        tokens[first:] = [Token("after" if joint == "then" else joint, start, start), *done]
         return True
+
+    def _last_command(self) -> int:
+        """The place of the last token, or that of the command which is done every so often: `say hi every 5 s`."""
+        return len(self._tokens) - (2 if len(self._tokens) > 1 and self._tokens[-1].kind == "every" else 1)
 
     def _on_way_to(self, at: int, end: int) -> int:
         """What is done on the way to a place: a journey with it, behind it for a task, constrained by it."""
@@ -349,8 +357,9 @@ class OrderWords(ClockWords, JourneyWords):
         journey = self._with_front(at, end, "journey")
         if journey is None:
             return 0
-        if tokens and tokens[-1].kind in ("command", "name"):
-            joint = "and" if constraint_of(tokens[-1]) is not None else self._joint(tokens[-1])
+        said = tokens[self._last_command()] if tokens else None
+        if said is not None and said.kind in ("command", "name"):
+            joint = "and" if constraint_of(said) is not None else self._joint(said)
             tokens.append(Token(joint, text.starts[at], text.ends[end - 1]))
             self._partial.append(journey, at)
             return journey.last
