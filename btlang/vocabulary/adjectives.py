@@ -41,6 +41,8 @@ class Adjectives:
         """The words before an adjective that deny it; one that ends in a hyphen is a part of the word."""
         self._colored: list[str] = language["colored"]
         self._speaker: list[str] = language["possessives"]["speaker"]
+        self.own = frozenset(self._speaker)
+        """Words for what belongs to who speaks: `my`."""
         self._others: list[str] = language["possessives"]["others"]
         self.ending = next(iter(language["possessive_endings"]), "")
         """What stands behind the name of an owner, and for the verb behind a subject: `the battery's low`."""

@@ -144,6 +144,8 @@ def test_numbers_that_are_said(sentence: str, tree: str) -> None:
         ("wait for Bob to pick up the book", "BT010"),
         ("get Bob to open the front door", "BT013"),
         ("go to the lab. If one is missing, skip it", "BT067"),
+        ("ask me if she wants tea", "BT159"),
+        ("ask me if she likes my book", "BT159"),
         ("do the round", "BT010"),
         ("ask Bob if the man who is tall is ready", "BT159"),
         ("wave through the door", "BT179"),

@@ -6,6 +6,7 @@ from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import Called, Listed, Token
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, is_question
 from btlang.frontends.mission.tokens.word_matches import words_of
+from btlang.text.words import Words
 from btlang.vocabulary.entry import RECIPIENT, Entry
 from btlang.vocabulary.match import SlotValue
 from btlang.vocabulary.trie import longest
@@ -44,16 +45,18 @@ class AddressedTexts(SentenceReader):
         return end
 
     def _plead(self, entry: Entry, value: SlotValue, at: int, command: Token) -> int:
-        """`ask Bob to close his door`: says "Please close your door" to him."""
+        """`ask Bob to close his door`: says "Please close your door" to him; `ask Bob for the cup`: to give it."""
         text, asking, texts = self._text, self._vocabulary.asking, self._vocabulary.values.texts
         owners = self._vocabulary.values.adjectives.other_owners
-        end = texts.end_of_clause(text, value.first) or value.last
+        is_thing = text.words[value.first - 1] in asking["asking_for"]
+        helps = is_thing and text.words[value.first] in asking["helping"]
+        end = value.first + 1 if helps else texts.end_of_clause(text, value.first) or value.last
         doubtful = (place for place in range(value.first, end) if texts.doubt(text, place, place + 1))
         if self._doubt(entry, next((place for place in doubtful if text.words[place] not in owners), 0)):
             return 0
-        front = asking["reminder" if text.words[at] in asking["reminding"] else "plea"][0]
-        said = front.capitalize()
-        for place in range(value.first, end):
+        kind = "plea_for" if is_thing else "reminder" if text.words[at] in asking["reminding"] else "plea"
+        said = asking["plea_for_help" if helps else kind][0].capitalize()
+        for place in range(end if helps else value.first, end):
             is_owner = text.words[place] in owners
             written = text.source.text[text.begin(place) : text.ends[place]]
             said += f" {asking['addressed'][0] if is_owner else written}"
@@ -112,7 +115,10 @@ class AddressedTexts(SentenceReader):
             return 0
         end = self._end_before_command(value)
         last = end or value.last
-        question = values.texts.direct(text, at, last, self._joining_things(at, last))
+        is_speaker = text.words[at - 2] in values.role_words.speaker
+        asked = self._of_speaker(at, last) if is_speaker else text
+        about = asked if asked is not text or not is_speaker else None  # `ask me if she wants tea`
+        question = values.texts.direct(about, at, last, self._joining_things(at, last)) if about is not None else None
         for place in range(at, last):  # `ask Bob if he wants the cup. If so, bring it`
             for kind in (OBJECT, DOOR):
                 named = find(values.names_tree(kind), text.words, place)
@@ -127,6 +133,19 @@ class AddressedTexts(SentenceReader):
         if not self._doubt(entry, values.texts.doubt(text, at + 1, value.last)):
             self._doubt(entry, at, _NO_QUESTION)
         return 0
+
+    def _of_speaker(self, first: int, last: int) -> Words:
+        """The words of `ask me if I want my tea` as those about somebody else: `if they want their tea`."""
+        text, asking = self._text, self._vocabulary.asking
+        owners = self._vocabulary.values.adjectives
+        if all(text.words[at] not in asking["speaking"] for at in range(first, last)):
+            return text
+        for at in range(first, last):
+            if text.words[at] in asking["speaking"]:
+                text = text.with_word(at, asking["spoken_of"][0])
+            elif text.words[at] in owners.own:
+                text = text.with_word(at, min(owners.other_owners))
+        return text
 
     def _ask_too(self, entry: Entry, value: SlotValue, command: Token) -> int:
         """`ask Bob "Tea?". If he says no, ask Alice`: the latest question again, to somebody else."""

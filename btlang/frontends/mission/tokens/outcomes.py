@@ -36,7 +36,7 @@ from btlang.frontends.mission.tokens.tries import LIMIT
 from btlang.text.source import Span
 from btlang.tree.rounds import ONE_FAILS
 from btlang.vocabulary.match import Match
-from btlang.vocabulary.value_type import PERSON, PLACE
+from btlang.vocabulary.value_type import OBJECT, PERSON, PLACE
 from btlang.vocabulary.word_tree import find
 
 TYPE_CHECKING = False
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     from btlang.frontends.mission.token import Value
 
 _ASKING = frozenset(("if", "as_soon_as", "once"))
-_HOLDS = "Holding"
+_HOLDS, _WHERE = "Holding", ("PersonIsAt", "ObjectIsAt")
 _DONE = ("command", "name")
 
 
@@ -211,12 +211,29 @@ class Outcomes(GoingOn):
         """`look for the cup in the lab. If it isn't there, look in the hall`: for the same thing."""
         behind = run_start(self._tokens, len(self._tokens), JOINTS)
         if not behind or self._tokens[behind - 1].value != FAILS:
-            return 0
+            return self._search_missing(at) if behind else 0
         search = next(filter(searches, reversed(self._tokens)), None)
         if search is not None or self._text.words[at] not in self._vocabulary.roles["try"]:
             return self._partial.add_further(search, at + 1) if search is not None else 0
         journey = self._journey() if self._context.read(PLACE, self._text, at + 1) is not None else None
         return self._partial.add_further(journey, at + 1) if journey is not None else 0  # `try the hall`
+
+    def _search_missing(self, at: int) -> int:
+        """`if Bob isn't in the lab, look in the hall`: for him."""
+        token, located = self._tokens[run_start(self._tokens, len(self._tokens), JOINTS) - 1], self._vocabulary
+        said = token.value
+        if token.kind != "condition" or not isinstance(said, Called) or said.entry.id not in _WHERE:
+            return 0
+        if self._text.words[at + 1] not in located.asking["located"]:
+            return 0
+        kind = next(slot.type for slot in said.entry.slots if slot.type in (PERSON, OBJECT))
+        pronoun = next((word for word, of in located.values.pronouns.items() if kind in of), "")
+        verb = located.asking["search"][0]
+        match = self._partial.with_front(at, at + 1, [verb, pronoun])
+        if match is None:
+            return 0
+        self._partial.append(match, at)
+        return match.last
 
     def _able(self, at: int, end: int) -> int:
         """`if you can pick it up, bring it to me`: picks it up unless it just has, and asks if that worked."""

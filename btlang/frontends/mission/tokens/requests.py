@@ -63,7 +63,8 @@ class Requests(Questions):
             return self._how_many(at, asked.last, command, value.name)
         if entry.id == TELL and text.words[first] in self._vocabulary.roles["and"]:
             return self._inform(at)  # `tell Bob and wave`
-        if entry.id == TELL and text.words[first - 1] in self._vocabulary.asking["pleading"]:
+        asking = self._vocabulary.asking
+        if entry.id == TELL and text.words[first - 1] in (*asking["pleading"], *asking["asking_for"]):
             return self._plead(entry, value, at, command)
         if entry.id == TELL and value.last == match.last and self._goes_on(match.last):
             return self._tell(entry, value, command)

@@ -283,6 +283,7 @@ class WordReader:
             if (end := self._condition(match, at)) > match.last:
                 return end
         elif end := self._operand(match, role, at):
+            self._calls.note(match)
             return end
         if self._text.words[match.last] in self._details and match.meaning.entry is not None:
             end = self._calls.with_details(tokens[-1], match.last, self._named)
