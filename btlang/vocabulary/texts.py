@@ -50,6 +50,7 @@ class Texts:
         self.of_persons = frozenset(language["of_persons"])
         """Words for persons that are others for whoever hears them."""
         self._joining = set().union(*map(words_of, _JOINING))
+        self._nor = words_of("nor")
         self._doubtful = {*_MARKS, *self.of_persons, *self._joining, *language.get("counts", ())}
 
     def read(self, text: Words, at: int) -> tuple[str, int] | None:
@@ -57,6 +58,8 @@ class Texts:
         word = text.words[at]
         if word[0] == '"':
             return word[1:], at + 1
+        if word in self._nor:
+            return None  # `neither nobody answers nor Bob is near`
         if word in _BEFORE_QUOTES and text.words[at + 1][0] == '"':
             return text.words[at + 1][1:], at + 2
         end = self._end_of_several(text, at)

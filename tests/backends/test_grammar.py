@@ -110,8 +110,8 @@ def test_every_role_that_can_stand_in_one_line_has_a_rule() -> None:
         "needs_world", "needs_words", "politeness", "times_of_day", "never",
         "on_way", "on_way_to", "start_at", "wait_at", "back_and_forth",
         "arrival", "arrival_at",  # about journeys, which no rule tells from others
-        "any_time", "tries", "at_most", "up_to_times", "try_again", "if_unanswered", "if_one_fails", "instead",
-        "between_times",
+        "any_time", "tries", "at_most", "up_to_times", "stop_after", "try_again", "if_unanswered",
+        "if_one_fails", "instead", "between_times",
         "weekly",  # behind what a rule makes
         "ask_where", "ask_how_many", "there_are",  # their names are those of other commands
         "all_names", "nearest", "random", "largest", "smallest", "except",  # said as values

@@ -30,6 +30,7 @@ _STATEMENT_ENDS = (END_OF_STATEMENT, END_OF_TEXT)
 _OPERANDS = frozenset(("command", "name", "close", "wait", "nothing", "fail", "node"))
 _IN_ALL = frozenset(("count", "at_most", "up_to_times", "tries"))
 _ASKED = frozenset(("condition", "not"))
+_LOOPED = frozenset(("command", "name", "wait", "every", "count", "repeat", "open", "close", "comma", "and", "then"))
 _TWICE = "2"
 _REPAIRS = _OPERANDS | JOINTS | {"open"}
 
@@ -179,6 +180,40 @@ class Tries(SentenceReader):
             left = str(int(number) - 1) if number.isdecimal() else number
             tokens += [Token("close", stop, stop), Token("count", start, stop, left)]
         return behind
+
+    def stop_after(self, match: Match, at: int) -> int:
+        """`every 30 min, take a picture. Stop after 8 pictures`, `A. After three rounds, B`: so many rounds of it.
+
+        What is counted is a round, or is said in the commands.
+        """
+        tokens, text, end = self._tokens, self._text, match.last + 1
+        last = run_start(tokens, len(tokens), _JOINTS | STATEMENT_ENDS | {"but"})
+        first, noun = statement_start(tokens, last), text.words[match.last]
+        looped = tokens[first:last]
+        if not looped or any(token.kind not in _LOOPED for token in looped):
+            return 0
+        said = text.source.text[looped[0].start : looped[-1].end].lower().split()
+        is_counted = noun in self._vocabulary.asking["rounds"] or not {noun, noun.removesuffix("s")}.isdisjoint(said)
+        paces = [token for token in looped if token.kind in ("every", "count")]
+        commands = [token for token in looped if token.kind not in ("every", "count", "repeat")]
+        commands = commands[commands[0].kind == "comma" :]
+        is_endless = len(paces) < 2 and all(token.kind == "every" or token.value == "-1" for token in paces)
+        if not (is_counted and is_endless and (self._is_end(end) or text.words[end] == ",")):
+            return 0
+        here, start, stop = looped[0].start, text.starts[at], text.ends[match.last]
+        number = Token("count", start, stop, self._calls.token(match, at).value)
+        if paces and paces[0].kind == "every":
+            made = [paces[0], Token("comma", here, here), *commands, Token("comma", start, start), number]
+        else:
+            made = [
+                Token("repeat", here, here),
+                Token("open", here, here),
+                *commands,
+                Token("close", start, start),
+                number,
+            ]
+        tokens[first:] = [*made, *([] if self._is_end(end) else [Token("semi", stop, stop)])]
+        return end if self._is_end(end) else end + 1
 
     def _while_so(self, match: Match, at: int, asks: bool) -> int:
         """`if it is shut, wait 5 s and check again, up to 3 times`: while it is so, and it is asked so often in all.
