@@ -205,7 +205,7 @@ charge [to {percent}]
             ],
         ),
         ("wall in front", ["wall in front  (condition)"]),
-        ("after", ["after", "after {duration}"]),
+        ("after", ["after", "after {duration}", "stop after {count}"]),
         (
             "wait for",
             [
