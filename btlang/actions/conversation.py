@@ -37,6 +37,7 @@ class QuestioningRobot(Conversing, PresentingRobot, Protocol):
 
 def ask(robot: QuestioningRobot, question: str, person: str | None = None, kept: dict[str, Any] | None = None) -> Steps:
     """Ask a person, or anybody, and wait for the answer. Fails after a minute without one."""
+    robot.ears.answer = ""  # the answer to an earlier question is none to this one, even if nobody can be asked
     if person is not None:
         robot.locate(person)  # nobody is asked whom the robot hasn't seen
     yield from say(robot, question, kept)

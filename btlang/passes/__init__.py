@@ -14,7 +14,12 @@ from btlang.passes.lint.allow import apply_allow, apply_allow_in_xml
 from btlang.passes.lint.asked_once import find_asked_once
 from btlang.passes.lint.definitions import find_line_ends, find_rules_only, find_unused
 from btlang.passes.lint.tree_lints import find_busy_loops, find_cut_off, find_empty_loops, find_unreachable
-from btlang.passes.lint.two_readings import find_conditional_alternatives, find_rules_at_goals, find_two_readings
+from btlang.passes.lint.two_readings import (
+    find_conditional_alternatives,
+    find_lasting_reactions,
+    find_rules_at_goals,
+    find_two_readings,
+)
 from btlang.passes.lint.unlikely_meanings import find_half_turns, find_next_day, find_restarts
 from btlang.passes.lower import lower_names
 from btlang.passes.scope import order_names
@@ -35,6 +40,7 @@ PASSES = (
     Pass("two readings", find_two_readings, needs_text=True),
     Pass("conditional alternative", find_conditional_alternatives, needs_text=True),
     Pass("rules at goals", find_rules_at_goals, needs_text=True),
+    Pass("lasting reactions", find_lasting_reactions, needs_text=True),
     Pass("asked once", find_asked_once, needs_text=True),
     Pass("half turns", find_half_turns, needs_text=True),
     Pass("next day", find_next_day, needs_text=True),

@@ -71,7 +71,8 @@ def _gather(node: ast.Ast, problems: list[Diagnostic]) -> ast.Ast:
             if behind is not None:
                 made[asking] = behind
                 continue
-            form = [] if _asks_anew(made, asking) else _form_that_asks(made[asking])
+            is_anew = _asks_anew(made, asking)
+            form = [] if is_anew else _form_that_asks(made[asking])
             problem = _problem(made, asking, form, item)
             if problem:
                 words = item.span.text.split(",")[0]
@@ -79,6 +80,9 @@ def _gather(node: ast.Ast, problems: list[Diagnostic]) -> ast.Ast:
             elif form:
                 made[asking] = _with_last(form, item)
                 continue
+            elif asking == len(made) - 1 and item.otherwise is not None:
+                for at in range(asking - is_anew, asking + 1):  # silence is something else than what was asked for
+                    made[at] = _without_failure(made[at])
         _reply(made, asking, item)
         if _questions(item):
             asking = len(made) - 1

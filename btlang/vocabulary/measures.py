@@ -49,6 +49,7 @@ class Measures:
     def time_of_day(self, text: Words, at: int) -> tuple[str, int] | None:
         """`6 pm`, `7:30 am`, `18:30` or `noon` as a port text of 24 hours (18:30), and where it ends."""
         word = text.words[at]
+        past = 0
         named = find(self._times, text.words, at)
         if named is not None and isinstance(named[0], str):
             return named
@@ -73,7 +74,8 @@ class Measures:
             hour, end = (hour % 12 + half[0] if 1 <= hour <= 12 else -1), half[1]
         elif part is not None and (hour <= 12 or part == 0):  # `every evening at 8`, `every night at 2`
             hour, half = (part + (hour - part) % 12) % 24 if 1 <= hour <= 12 else -1, (part, end)
-        if hour not in range(24) or not (minutes or half):
+        is_told = half or (hour > 12 if past else minutes)  # `half past seven` may be in the morning or the evening
+        if hour not in range(24) or not is_told:
             return None
         return f"{int(hour):02}:{int(minutes or 0):02}", end
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import btlang
-from btlang.actions.conversation import meaning_of
+from btlang.actions.conversation import answer_is, ask, meaning_of
 from btlang.robots.robot import RobotError
 from btlang.robots.spoken_commands import SpokenCommands, choices
 from btlang.run.bus import INLINE
@@ -97,6 +97,14 @@ def test_a_rule_hears_what_is_said_since_it_looked_last() -> None:
                 session.robot.hear("Well, hello robot!", "Alice")
             prepared.tick()
     assert greeted == ["Good day", "Good day"]
+
+
+def test_an_answer_is_none_to_a_question_that_could_not_be_asked() -> None:
+    with btlang.Session() as session:
+        session.robot.ears.answer = "yes"  # to an earlier question
+        with pytest.raises(RobotError):
+            next(ask(session.robot, "Stay?", "Zoe"))
+        assert not answer_is(session.robot, "yes")
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,7 @@ from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import choice_of
-from btlang.vocabulary.value_type import OBJECT, PERSON, PLACE
+from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -28,6 +28,7 @@ _SENTENCE_END = re.compile(r"[.;!?\n]")
 _QUOTED_ENDS = ('."', '!"', '?"')
 ON_THE_WAY = ("SomeoneInTheWay", "SomethingInTheWay")
 _WHILE_DRIVING = ("Bumped", "WallInFront", "ObstacleWithin")
+_CLOSED = "DoorClosed"
 _FREE, _BATTERY, _LOW = "PathClear", "Battery", "BatteryLow"
 
 
@@ -48,7 +49,8 @@ def find_asked_once(compilation: Compilation) -> Iterator[Diagnostic]:
                     yield from warnings or _too_late(node, sentence, vocabulary)
                 elif sentence and "\n" not in node.span.text:
                     before_it = sentence[-1] if type(node.body) is ast.Fail else None  # `A, and abort if C`
-                    yield from _warn(node, before_it, vocabulary)  # `A, and when C, B`
+                    warnings = list(_warn(node, before_it, vocabulary))  # `A, and when C, B`
+                    yield from warnings or _too_late(node, sentence, vocabulary)
 
 
 def _sentence_before(items: Sequence[ast.Ast], at: int) -> Sequence[ast.Ast]:
@@ -75,6 +77,11 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
         whole = Span(node.span.source, before[0].span.start, node.span.end)
         rounds, rest = Span(whole.source, whole.start, before[-1].span.end).text, node.span.text
         each = f"{rounds}, {vocabulary.word('then')} {rest[:1].lower()}{rest[1:]}"
+        if timed.body.span.end < timed.span.end < before[-1].span.end:  # `A every 10 s until noon`, then B
+            text, done = whole.source.text, timed.body.span.text
+            ends, pace = text[timed.span.end : before[-1].span.end], text[timed.body.span.end : timed.span.end]
+            front = f"{ends.strip(' ,')}, {pace.strip(' ,')}, {done[:1].lower()}{done[1:]}"
+            each = f"{front}, {vocabulary.word('then')} {rest[:1].lower()}{rest[1:]}"
         advice = f"All rounds are over by then. To do it in each round, write: {each}"
         yield diagnostic("BT068", node.span, words=words, advice=advice).replace(readings=((whole, each),))
         return
@@ -89,13 +96,24 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
         each = f"{vocabulary.word('whenever')} {node.span.text[len(words.split(maxsplit=1)[0]) :].lstrip()}"
         advice = f"'{last}' is over by then. To do it {'meanwhile' if is_timed else 'on the way'}, write: {each}"
         yield diagnostic("BT068", node.span, words=words, advice=advice).replace(readings=((node.span, each),))
-    elif (
-        isinstance(asked, ast.Phrase)
-        and isinstance(node.condition, ast.Not)
-        and any(_find_things(journey) & _find_things(asked) for journey in journeys)
+    elif isinstance(asked, ast.Phrase) and (
+        any(_leads_through(journey, asked) for journey in journeys)
+        or (
+            isinstance(node.condition, ast.Not)
+            and any(_find_things(journey) & _find_things(asked) for journey in journeys)
+        )
     ):
         advice = f"'{last}' comes first, and fails if it can't be done. What decides about it stands before it."
         yield diagnostic("BT068", node.span, words=words, advice=advice)
+
+
+def _leads_through(journey: ast.Phrase, asked: ast.Phrase) -> bool:
+    """Return whether a condition asks if the door is closed of the place to which a journey leads: `kitchen door`."""
+    if asked.entry.id != _CLOSED:
+        return False
+    doors = [text.lower().split() for name, text in asked.arguments if asked.entry.slot(name).type == DOOR]
+    goals = [text.lower() for name, text in journey.arguments if journey.entry.slot(name).type == PLACE]
+    return any(goal in door for door in doors for goal in goals)
 
 
 def _is_about_driving(asked: ast.Phrase, node: ast.If, journeys: Sequence[ast.Phrase]) -> bool:

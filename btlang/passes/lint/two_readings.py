@@ -153,8 +153,9 @@ def find_rules_at_goals(compilation: Compilation) -> Iterator[Diagnostic]:
     """Report `go to the door. Whenever somebody comes near, wave`: the rule ends at the door, or the robot stays."""
     body, vocabulary = compilation.mission.body, compilation.vocabulary
     items = sort_by_place(body.items) if isinstance(body, ast.Chain) else ()
-    rule, journey = items[-1] if items else None, items[-2] if len(items) > 1 else None
-    if not isinstance(rule, ast.Whenever) or not isinstance(journey, ast.Phrase):
+    rule = next((item for item in reversed(items) if isinstance(item, ast.Whenever)), None)
+    journey = next((item for item in reversed(items) if not isinstance(item, ast.Whenever | ast.If)), None)
+    if rule is None or not isinstance(journey, ast.Phrase) or rule.span.start < journey.span.start:
         return
     asked = rule.condition
     is_about_people = isinstance(asked, ast.Phrase) and _is_about_people(asked.entry, vocabulary)
@@ -167,6 +168,27 @@ def find_rules_at_goals(compilation: Compilation) -> Iterator[Diagnostic]:
     other = f"{journey.span.text}, {vocabulary.word('then')} {vocabulary.word('wait_forever')}. {rule.span.text}"
     problem = diagnostic("BT050", whole, taken=taken, fixed=taken, other=other)
     yield problem.replace(readings=((whole, taken), (whole, other)))
+
+
+def find_lasting_reactions(compilation: Compilation) -> Iterator[Diagnostic]:
+    """Report `whenever somebody is near, say hi until noon`: over and over then, or each time until noon."""
+    for body in ast.bodies(compilation.mission):
+        for node in compilation.syntax(body):
+            timed = node.body if isinstance(node, ast.Whenever) else None
+            if not isinstance(timed, ast.UntilTime) or not isinstance(timed.body, ast.Phrase):
+                continue
+            if not timed.body.entry.accompaniment or "\n" in node.span.text:
+                continue
+            until = node.span.source.text[timed.body.span.end : node.span.end].strip(" ,")
+            word = compilation.vocabulary.word
+            rule, done = node.span.text.removesuffix(until).rstrip(" ,"), timed.body.span.text
+            front = rule.removesuffix(done)
+            if front.rstrip().endswith(word("repeat")):
+                continue
+            taken = f"{front}{word('repeat')} {done} {until}"
+            other = f"{word('wait')} {until}. {rule[:1].upper()}{rule[1:]}"
+            problem = diagnostic("BT050", node.span, taken=taken, fixed=taken, other=other)
+            yield problem.replace(readings=((node.span, taken), (node.span, other)))
 
 
 def _is_about_people(entry: Entry, vocabulary: Lexicon) -> bool:

@@ -159,6 +159,11 @@ def _misfit(
     span = text.span(at, next((i for i in range(at + 1, end) if text.words[i] in following), max(end, at + 1)))
     pronoun = find(vocabulary.values.pronoun_words, text.words, at) if named else None
     if pronoun is not None:
+        meant = vocabulary.values.pronouns[pronoun[0]]
+        fitting = [kind for kind in named if kind.name in meant]
+        if not fitting and any(kind in context.latest for kind in meant):  # `from her`, where a day could stand
+            return _unknown_phrase(text, first, max(end, at + 1), vocabulary, definitions, [])
+        named = fitting or [vocabulary.types[kind] for kind in meant]
         is_plural = pronoun[0] in vocabulary.values.plural_pronouns
         said = is_plural and any(kind.name in context.latest for kind in named)
         kinds = _LIST if said else joined([kind.name for kind in named], "or")

@@ -7,6 +7,7 @@ from btlang.frontends.mission.token import Called, Listed, Token
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, is_question
 from btlang.frontends.mission.tokens.word_matches import words_of
 from btlang.text.words import Words
+from btlang.tree.answers import ABOUT_ANSWERS
 from btlang.vocabulary.entry import RECIPIENT, Entry
 from btlang.vocabulary.match import SlotValue
 from btlang.vocabulary.trie import longest
@@ -79,6 +80,8 @@ class AddressedTexts(SentenceReader):
             return ""
         text, pronouns = self._text, self._vocabulary.values.pronoun_words
         named = [value for _, value in asked[0].value.arguments]
+        if asked[0].value.entry.id in ABOUT_ANSWERS:  # `if she says yes, tell Bob`: of who was asked
+            named = [person for person in [self._context.latest.get(PERSON, "")] if person]
         words: list[str] = []
         for at in words_of(text, asked[0]):
             pronoun = find(pronouns, text.words, at)

@@ -34,6 +34,7 @@ from btlang.frontends.mission.tokens.settling import (
 from btlang.frontends.mission.tokens.silent_words import begins
 from btlang.frontends.mission.tokens.tries import LIMIT
 from btlang.text.source import Span
+from btlang.tree.answers import EXAMPLE
 from btlang.tree.rounds import ONE_FAILS
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.value_type import OBJECT, PERSON, PLACE
@@ -70,6 +71,8 @@ class Outcomes(GoingOn):
             token.value = FAILS if said != "otherwise" else None
         if role == said == "otherwise":
             self.turns(token)
+        if said == "if_unanswered":
+            self._doubt_silence(self._text.span(at, match.last))
         if said == "if_unanswered" and at not in self._text.going_on:
             self.check_asked(match, at)
             self.try_question(len(self._tokens) - 1)
@@ -78,6 +81,13 @@ class Outcomes(GoingOn):
         if role == "if_unanswered":
             return self.unanswered(match.last)
         return self._limit_before(match.last, role) if said in (WORKS, FAILS) else match.last
+
+    def _doubt_silence(self, words: Span) -> None:
+        """BT144 for `ask Alice and Bob "Tea?". If they don't answer, A`: whoever is silent, or both."""
+        asked = next((token for token in reversed(self._tokens) if token.kind == "command" and hears(token)), None)
+        if asked is not None and isinstance(asked.value, Listed):
+            said, problem = words.text.rstrip(" ,"), "could be about one of them or about all"
+            self._calls.problems.append(diagnostic("BT144", words, words=said, problem=problem, example=EXAMPLE))
 
     def _in_round(self) -> bool:
         """Make one round for each thing of the list or set in the statement before; False without such a one."""

@@ -18,6 +18,7 @@ from btlang.frontends.mission.token import (
 )
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, leads_to
 from btlang.frontends.mission.tokens.silent_words import TRAVELS, begins
+from btlang.text.source import Span
 from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.references import ALL, NAMES, choice_of
 from btlang.vocabulary.value_type import OBJECT, PERSON, PLACE
@@ -98,11 +99,25 @@ class Places(SentenceReader):
         if self._calls.is_alternative(journey, goal):
             return pronoun[1]
         if goal[:1] == "{":
+            count = tokens[tokens.index(journey) + 1]
+            if count.kind == "count":
+                return self._doubt_times(journey, count, pronoun[1])
             if tokens[-2].kind != "and" or not self._calls.is_round(journey, goal):
                 return 0
         elif not leads_to(journey, goal):
             return 0
         return pronoun[1]
+
+    def _doubt_times(self, journey: Token, count: Token, end: int) -> int:
+        """BT151 for `go to the lab and the hall twice and wave in each`: each time, or at the end."""
+        text, word = self._text, self._vocabulary.word
+        whole = Span(text.source, journey.start, text.ends[end - 1])
+        said, times = (text.source.text[token.start : token.end] for token in (journey, count))
+        rest = text.source.text[count.end : whole.end].strip(" ,")
+        one = f"{word('repeat')} {times}: {said} {rest}"
+        other = f"{said} {times}, {word('then')} {text.source.text[self._tokens[-1].start : self._tokens[-1].end]}"
+        self._calls.problems.append(diagnostic("BT151", whole, words=whole.text, one=one, other=other))
+        return end
 
     def behind(self, at: int) -> int:
         """`wave in the kitchen`: goes there first. Also to who speaks: `bring the cup to me in the kitchen`."""

@@ -94,6 +94,11 @@ class Questions(Answers):
         if text.words[first] in self._vocabulary.roles["if"]:
             self._doubt(said.entry, first, _DEPENDS)  # `tell me if the door is open`
             return first + self._length(first) + 1
+        measured = self._measured(first)
+        if measured is not None and self._ends(measured.last):  # `tell Bob what she said`
+            command = Token("command", text.starts[at], text.ends[measured.last - 1], said)
+            self._say(at, measured, command, slot)
+            return measured.last
         asked = self._phrase(first)
         role = asked.meaning.role if asked is not None else ""
         read = {"ask_value": self._asked, "ask_where": self._where, "ask_how_many": self._how_many}.get(role)

@@ -42,6 +42,11 @@ class Requests(Questions):
         if self._text.words[value.first][0] == '"':
             return self._value_behind(value.last, value.name, at, command) if value.last == match.last else 0
         values, word = self._vocabulary.values, self._text.words[value.first]
+        owners = {*values.adjectives.own, *values.adjectives.other_owners}
+        owned = self._measured(value.first) if word in owners else None
+        if owned is not None and self._ends(owned.last) and entry.id in (SAY, TELL):
+            self._say(at, owned, command, value.name)  # `tell Bob her answer`
+            return owned.last
         is_pronoun = word not in values.ones and find(values.pronoun_words, self._text.words, value.first) is not None
         if is_pronoun and value.last == value.first + 1 and entry.id in (SAY, TELL):
             self._doubt(entry, value.first)  # `say it again`

@@ -263,6 +263,12 @@ class Tries(SentenceReader):
             self._doubt_questions(asked, self._text.span(at, amount.last), self._text.span(behind, amount.last).text)
             self._tokens.append(Token("command", self._text.starts[at], self._text.ends[amount.last - 1], asked.value))
             return amount.last
+        earlier = self._tokens[self._tokens.index(asked) : statement_start(self._tokens, len(self._tokens))]
+        if any(map(is_answer, earlier)):  # `if he says yes, A. If he doesn't answer, ask again`
+            words = self._text.span(at, match.last)
+            reason = "what is done on the later answer isn't said"
+            advice = "Define the question with what is done on each answer, and do that again."
+            self._calls.problems.append(diagnostic("BT152", words, words=words.text, reason=reason, advice=advice))
         self._tokens.append(Token("command", self._text.starts[at], self._text.ends[match.last - 1], asked.value))
         last = amount.last if amount is not None and amount.meaning.role == "once" else match.last
         self._doubt(last)
