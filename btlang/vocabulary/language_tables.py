@@ -44,7 +44,7 @@ ASKING = (
     "reminder", "addressed", "informing", "informed", "staying", "resuming", "interrupting", "and_back",
     "if_yes", "if_no", "told_of", "standing", "able", "unable", "reaching", "finishing", "waiting", "apiece",
     "between_joint",    "standing_verbs", "events", "duties", "reasons", "performing", "naming", "named_as", "in_turn",
-    "rounds", "being", "causing", "asking_for", "plea_for", "helping", "plea_for_help",
+    "rounds", "obliging", "failing", "being", "causing", "asking_for", "plea_for", "helping", "plea_for_help",
     "speaking", "spoken_of", "still", "motionless", "who", "somebody",
 )  # fmt: skip
 """What the table `asking` of a language may have; without it there are no questions, and no remarks."""
@@ -53,7 +53,8 @@ QUESTIONS = ("ask_value", "ask_where", "ask_how_many")
 """The roles of words that begin questions; "there_are" are words that may end one."""
 
 ORDER = (
-    "arrival", "arrival_at", "on_way", "on_way_to", "start_at", "wait_at", "back_and_forth", "any_time", "tries",
+    "arrival", "arrival_at", "on_way", "on_way_to", "start_at", "wait_at", "back_and_forth", "rounds_of", "any_time",
+    "tries",
     "at_most", "up_to_times", "stop_after", "try_again", "weekly", "on_days", "instead", "between_times",
 )  # fmt: skip
 """The roles of words about the order of commands."""
@@ -84,7 +85,8 @@ ROLES = {
     **dict.fromkeys(_NO_SLOT, ""),
     **dict.fromkeys(("every", "delay", "for", "up_to", "apart", "within", "wait", "wait_up_to"), "duration"),
     **dict.fromkeys(("without_entering", "without_leaving"), "zone"),
-    **dict.fromkeys(("count", "tries", "at_most", "up_to_times", "stop_after", "more", "at_least_of"), "count"),
+    **dict.fromkeys(("count", "tries", "at_most", "up_to_times", "stop_after", "rounds_of"), "count"),
+    **dict.fromkeys(("more", "at_least_of"), "count"),
     **dict.fromkeys(("arrival_at",), "place"),
     **dict.fromkeys(("weekly", "on_days"), "days time_of_day"),
     **dict.fromkeys(("at", "every_day", "until_time", "wait_time", "between_times"), "time_of_day"),

@@ -138,9 +138,9 @@ class Lexicon:
         """What says in a standing rule that the rest waits, and that it goes on."""
         self.telling = tree_of((words, True) for words in self.asking["telling"])
         """The words before a text in quotes that is to be said: `tell me`."""
-        self.duties, self.reasons, self.able, self.unable, self.reaching, self.finishing = (
+        self.duties, self.obliging, self.reasons, self.able, self.unable, self.reaching, self.finishing = (
             tree_of((words, True) for words in self.asking[name])
-            for name in ("duties", "reasons", "able", "unable", "reaching", "finishing")
+            for name in ("duties", "obliging", "reasons", "able", "unable", "reaching", "finishing")
         )
         """What no sentence has that only tells something, and what begins a reason, and what couldn't be done."""
         self.replies = tree_of((words, is_yes) for name, is_yes in _REPLIES for words in self.asking[name])

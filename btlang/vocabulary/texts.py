@@ -50,7 +50,7 @@ class Texts:
         self.of_persons = frozenset(language["of_persons"])
         """Words for persons that are others for whoever hears them."""
         self._joining = set().union(*map(words_of, _JOINING))
-        self._nor = words_of("nor")
+        self._joints = words_of("nor") | words_of("and") | words_of("or")
         self._doubtful = {*_MARKS, *self.of_persons, *self._joining, *language.get("counts", ())}
 
     def read(self, text: Words, at: int) -> tuple[str, int] | None:
@@ -58,7 +58,7 @@ class Texts:
         word = text.words[at]
         if word[0] == '"':
             return word[1:], at + 1
-        if word in self._nor:
+        if word in self._joints:
             return None  # `neither nobody answers nor Bob is near`
         if word in _BEFORE_QUOTES and text.words[at + 1][0] == '"':
             return text.words[at + 1][1:], at + 2
@@ -129,6 +129,8 @@ class Texts:
                     break  # `when she comes if she wants tea`
                 parts = [*([opener] if asks else []), *self._said(text, first, at), front[0]]
                 return self._question(parts, self._said(text, front[1], last), doubtful)
+        if asks and text.words[first] in self.inverting:  # `what is 7 times 8`
+            return self._question((opener, text.words[first]), self._said(text, first + 1, last), doubtful)
         verb = next((at for at in range(first, last) if text.words[at] in self.inverting), first)
         if verb == first or not self._relatives.isdisjoint(text.words[first:verb]):
             return None

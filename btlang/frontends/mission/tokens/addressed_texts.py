@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from btlang.diagnostics.diagnostic import diagnostic
-from btlang.frontends.mission.token import Called, Listed, Token
+from btlang.frontends.mission.token import JOINTS, STATEMENT_ENDS, Called, Listed, Token, run_start, statement_start
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, is_question
+from btlang.frontends.mission.tokens.settling import FAILS
 from btlang.frontends.mission.tokens.word_matches import words_of
 from btlang.text.words import Words
 from btlang.tree.answers import ABOUT_ANSWERS
@@ -68,6 +69,10 @@ class AddressedTexts(SentenceReader):
 
     def _asked_of(self) -> str:
         """The words of the one condition that the command being read depends on, with names for pronouns; else ""."""
+        tokens = self._tokens
+        failed = next((at for at in reversed(range(len(tokens))) if tokens[at].kind in (*_LINE_ENDS, "or")), 0)
+        if tokens and tokens[failed].kind == "or" and tokens[failed].value == FAILS:
+            return self._failed(run_start(tokens, failed, JOINTS | STATEMENT_ENDS))
         form = next((at for at in reversed(range(len(self._tokens))) if self._tokens[at].kind in _ASKED_BY), 0)
         if self._tokens and self._tokens[form].start == self._tokens[form].end:
             return ""  # of a question: its words ask
@@ -90,6 +95,18 @@ class AddressedTexts(SentenceReader):
             words.append(named[0] if pronoun is not None else self._written(at))
         said = " ".join(words)
         return said[:1].upper() + said[1:]
+
+    def _failed(self, end: int) -> str:
+        """`pick up the cup. If you can't find it, tell Bob`: that the command before some token has failed."""
+        tried = self._tokens[end - 1] if end else None
+        if tried is None or tried.kind != "command" or end - 1 != statement_start(self._tokens, end):
+            return ""
+        words = list(words_of(self._text, tried))
+        people = self._vocabulary.values.texts.of_persons
+        if any(self._text.words[at] in people or self._text.words[at] in self._context.pronouns for at in words):
+            return ""
+        front, done = self._vocabulary.asking["failing"][0], " ".join(map(self._written, words))
+        return f"{front[:1].upper()}{front[1:]} {done[:1].lower()}{done[1:]}"
 
     def _written(self, at: int) -> str:
         """A word as it is written, with its article."""
@@ -214,8 +231,11 @@ class AddressedTexts(SentenceReader):
         """`remind me to drink some water`, `tell me that tea is ready`: what is said, and where it ends."""
         text, asking, texts = self._text, self._vocabulary.asking, self._vocabulary.values.texts
         end = texts.end_of_clause(text, opener + 1) or opener + 2
-        self._doubt(entry, texts.doubt(text, opener + 1, end))
-        said = text.source.text[text.begin(opener + 1) : text.ends[end - 1]]
+        own = self._vocabulary.values.adjectives.own if text.words[opener] in asking["pleading"] else frozenset[str]()
+        doubtful = (place for place in range(opener + 1, end) if texts.doubt(text, place, place + 1))
+        self._doubt(entry, next((place for place in doubtful if text.words[place] not in own), 0))
+        words = (text.source.text[text.begin(place) : text.ends[place]] for place in range(opener + 1, end))
+        said = " ".join(asking["addressed"][0] if word.lower() in own else word for word in words)
         if text.words[opener] in asking["pleading"]:
             said = f"{asking['reminder' if text.words[at] in asking['reminding'] else 'plea'][0]} {said}"
         return said[:1].upper() + said[1:], end

@@ -80,6 +80,17 @@ class JourneyWords(SentenceReader):
         self._partial.append(journey, at)
         return journey.last
 
+    def _rounds_of(self, match: Match, at: int) -> int:
+        """`do three rounds through the lab and the hall`: to each of them, so many times."""
+        journey = self._with_front(at, match.last, "journey")
+        if journey is None:
+            return 0
+        start, end = self._text.starts[at], self._text.ends[match.last - 1]
+        number = self._calls.token(match, at)
+        self._partial.append(journey, at)
+        self._tokens.append(Token("count", start, end, number.value))
+        return journey.last
+
     def _go_and_see(self, at: int) -> int:
         """`go and see if Bob is in the lab`: there, and then what is asked."""
         going = find(self._vocabulary.going, self._text.words, at)

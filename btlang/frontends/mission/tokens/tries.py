@@ -9,12 +9,13 @@ from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import (
     FORMS,
     JOINTS,
+    RULES,
     STATEMENT_ENDS,
     Token,
     run_start,
     statement_start,
 )
-from btlang.frontends.mission.tokens.rules_inside import asks_if_blocked
+from btlang.frontends.mission.tokens.rules_inside import ON_WAY, asks_if_blocked
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, is_answer, is_question, may_fail
 from btlang.frontends.mission.tokens.settling import FAILS
 from btlang.frontends.mission.tokens.silent_words import begins
@@ -98,6 +99,10 @@ class Tries(SentenceReader):
         """
         tokens, end = self._tokens, len(self._tokens)
         end = self._behind(end)
+        rule = tokens[statement_start(tokens, end) : end][:1]
+        if rule and (rule[0].kind in RULES or rule[0].role == ON_WAY) and self._is_end(match.last):
+            del tokens[end:]  # it goes on with the rest by itself
+            return match.last
         pause = tokens[end - 1] if end and tokens[end - 1].kind == "wait" else None
         end = self._behind(end - 1) if pause is not None else end
         form = self._condition(end)

@@ -13,7 +13,7 @@ from btlang.frontends.mission.tokens.partial_commands import PartialCommands, ma
 from btlang.frontends.mission.tokens.silent_words import MARKS, begins, begins_item
 from btlang.frontends.mission.tokens.word_matches import with_verb
 from btlang.text.source import Span
-from btlang.text.words import Words
+from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.language_tables import CONNECTIVES, NOT_ALONE
 from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
 from btlang.vocabulary.match import Match
@@ -146,7 +146,21 @@ class UnknownWords:
             if named is not None:
                 self._context.latest[kind] = named
         span = Span(text.source, text.begin(at), text.ends[end - 1])
-        return end, diagnostic("BT164" if why is None else "BT165", span, words=span.text)
+        code = "BT164" if why is None else "BT158" if self._is_idle(why[1], end) else "BT165"
+        return end, diagnostic(code, span, words=span.text)
+
+    def _is_idle(self, at: int, end: int) -> bool:
+        """Whether a reason asks for nothing and goes on with no command: `because Alice is working there`."""
+        words, vocabulary = self._text.words, self._vocabulary
+        if words[end] not in (END_OF_STATEMENT, END_OF_TEXT) and not (words[end] == "," and begins(self._tokens)):
+            return False
+        if not vocabulary.quantifiers.isdisjoint(words[at:end]):
+            return False
+        joints = {phrase.split()[0] for role in ("and", "then", "or", "but") for phrase in vocabulary.roles[role]}
+        command = longest(vocabulary.trie, self._text, at, self._context)
+        if not joints.isdisjoint(words[at:end]) or (command is not None and command.meaning.role == "command"):
+            return False
+        return all(find(vocabulary.obliging, words, i) is None for i in range(at, end))
 
     def _tells(self, at: int, end: int) -> bool:
         """Whether words speak of somebody or something, and say nothing that must be or must not."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from btlang.frontends.mission.token import JOINTS, STATEMENT_ENDS, Called, Token, run_start, statement_start
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.frontends.mission.tokens.settling import STAYS
-from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of
+from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of, words_of
 from btlang.text.words import END_OF_TEXT
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.references import choice_of
@@ -24,7 +24,15 @@ class Visitors(SentenceReader):
         """
         tokens = self._tokens
         event, said = self._event(at), tokens[-1].value if tokens else None
-        if event is None or not isinstance(said, Called) or not self._is_end(event.last):
+        if event is None or not isinstance(said, Called):
+            return 0
+        last = event.last
+        if not self._is_end(last):  # `greet everyone who comes in with "Hello"`
+            whole = self._partial.in_order([*words_of(self._text, tokens[-1]), *rest_of(self._text, last)])
+            if whole is None or whole.meaning.entry is not said.entry or whole.last <= last:
+                return 0
+            said, last = self._calls.token(whole, at).value, whole.last
+        if not isinstance(said, Called) or not self._is_end(last):
             return 0
         everyone = next((text for name, text in said.arguments if said.entry.slot(name).type == PERSON), "")
         choice = choice_of(everyone)
@@ -33,11 +41,11 @@ class Visitors(SentenceReader):
         is_plain = all(token.kind in _SIMPLE for token in tokens[first:])
         if choice is None or choice.parts or not is_plain:
             return 0
-        if joint > first and any(word != END_OF_TEXT for word in self._text.words[event.last + 1 :]):
+        if joint > first and any(word != END_OF_TEXT for word in self._text.words[last + 1 :]):
             return 0  # `stay here until noon and wave at everyone who comes near. Then dock`
         self._calls.note_nearest()
         nearest = self._context.latest[PERSON]
-        start, end = tokens[-1].start, self._text.ends[event.last - 1]
+        start, end = tokens[-1].start, self._text.ends[last - 1]
         condition = self._calls.token(event, at)
         condition.kind = "condition"
         arguments = tuple((name, nearest if text == everyone else text) for name, text in said.arguments)
@@ -49,7 +57,7 @@ class Visitors(SentenceReader):
         tokens[joint if joint > first else first :] = [
             *ends, Token("whenever", start, start), condition, Token("comma", end, end), command,
         ]  # fmt: skip
-        return event.last
+        return last
 
     def _event(self, at: int) -> Match | None:
         """What somebody does who is spoken of: `who comes near`, `you meet`."""

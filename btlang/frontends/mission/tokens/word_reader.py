@@ -257,7 +257,10 @@ class WordReader:
         told = self._unknown.told(at, last)
         if told is not None:
             end = told[0]
-            self._problems += [told[1]] if self._explain else []
+            self._problems += [told[1]] if self._explain or not told[1].is_error else []
+            if not told[1].is_error:
+                del tokens[len(tokens) - (tokens[-1:] != [] and tokens[-1].kind == "comma") :]
+                return end + (text.words[end] == ",")
         else:
             end = self._unknown.end(at, last)
             end += role == INCLUDE and text.words[end][0] == '"'
