@@ -108,6 +108,20 @@ class Places(SentenceReader):
             return 0
         return pronoun[1]
 
+    def left_out(self, at: int) -> int:
+        """`pick up all cups and bring them to the lab, except the red ones`: of the set in the statement."""
+        tokens, first = self._tokens, statement_start(self._tokens, len(self._tokens))
+        for token in tokens[first:] if self._vocabulary.values.exception(self._text, at) else ():
+            value = token.value
+            for name, group in value.arguments if isinstance(value, Called) else ():
+                fewer = self._context.without(group, self._text, at)
+                if isinstance(value, Called) and fewer is not None and fewer[0] and self._is_end(fewer[1]):
+                    said = tuple((each, fewer[0] if each == name else text) for each, text in value.arguments)
+                    token.value = value.replace(arguments=said)
+                    del tokens[run_start(tokens, len(tokens), JOINTS) :]
+                    return fewer[1]
+        return 0
+
     def _doubt_times(self, journey: Token, count: Token, end: int) -> int:
         """BT151 for `go to the lab and the hall twice and wave in each`: each time, or at the end."""
         text, word = self._text, self._vocabulary.word

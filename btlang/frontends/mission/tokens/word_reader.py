@@ -251,6 +251,7 @@ class WordReader:
             or self._partial.add_left_out(at)
             or self._partial.add_without_theme(at)
             or self._requests.tell(at)
+            or self._places.left_out(at)
         )
         if end:
             return end
