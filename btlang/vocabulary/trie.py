@@ -116,10 +116,11 @@ def longest(
                     if value is not None and words[value[1]] in context.modifiers:
                         wider = context.wider(kind, text, i, value)
                         paths += [(child, end, (*found, SlotValue(name, kind, said, i, end))) for said, end in wider]
+                    is_pronoun = value is not None and word in context.values.pronoun_words  # `at each`, `at each stop`
+                    if (value is None or is_pronoun) and kind in WORLD and (not plain or word in context.set_starts):
+                        sets = _sets(root, text, i, context, name, kind)
+                        paths += [(child, every.last, (*found, every)) for every in reversed(sets)]
                     if value is None:
-                        if kind in WORLD and (not plain or word in context.set_starts):
-                            sets = _sets(root, text, i, context, name, kind)
-                            paths += [(child, every.last, (*found, every)) for every in reversed(sets)]
                         continue
                     one = SlotValue(name, kind, value[0], i, value[1])
                     paths.append((child, value[1], (*found, one)))

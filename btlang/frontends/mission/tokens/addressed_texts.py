@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import JOINTS, STATEMENT_ENDS, Called, Listed, Token, run_start, statement_start
-from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, is_question
-from btlang.frontends.mission.tokens.settling import FAILS
+from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, is_question, searches
+from btlang.frontends.mission.tokens.settling import FAILS, WORKS
 from btlang.frontends.mission.tokens.word_matches import words_of
 from btlang.text.words import Words
 from btlang.tree.answers import ABOUT_ANSWERS
@@ -71,8 +71,10 @@ class AddressedTexts(SentenceReader):
         """The words of the one condition that the command being read depends on, with names for pronouns; else ""."""
         tokens = self._tokens
         failed = next((at for at in reversed(range(len(tokens))) if tokens[at].kind in (*_LINE_ENDS, "or")), 0)
-        if tokens and tokens[failed].kind == "or" and tokens[failed].value == FAILS:
-            return self._failed(run_start(tokens, failed, JOINTS | STATEMENT_ENDS))
+        if tokens and tokens[failed].value == FAILS:
+            works = (at for at in reversed(range(failed)) if tokens[at].kind == WORKS)
+            form = next(works, 0) if tokens[failed].kind == "otherwise" else failed
+            return self._failed(run_start(tokens, form, JOINTS | STATEMENT_ENDS))
         form = next((at for at in reversed(range(len(self._tokens))) if self._tokens[at].kind in _ASKED_BY), 0)
         if self._tokens and self._tokens[form].start == self._tokens[form].end:
             return ""  # of a question: its words ask
@@ -106,7 +108,11 @@ class AddressedTexts(SentenceReader):
         if any(self._text.words[at] in people or self._text.words[at] in self._context.pronouns for at in words):
             return ""
         front, done = self._vocabulary.asking["failing"][0], " ".join(map(self._written, words))
-        return f"{front[:1].upper()}{front[1:]} {done[:1].lower()}{done[1:]}"
+        if searches(tried):
+            things = (at for at in words for kind in (OBJECT, PERSON) if self._context.read(kind, self._text, at))
+            words = words[words.index(next(things, words[0])) :]
+            done = " ".join((self._vocabulary.asking["search"][0], *map(self._written, words)))
+        return f"{front[:1].upper()}{front[1:]} {done[:1].lower()}{done[1:]}".replace(" ,", ",")
 
     def _written(self, at: int) -> str:
         """A word as it is written, with its article."""

@@ -47,6 +47,7 @@ if TYPE_CHECKING:
 _ASKING = frozenset(("if", "as_soon_as", "once"))
 _HOLDS, _WHERE = "Holding", ("PersonIsAt", "ObjectIsAt")
 _DONE = ("command", "name")
+_ASKED = ("condition", "not")
 
 
 class Outcomes(GoingOn):
@@ -66,6 +67,8 @@ class Outcomes(GoingOn):
         if role == ONE_FAILS and not self._in_round():
             words = self._text.span(at, match.last - (self._text.words[match.last - 1] == ","))
             self._calls.problems.append(diagnostic("BT067", words, words=words.text))
+        if role in (WORKS, "otherwise") and find(self._vocabulary.replies, self._text.words, at) is not None:
+            self._ask_alone()
         if role in (FAILS, ONE_FAILS, "if_unanswered", "otherwise"):
             token.kind = "or" if role != "otherwise" else role
             token.value = FAILS if said != "otherwise" else None
@@ -81,6 +84,17 @@ class Outcomes(GoingOn):
         if role == "if_unanswered":
             return self.unanswered(match.last)
         return self._limit_before(match.last, role) if said in (WORKS, FAILS) else match.last
+
+    def _ask_alone(self) -> None:
+        """`go to the door and check if it is open. If so, A`: about what is checked, not about the journey."""
+        tokens = self._tokens
+        last = run_start(tokens, len(tokens) - 1, JOINTS | STATEMENT_ENDS)
+        first = statement_start(tokens, last)
+        check = next((at for at in reversed(range(first, last)) if tokens[at].kind == "check"), first)
+        joint = run_start(tokens, check, JOINTS)
+        is_plain = all(token.kind in (*_DONE, *JOINTS) for token in tokens[first:joint])
+        if first < joint < check and is_plain and all(each.kind in _ASKED for each in tokens[check + 1 : last]):
+            tokens[joint:check] = [Token("semi", tokens[check].start, tokens[check].start)]
 
     def _doubt_silence(self, words: Span) -> None:
         """BT144 for `ask Alice and Bob "Tea?". If they don't answer, A`: whoever is silent, or both."""

@@ -228,7 +228,9 @@ class Places(SentenceReader):
         """Whether the journey before some token is to the same places: what comes behind is done at each of them."""
         tokens, goal = self._tokens, journey.values[0].group or journey.values[0].text
         behind = run_start(tokens, end, JOINTS | STATEMENT_ENDS)
-        last = behind - (behind > 1 and tokens[behind - 1].kind == "every")  # `visit every room every hour and wave`
+        pace = tokens[behind - 1] if behind > 1 else None
+        is_paced = pace is not None and (pace.kind == "every" or (pace.kind == "count" and pace.value == "-1"))
+        last = behind - is_paced  # `visit every room every hour and wave`, `... in a loop. In each room, wave`
         if not goal or not 0 < behind < end or self._journey(tokens[:last]) is not tokens[last - 1]:
             return False
         if any(token.kind == "then" for token in tokens[last:end]):
@@ -241,6 +243,10 @@ class Places(SentenceReader):
             return False
         at = tokens[last - 1].end
         tokens[behind:end] = [Token("and", at, at)]
+        if pace is not None and is_paced and pace.kind == "count":
+            del tokens[last]
+            here = tokens[first].start
+            tokens[first:first] = [Token("repeat", here, here), pace, Token("colon", here, here)]
         return True
 
     def _repeats(self, journey: Match, last: int) -> bool:

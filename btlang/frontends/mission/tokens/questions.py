@@ -5,10 +5,14 @@ Each becomes the commands that answer it: what is asked is measured, and said.
 
 from __future__ import annotations
 
-from btlang.frontends.mission.token import Called, Listed, Remembered, Token
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.frontends.mission.token import Called, Listed, Remembered, Token, statement_start
 from btlang.frontends.mission.tokens.addressed_texts import TELL
 from btlang.frontends.mission.tokens.answers import Answers
+from btlang.frontends.mission.tokens.sentence_reader import is_question
+from btlang.frontends.mission.tokens.settling import IMPLIED
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
+from btlang.tree.answers import EXAMPLE
 from btlang.tree.sums import COUNTING
 from btlang.vocabulary.entry import COUNT, SAY, Entry, Meaning
 from btlang.vocabulary.match import Match
@@ -18,6 +22,8 @@ from btlang.vocabulary.value_type import PERSON, TEXT
 from btlang.vocabulary.values import key_of
 from btlang.vocabulary.word_tree import find
 
+_ANSWER = "Answer"
+_OF_SEVERAL = "could be that of any of those who were asked"
 _MOST_WORDS = 8  # of the subject of a question
 _DEPENDS = "may begin what is told, as 'whether' does, or say when it is told"
 _BEHIND = ("politeness", "then", "and")
@@ -66,6 +72,7 @@ class Questions(Answers):
             if search is None or search.last != measured.last:
                 return 0
             self._partial.append(search, at)
+            self._tokens[-1].role = IMPLIED
             self._then(at)
         self._say(at, measured, command, slot)
         return last
@@ -246,6 +253,10 @@ class Questions(Answers):
         """Remembers what is measured and says it, with a command or the one that says."""
         entry, text = measured.meaning.entry, self._text
         assert entry is not None
+        if entry.id == _ANSWER and self._asks_several():
+            words = text.span(at, measured.last)
+            problem = diagnostic("BT144", words, words=words.text, problem=_OF_SEVERAL, example=EXAMPLE)
+            self._calls.problems.append(problem)
         key = self._key(entry)
         start, end = text.starts[at], text.ends[measured.last - 1]
         remembered = Remembered(key, entry, self._calls.arguments(entry, measured.values))
@@ -256,6 +267,17 @@ class Questions(Answers):
         else:
             self._set_text(command, slot, f"{{{key}}}", adds)
         self._tokens.append(command)
+
+    def _asks_several(self) -> bool:
+        """Whether the latest question went to several people: `ask each of them "Tea?", then say what they said`."""
+        asked = next((token for token in reversed(self._tokens) if is_question(token)), None)
+        if asked is None or isinstance(asked.value, Listed):
+            return asked is not None
+        said = {text for _, text in asked.value.arguments} if isinstance(asked.value, Called) else set()
+        before = self._tokens[: self._tokens.index(asked)]
+        if statement_start(self._tokens, len(self._tokens)) <= len(before):
+            return False  # in the round
+        return any(self._calls.is_round(token, text) for token in before for text in said if text[:1] == "{")
 
     def _key(self, entry: Entry) -> str:
         """A free key for what a quantity measures, by its words."""

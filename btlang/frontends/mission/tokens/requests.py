@@ -48,7 +48,11 @@ class Requests(Questions):
             self._say(at, owned, command, value.name)  # `tell Bob her answer`
             return owned.last
         is_pronoun = word not in values.ones and find(values.pronoun_words, self._text.words, value.first) is not None
-        if is_pronoun and value.last == value.first + 1 and entry.id in (SAY, TELL):
+        is_so = word in self._vocabulary.asking["so"] and self._ends(value.first + 1)
+        if is_so and entry.id in (SAY, TELL) and (said := self._asked_of()):  # `if you can't find it, say so`
+            self._set_text(command, value.name, said)
+            return 0
+        if (is_pronoun or is_so) and value.last == value.first + 1 and entry.id in (SAY, TELL):
             self._doubt(entry, value.first)  # `say it again`
             return 0
         again = self._phrase(value.first)

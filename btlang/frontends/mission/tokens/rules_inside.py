@@ -25,6 +25,8 @@ ON_WAY = "on_way"
 _OBSTACLES = ("SomethingInTheWay", "SomeoneInTheWay")
 _BLOCKED = ("WallInFront", *_OBSTACLES)
 _DOING = "while_doing"
+_LATER = frozenset(("wait_until", "wait_time", "at", "every_day"))
+"""Raw kinds at the start of a statement whose commands are done later: a rule in front would hold until then, too."""
 _IN_CONDITIONS = frozenset(("condition", "not", "and", "or", "either", "both", "neither", "nor"))
 
 
@@ -63,7 +65,7 @@ def _front(tokens: list[Token], rule: int) -> None:
     first, end = statement_start(tokens, rule), statement_end(tokens, rule)
     joint = run_start(tokens, rule - 1, JOINTS)
     condition = tokens[rule + 1 : run_start(tokens, end, STATEMENT_ENDS)]
-    is_command = rule > 0 and tokens[rule - 1].kind == "command"
+    is_command = rule > 0 and tokens[rule - 1].kind == "command" and tokens[first].kind not in _LATER
     if not is_command or not first < joint < rule - 1 or any(each.kind not in _IN_CONDITIONS for each in condition):
         return
     done, here = tokens[rule - 1], tokens[rule].start

@@ -28,6 +28,8 @@ from btlang.vocabulary.references import ALL, choice_of
 FAILS, WORKS = "if_fails", "if_works"
 STAYS = "stays"
 """The role of a command with which the robot stays where it is then."""
+IMPLIED = "implied"
+"""The role of a search that nobody has asked for: `tell me where the cup is`."""
 TURNED = "turned"
 """The role of an `otherwise` behind words about a failure."""
 MEASURES = frozenset(("for", "up_to", "within", "count"))
@@ -48,6 +50,8 @@ def asked_about(tokens: Sequence[Token], end: int, is_it: Callable[[Token], bool
         if tokens[at].kind in _OUTSIDE or depth < 0:
             return None
         if depth:
+            continue
+        if tokens[at].role == IMPLIED:
             continue
         waits = tokens[at].kind == "condition" and at > 0 and tokens[at - 1].kind in _WAITING
         if (waits or tokens[at].kind == "command") and is_it(tokens[at]):
@@ -81,10 +85,15 @@ def settle(tokens: list[Token], at: int) -> str:
         return FAILS
     here = tokens[at].end
     made = [*tokens[start:behind]]
+    is_counted = is_tried and any(token.kind == "count" for token in tokens[at + 1 : behind])
+    if is_counted:  # `try to get the cup up to 3 times, then bring it to me. If you can't grab it, A`
+        made.insert(0, Token("retry", tokens[start].start, tokens[start].start))
     if rest:
-        tried = [Token("try", here, here)] if is_tried else []
-        made += [Token("stop", here, here), Token(WORKS, here, here), *tried, *_one_statement(rest)]
-    elif is_tried:
+        done = _one_statement(rest)
+        if is_tried and not is_counted:
+            done = [Token("open", here, here), Token("try", here, here), *done, Token("close", here, here)]
+        made += [Token("stop", here, here), Token(WORKS, here, here), *done]
+    elif is_tried and not is_counted:
         made.insert(0, tokens[first])
     if splits and before:
         joint = run_start(before, len(before), JOINTS)
