@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from math import cos, pi, sin
 
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.diagnostics.files import read_source
 from btlang.maps.data_text import ForeignFileError, is_world, read_data, read_world_data
-from btlang.maps.occupancy import is_map, read_map, walls_of
+from btlang.maps.occupancy import OccupancyMap, is_map, read_map, walls_of
+from btlang.maps.reach import reached
 from btlang.maps.way_points import way_points
 from btlang.robots.files import as_mission_error
-from btlang.robots.geometry import Point, Pose, Segment, contains
+from btlang.robots.geometry import Point, Pose, Segment
 from btlang.robots.worlds.world import Place, World
-from btlang.robots.worlds.world_bounds import outer_wall
+from btlang.robots.worlds.world_bounds import closed_walls, is_outside
 from btlang.robots.worlds.world_file import WorldError, has_room
 from btlang.text.source import NOWHERE
 from btlang.text.toml_table import Problem
@@ -40,13 +41,13 @@ def import_world(paths: Sequence[str], radius: float, start: Pose | None = None)
     return _together(worlds, radius, start)
 
 
-def _read(path: str) -> World | list[Place] | tuple[tuple[Point, ...], ...]:
-    """Read a file: a world, way points, or walls."""
+def _read(path: str) -> World | list[Place] | OccupancyMap:
+    """Read a file: a world, way points, or a map."""
     source = read_source(path)
     try:
         data = read_data(source)
         if is_map(data):
-            return walls_of(read_map(data, os.path.dirname(path) or os.curdir))
+            return read_map(data, os.path.dirname(path) or os.curdir)
         if is_world(data):
             return read_world_data(data, path)
         return way_points(data)
@@ -59,10 +60,10 @@ def _read(path: str) -> World | list[Place] | tuple[tuple[Point, ...], ...]:
 
 
 def _together(
-    parts: Iterable[World | list[Place] | tuple[tuple[Point, ...], ...]], radius: float, start: Pose | None
+    parts: Iterable[World | list[Place] | OccupancyMap], radius: float, start: Pose | None
 ) -> tuple[World, list[str]]:
     whole: World | None = None
-    walls: list[tuple[Point, ...]] = []
+    maps: list[OccupancyMap] = []
     places: list[Place] = []
     for part in parts:
         if isinstance(part, World) and whole is not None:
@@ -72,15 +73,52 @@ def _together(
         elif isinstance(part, list):
             places += part
         else:
-            walls += part
+            maps.append(part)
+    notes: list[str] = []
     if start is None and whole is None:
-        if not places:
+        if not places and not maps:
             raise _unusable("there is no start: give it with --start X,Y, or add a list of way points")
-        first = places[0]
-        start = Pose(first.x, first.y, first.facing or 0.0)
+        start = Pose(places[0].x, places[0].y, places[0].facing or 0.0) if places else _guess_start(maps[0], radius)
+        if not places:
+            notes.append(f"the files have no start, so the robot starts at ({start.x:g}, {start.y:g})")
     base = whole or World(start or Pose(0.0, 0.0))
-    base = base.replace(start=start or base.start, walls=(*base.walls, *walls))
-    return _with_room(base, places, radius)
+    start = start or base.start
+    walls: list[tuple[Point, ...]] = []
+    for each in maps:
+        around, apart = _walls(each, (start.x, start.y), places, radius)
+        walls += around
+        notes += apart
+    world, changes = _with_room(base.replace(start=start, walls=(*base.walls, *walls)), places, radius)
+    return world, notes + changes
+
+
+def _guess_start(occupancy: OccupancyMap, radius: float) -> Pose:
+    spot = occupancy.spot_with_room(radius)
+    if spot is None:
+        raise _unusable("the map has no free floor where the robot has room")
+    return Pose(*spot)
+
+
+def _walls(
+    occupancy: OccupancyMap, start: Point, places: Iterable[Place], radius: float
+) -> tuple[tuple[tuple[Point, ...], ...], list[str]]:
+    """Return the walls around what can be reached from the start and from places, and a line for each place that can't
+    be reached from the start.
+    """
+    seed = occupancy.free_near(start, _FARTHEST)
+    if seed is None:
+        spot = occupancy.spot_with_room(radius)
+        advice = f"; give one with --start X,Y, such as --start={spot[0]:g},{spot[1]:g}" if spot is not None else ""
+        raise _unusable(f"the start at ({start[0]:g}, {start[1]:g}) isn't on free floor of the map{advice}")
+    try:
+        free = reached(occupancy.free, [seed])
+        seeds = [(place, occupancy.free_near((place.x, place.y), _FARTHEST)) for place in places]
+        apart = [(place, cell) for place, cell in seeds if cell is not None and not free[cell[::-1]]]
+        free |= reached(occupancy.free, [cell for _, cell in apart])
+        walls = walls_of(occupancy, free, 2 * radius)
+    except Problem as problem:
+        raise _unusable(problem.message) from None
+    return walls, [f'on the map there is no way from the start to the place "{place.name}"' for place, _ in apart]
 
 
 def _unusable(reason: str) -> MissionError:
@@ -110,18 +148,15 @@ def _with_room(world: World, more: Sequence[Place], radius: float) -> tuple[Worl
             if name != place.name:
                 notes.append(f'the name "{place.name}" is given twice; the second is called "{name}"')
             added.append(Place(name, *spot, place.facing))
-    wall = outer_wall(world)
-    notes += [f'the place "{place.name}" is outside the outer walls' for place in _beyond(added, wall)]
+    walls = closed_walls(world)
+    beyond = (place for place in added if is_outside(walls, (place.x, place.y)))
+    notes += [f'the place "{place.name}" is outside the outer walls' for place in beyond]
     dock = world.dock or next((place for place in added if place.name.lower() == "dock"), None)
     if dock is not None and dock in added:
         added.remove(dock)
         dock = Place("dock", dock.x, dock.y, dock.facing or 0.0)
         added.append(dock)
     return world.replace(start=Pose(*moved, start.heading), places=(*world.places, *added), dock=dock), notes
-
-
-def _beyond(places: Iterable[Place], wall: Sequence[Point] | None) -> Iterator[Place]:
-    return (place for place in places if wall is not None and not contains(wall, (place.x, place.y)))
 
 
 def _free(name: str, known: dict[str, int]) -> str:

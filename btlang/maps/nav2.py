@@ -8,9 +8,10 @@ from math import ceil, cos, radians, sin
 import numpy as np
 
 from btlang.maps.occupancy import MOST_CELLS
+from btlang.maps.reach import reached
 from btlang.robots.geometry import Point, Segment
 from btlang.robots.worlds.world import World
-from btlang.robots.worlds.world_bounds import outer_wall
+from btlang.text.toml_table import Problem
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 
     Cells = npt.NDArray[np.bool_]
 
-_MARGIN = 10.5  # cells around everything; the half puts walls at round coordinates in the middle of cells
+_MARGIN = 10.5  # cells around everything
 _OCCUPIED, _FREE, _UNKNOWN = 0, 254, 205  # grey, as map_saver writes them
 _MAP = """image: {image}
 mode: {mode}
@@ -66,12 +67,13 @@ class CellGrid:
     def __init__(self, world: World, resolution: float) -> None:
         """Make the grid. Raises GridTooLarge."""
         points = [segment[at : at + 2] for segment in world.segments() for at in (0, 2)]
+        middles = np.min(points or [(0.0, 0.0)], axis=0)  # of cells: walls are mostly at round coordinates
         points += [door_end for door in world.doors for door_end in (door.start, door.end)]
         points += [point for zone in world.zones for point in zone.points]
         points += [(place.x, place.y) for place in world.places] + [(world.start.x, world.start.y)]
         low, high = np.min(points, axis=0), np.max(points, axis=0)
         self.resolution = resolution
-        start = np.floor(low / resolution) * resolution - _MARGIN * resolution
+        start = middles - (np.ceil((middles - low) / resolution) + _MARGIN) * resolution
         self.origin: Point = (round(float(start[0]), 6), round(float(start[1]), 6))
         self.width, self.height = (ceil(float(cells)) for cells in (high - start) / resolution + _MARGIN)
         if self.width * self.height > MOST_CELLS:
@@ -115,13 +117,18 @@ class CellGrid:
 def walls_in(grid: CellGrid, world: World) -> Cells:
     """Return the cells of walls, furniture and closed doors."""
     cells = grid.empty()
-    grid.draw(cells, world.wall_segments())
+    _draw_fixed(grid, cells, world)
     grid.draw(cells, ((*door.start, *door.end) for door in world.doors if not door.open))
+    return cells
+
+
+def _draw_fixed(grid: CellGrid, cells: Cells, world: World) -> None:
+    """Add the cells of walls and furniture."""
+    grid.draw(cells, world.wall_segments())
     for box in world.boxes:
         left, low = grid.cell((box.x - box.width / 2, box.y - box.height / 2))
         right, high = grid.cell((box.x + box.width / 2, box.y + box.height / 2))
         cells[low : high + 1, left : right + 1] = True
-    return cells
 
 
 def nav2_files(world: World, resolution: float, full_speed: float) -> dict[str, bytes]:
@@ -150,10 +157,15 @@ def nav2_files(world: World, resolution: float, full_speed: float) -> dict[str, 
 
 
 def _map_of(grid: CellGrid, world: World) -> npt.NDArray[np.uint8]:
-    """Return a map: white inside the outer wall, grey outside, black if something is in the way."""
-    wall = outer_wall(world)
-    inside = np.ones((grid.height, grid.width), dtype=bool) if wall is None else grid.inside(wall)
-    return np.where(walls_in(grid, world), _OCCUPIED, np.where(inside, _FREE, _UNKNOWN)).astype(np.uint8)
+    """Return a map: white where the start and places are open to, black if something is in the way, grey elsewhere."""
+    barred = grid.empty()
+    _draw_fixed(grid, barred, world)
+    seeds = [grid.cell(point) for point in [(world.start.x, world.start.y), *((p.x, p.y) for p in world.places)]]
+    try:
+        free = reached(~barred, seeds)
+    except Problem as problem:
+        raise GridTooLarge(problem.message) from None
+    return np.where(walls_in(grid, world), _OCCUPIED, np.where(free, _FREE, _UNKNOWN)).astype(np.uint8)
 
 
 def _image(grid: CellGrid, name: str, cells: npt.NDArray[np.uint8], mode: str) -> Mapping[str, bytes]:

@@ -7,7 +7,7 @@ import os
 import re
 import warnings
 from collections.abc import Mapping
-from math import cos, radians, sin
+from math import ceil, cos, floor, radians, sin
 
 import numpy as np
 
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     Corners = npt.NDArray[np.int64]
+    Cells = npt.NDArray[np.bool_]
 
 MOST_CELLS = 25_000_000
 """The most cells of a map."""
@@ -33,7 +34,9 @@ _GAP = rb"(?:\s|#[^\n]*\n)+"
 _PGM = re.compile(rb"P([25])" + _GAP + rb"(\d{1,6})" + _GAP + rb"(\d{1,6})" + _GAP + rb"(\d{1,5})(?:#[^\n]*\n|\s)")
 _MODES = ("trinary", "scale", "raw")
 _MOST_SIDES = 2_000_000  # of cells, on outlines; following so many takes seconds
-_NEAR = 1.0  # cells; walls are this near to the outlines
+_NEAR = 0.7  # cells; walls are this near to the middle of the cells beside free ones (a line of slope 1/3 is one wall)
+_DOT = 0.25  # cells; half the length of the wall that a single cell becomes
+_FREE_BELOW = 0.25  # where a file has no free_thresh, as in nav2_map_server
 _RIGHT, _AHEAD, _LEFT = 3, 0, 1  # quarters of a turn to the left
 
 
@@ -109,14 +112,55 @@ def _check_size(width: int, height: int) -> None:
 
 
 class OccupancyMap(Record):
-    """The occupied cells of a map, a row from the south for each first index.
+    """The occupied and the free cells of a map, a row from the south for each first index; the others are unknown.
 
     A cell has sides of `resolution` metres; `origin` is the corner of the first cell and the direction of its row.
     """
 
-    occupied: npt.NDArray[np.bool_]
+    occupied: Cells
+    free: Cells
     resolution: float
     origin: Pose
+
+    def position(self, column: float, row: float) -> Point:
+        """Return the point, in metres, so many cells from the corner of the first cell."""
+        x, y = self.origin.ahead(column * self.resolution, row * self.resolution)
+        return round(x, 4), round(y, 4)
+
+    def cell(self, point: Point) -> tuple[int, int]:
+        """Return the column and the row of the cell of a point, which may be outside the map."""
+        dx, dy = point[0] - self.origin.x, point[1] - self.origin.y
+        c, s = cos(radians(self.origin.heading)), sin(radians(self.origin.heading))
+        return floor((dx * c + dy * s) / self.resolution), floor((dy * c - dx * s) / self.resolution)
+
+    def free_near(self, point: Point, within: float) -> tuple[int, int] | None:
+        """Return the free cell nearest to a point, at most so many metres away; None if there isn't any."""
+        column, row = self.cell(point)
+        reach = ceil(within / self.resolution)
+        west, south = max(column - reach, 0), max(row - reach, 0)
+        rows, columns = np.nonzero(self.free[south : max(row + reach + 1, 0), west : max(column + reach + 1, 0)])
+        if not len(rows):
+            return None
+        distances = np.hypot(rows + south - row, columns + west - column)
+        nearest = int(np.argmin(distances))
+        return (int(columns[nearest]) + west, int(rows[nearest]) + south) if distances[nearest] <= reach else None
+
+    def spot_with_room(self, room: float) -> Point | None:
+        """Return the point nearest to the origin of the world, where maps mostly begin, with a square of free cells at
+        least so many metres to each side; None if there isn't any.
+        """
+        reach = ceil(room / self.resolution) + 1
+        side = 2 * reach + 1
+        if min(self.free.shape) < side:
+            return None
+        sums = np.pad(np.cumsum(np.cumsum(self.free, axis=0, dtype=np.int64), axis=1), ((1, 0), (1, 0)))
+        counts = sums[side:, side:] - sums[:-side, side:] - sums[side:, :-side] + sums[:-side, :-side]
+        rows, columns = np.nonzero(counts == side * side)
+        if not len(rows):
+            return None
+        column, row = self.cell((0.0, 0.0))
+        nearest = int(np.argmin(np.hypot(columns + reach - column, rows + reach - row)))
+        return self.position(float(columns[nearest]) + reach + 0.5, float(rows[nearest]) + reach + 0.5)
 
 
 def is_map(data: object) -> bool:
@@ -128,11 +172,13 @@ def read_map(data: Mapping[str, Any], folder: str) -> OccupancyMap:
     """Return a map whose image is in the folder of its YAML file.
 
     Cells are interpreted as nav2_map_server does it; in "raw" images a cell is occupied as in "scale": above
-    `occupied_thresh`. Raises Problem, and MissionError (BT087).
+    `occupied_thresh`. What isn't occupied in "scale" and "raw" is free, unless it is unknown. Raises Problem, and
+    MissionError (BT087).
     """
     resolution = number(data["resolution"], '"resolution"', 0.001, 1000.0)
     x, y, angle = numbers(data.get("origin", [0.0, 0.0, 0.0]), '"origin"', 3)
     occupied_above = number(data.get("occupied_thresh", 0.65), '"occupied_thresh"', 0.0, 1.0)
+    free_below = number(data.get("free_thresh", _FREE_BELOW), '"free_thresh"', 0.0, 1.0)
     mode = data.get("mode", _MODES[0])
     if mode not in _MODES:
         raise Problem(f'"mode" must be trinary, scale or raw, not {shown(mode)}')
@@ -140,14 +186,17 @@ def read_map(data: Mapping[str, Any], folder: str) -> OccupancyMap:
     if negate not in (0, 1):
         raise Problem(f'"negate" must be 0 or 1, not {shown(negate)}')
     image = _image(data["image"], folder)
-    occupied = _find_occupied(image, str(mode), bool(negate), occupied_above)
-    return OccupancyMap(occupied[::-1], resolution, Pose(x, y, float(np.degrees(angle))))
+    occupied, free = _classify(image, str(mode), bool(negate), occupied_above, free_below)
+    return OccupancyMap(occupied[::-1], free[::-1], resolution, Pose(x, y, float(np.degrees(angle))))
 
 
 def _image(name: Any, folder: str) -> MapImage:
     if not isinstance(name, str) or not name:
         raise Problem(f'"image" must be the name of a file, not {shown(name)}')
     path = real_path(os.path.join(folder, name))
+    beside = real_path(os.path.join(folder, os.path.basename(name)))
+    if os.path.isabs(name) and is_below(beside, folder) and os.path.isfile(beside):  # saved on another computer
+        path = beside
     if not is_below(path, folder):
         raise Problem(f"the image {shown(name)} must be in the folder of the map, or below it; move it there")
     if not os.path.isfile(path):
@@ -158,47 +207,57 @@ def _image(name: Any, folder: str) -> MapImage:
         raise Problem(f"I can't read the image {shown(name)}: {os_error_reason(error)}") from None
 
 
-def _find_occupied(image: MapImage, mode: str, negate: bool, above: float) -> npt.NDArray[np.bool_]:
+def _classify(image: MapImage, mode: str, negate: bool, above: float, below: float) -> tuple[Cells, Cells]:
+    """Return which pixels are occupied, and which are free."""
     shades, alpha = image.shades, image.alpha
     if mode == "raw":
         percent = np.rint(shades * 255)
-        return (percent <= 100) & (percent > above * 100)
+        known, occupied = percent <= 100, percent > above * 100
+        return known & occupied, known & ~occupied
     if mode == "trinary" and alpha is not None:
         shades = (shades * np.float32(3) + alpha) / np.float32(4)  # as nav2_map_server does it
-    found = (shades if negate else 1 - shades) > above
-    if mode == "scale" and alpha is not None:
-        found &= alpha == 1
-    return found
+    darkness = shades if negate else 1 - shades
+    occupied = darkness > above
+    if mode == "trinary":
+        return occupied, ~occupied & (darkness < below)
+    known = alpha == 1 if alpha is not None else np.ones_like(occupied)
+    return known & occupied, known & ~occupied
 
 
-def walls_of(occupancy: OccupancyMap) -> tuple[tuple[Point, ...], ...]:
-    """Return the walls around the occupied cells, at most one cell from their outlines. Raises Problem for too many."""
-    return tuple(
-        tuple(_metres(corner, occupancy) for corner in simplify(loop).tolist()) for loop in outlines(occupancy.occupied)
-    )
+def walls_of(occupancy: OccupancyMap, free: Cells, smallest: float) -> tuple[tuple[Point, ...], ...]:
+    """Return the walls around these free cells: lines through the middle of the cells beside them.
 
-
-def _metres(corner: list[int], occupancy: OccupancyMap) -> Point:
-    origin, size = occupancy.origin, occupancy.resolution
-    c, s = cos(radians(origin.heading)) * size, sin(radians(origin.heading)) * size
-    column, row = corner
-    return round(origin.x + column * c - row * s, 4), round(origin.y + column * s + row * c, 4)
-
-
-def outlines(occupied: npt.NDArray[np.bool_]) -> list[Corners]:
-    """Return the closed outlines of occupied cells, as the corners (column, row) where they turn.
-
-    They go around occupied cells counter-clockwise; cells that touch at a corner are one thing. Raises Problem.
+    Unknown cells are walls, too, but for holes of less than `smallest` metres with nothing occupied around them: floor
+    that a scanner has missed. Raises Problem for too many.
     """
-    sides = _sides(occupied)
+    solid = np.pad(~free, 1, constant_values=True)
+    occupied = np.pad(occupancy.occupied, 1)
+    walls = []
+    for path in borders(solid):
+        size = float(np.hypot(*np.ptp(path, axis=0))) * occupancy.resolution
+        if size >= smallest or occupied[path[:, 1], path[:, 0]].any():
+            corners = (
+                simplify(_square(path, solid)).tolist() if len(path) > 1 else [path[0] - (_DOT, 0), path[0] + (_DOT, 0)]
+            )
+            walls.append(tuple(occupancy.position(column - 0.5, row - 0.5) for column, row in corners))
+    return tuple(walls)
+
+
+def borders(solid: Cells) -> list[Corners]:
+    """Return the closed paths of solid cells (column, row) along other cells; those at the edge must be solid.
+
+    On each path the other cells are on the right. Cells that touch at a corner are one thing. Raises Problem.
+    """
+    sides = _sides(solid)
     left = set(sides)
-    across = occupied.shape[1] + 1
+    across = solid.shape[1] + 1
     steps = (1, across, -1, -across)
+    inward = (0, -1, -1 - across, -across)  # from the first corner of a side to the number of its solid cell
     found: list[Corners] = []
     for first in sides:
         if first not in left:
             continue
-        loop: list[int] = []
+        path: list[int] = []
         at = -1
         corner, way = first // 4 + steps[first % 4], first % 4
         while at != first:
@@ -206,20 +265,23 @@ def outlines(occupied: npt.NDArray[np.bool_]) -> list[Corners]:
             way = (way + turn) % 4
             at = corner * 4 + way
             left.remove(at)
-            if turn:
-                loop.append(corner)
+            cell = corner + inward[way]
+            if not path or path[-1] != cell:
+                path.append(cell)
             corner += steps[way]
-        found.append(np.stack(np.divmod(np.array(loop, dtype=np.int64), across)[::-1], axis=1))
+        if len(path) > 1 and path[0] == path[-1]:
+            path.pop()
+        found.append(np.stack(np.divmod(np.array(path, dtype=np.int64), across)[::-1], axis=1))
     return found
 
 
-def _sides(occupied: npt.NDArray[np.bool_]) -> list[int]:
-    """Return the sides between occupied cells and others, each as four times its first corner plus its direction.
+def _sides(solid: Cells) -> list[int]:
+    """Return the sides between solid cells and others, each as four times its first corner plus its direction.
 
-    Directions count from east in quarters of a turn; the occupied cell is on the left.
+    Directions count from east in quarters of a turn; the solid cell is on the left.
     """
-    padded = np.pad(occupied, 1)
-    inner, across = padded[1:-1, 1:-1], occupied.shape[1] + 1
+    padded = np.pad(solid, 1, mode="edge")
+    inner, across = solid, solid.shape[1] + 1
     others = (padded[:-2, 1:-1], padded[1:-1, 2:], padded[2:, 1:-1], padded[1:-1, :-2])  # south, east, north, west
     corners = (0, 1, across + 1, across)
     parts = []
@@ -228,13 +290,25 @@ def _sides(occupied: npt.NDArray[np.bool_]) -> list[int]:
         parts.append((rows * across + columns + corner) * 4 + way)
     sides = np.sort(np.concatenate(parts))
     if len(sides) > _MOST_SIDES:
-        raise Problem(f"the map has too much detail: {len(sides):,} sides of occupied cells, at most {_MOST_SIDES:,}")
+        raise Problem(f"the map has too much detail: {len(sides):,} sides of walls, at most {_MOST_SIDES:,}")
     found: list[int] = sides.tolist()
     return found
 
 
+def _square(path: Corners, solid: Cells) -> Corners:
+    """Return a path with the cells in the corners of rooms, where two straight pieces of it meet."""
+    steps = np.roll(path, -1, axis=0) - path
+    before, after = np.roll(steps, 1, axis=0), np.roll(steps, -1, axis=0)
+    is_straight = (np.abs(before).sum(axis=1) == 1) & (np.abs(after).sum(axis=1) == 1)
+    meet = is_straight & (np.abs(steps).sum(axis=1) == 2) & (steps == before + after).all(axis=1)
+    corners = (path + before)[meet]
+    places = np.nonzero(meet)[0] + 1
+    kept = solid[corners[:, 1], corners[:, 0]]
+    return np.insert(path, places[kept], corners[kept], axis=0)
+
+
 def simplify(loop: Corners) -> Corners:
-    """Return a closed outline in few pieces (Ramer-Douglas-Peucker), each corner at most one cell from them.
+    """Return a closed path in few pieces (Ramer-Douglas-Peucker), each point at most 0.7 cells from them.
 
     It ends where it begins; what is as thin as a cell becomes one line.
     """

@@ -12,8 +12,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from btlang.maps.occupancy import OccupancyMap, outlines, read_map, simplify, walls_of
-from btlang.robots.geometry import Pose, segment_distance
+from btlang.maps.occupancy import OccupancyMap, borders, read_map, simplify, walls_of
+from btlang.maps.reach import reached
+from btlang.robots.geometry import CENTRE, Point, Pose, contains, segment_distance
 from btlang.text.toml_table import Problem
 from tests.profiles import searches
 
@@ -35,19 +36,22 @@ ROW = bytes([0, 88, 90, 205, 254])
 
 
 @pytest.mark.parametrize(
-    ("about", "occupied"),
+    ("about", "cells"),
     [
-        ({}, [1, 1, 0, 0, 0]),
-        ({"occupied_thresh": 0.6}, [1, 1, 1, 0, 0]),
-        ({"negate": 1}, [0, 0, 0, 1, 1]),
-        ({"negate": True}, [0, 0, 0, 1, 1]),
-        ({"mode": "scale"}, [1, 1, 0, 0, 0]),
-        ({"mode": "raw"}, [0, 1, 1, 0, 0]),  # the grey is the percentage; above 100 it is unknown
+        ({}, "##??."),
+        ({"occupied_thresh": 0.6}, "###?."),
+        ({"free_thresh": 0.25}, "##?.."),  # as nav2_map_server reads the grey of unknown cells
+        ({"negate": 1}, ".??##"),
+        ({"negate": True}, ".??##"),
+        ({"mode": "scale"}, "##..."),
+        ({"mode": "raw"}, ".##??"),  # the grey is the percentage; above 100 it is unknown
     ],
     ids=str,
 )
-def test_modes(tmp_path: Path, about: dict[str, Any], occupied: list[int]) -> None:
-    assert read(tmp_path, pgm(ROW), **about).occupied.astype(int).tolist() == [occupied]
+def test_modes(tmp_path: Path, about: dict[str, Any], cells: str) -> None:
+    found = read(tmp_path, pgm(ROW), **about)
+    pairs = zip(found.occupied[0], found.free[0], strict=True)
+    assert "".join("#" if occupied else "." if free else "?" for occupied, free in pairs) == cells
 
 
 def test_rows_begin_in_the_south(tmp_path: Path) -> None:
@@ -74,7 +78,8 @@ def test_what_is_transparent_in_a_scale_map_is_unknown(tmp_path: Path) -> None:
     image = pytest.importorskip("PIL.Image")
     out = io.BytesIO()
     image.fromarray(np.array([[[0, 255], [0, 0]]], dtype=np.uint8)).save(out, "PNG")
-    assert read(tmp_path, out.getvalue(), "map.png", mode="scale").occupied.tolist() == [[True, False]]
+    found = read(tmp_path, out.getvalue(), "map.png", mode="scale")
+    assert (found.occupied.tolist(), found.free.tolist()) == ([[True, False]], [[False, False]])
     assert read(tmp_path, out.getvalue(), "map.png").occupied.tolist() == [[True, True]]
 
 
@@ -133,22 +138,54 @@ def drawn(*rows: str) -> Any:
     return np.array([[cell == "#" for cell in row] for row in rows])[::-1]
 
 
+def test_a_map_that_was_saved_elsewhere_has_its_image_beside_it(tmp_path: Path) -> None:
+    (tmp_path / "lab.pgm").write_bytes(GOOD)
+    assert read_map({**ABOUT, "image": "/home/somebody/maps/lab.pgm"}, str(tmp_path)).occupied.any()
+
+
+def drawn_map(*rows: str, resolution: float = 1.0, origin: Pose = CENTRE) -> OccupancyMap:
+    free = drawn(*(row.replace("#", "?").replace(".", "#") for row in rows))
+    return OccupancyMap(drawn(*rows), free, resolution, origin)
+
+
+def walls(found: OccupancyMap, start: Point, smallest: float = 0.0) -> tuple[tuple[Point, ...], ...]:
+    return walls_of(found, reached(found.free, [found.cell(start)]), smallest)
+
+
 def test_walls_are_in_metres_and_turned() -> None:
-    cells = drawn("####", "####", "####")
-    [wall] = walls_of(OccupancyMap(cells, 0.5, Pose(1.0, 2.0, 90.0)))
-    assert sorted(set(wall)) == [(-0.5, 2.0), (-0.5, 4.0), (1.0, 2.0), (1.0, 4.0)]
+    found = drawn_map("#####", "#...#", "#...#", "#####", resolution=0.5, origin=Pose(1.0, 2.0, 90.0))
+    [wall] = walls(found, found.position(1.5, 1.5))
+    assert set(wall) == {(0.75, 2.25), (0.75, 4.25), (-0.75, 4.25), (-0.75, 2.25)}
     assert wall[0] == wall[-1]
 
 
-def test_rooms_have_an_outer_and_an_inner_outline() -> None:
-    cells = drawn("######", "#....#", "#....#", "#....#", "######")
-    assert [len(loop) for loop in outlines(cells)] == [4, 4]
-    assert [len(wall) for wall in walls_of(OccupancyMap(cells, 0.05, Pose(0.0, 0.0)))] == [5, 5]
+def test_the_room_is_what_the_start_can_reach() -> None:
+    """A thin wall with a gap has a closed outline, too, but it isn't around the room."""
+    found = drawn_map("?????????", "?#######?", "?#.....#?", "?#..#...#", "?#......?", "?#######?")
+    [outer, pillar] = sorted(walls(found, (3.5, 1.5)), key=len, reverse=True)
+    assert contains(outer[:-1], (3.5, 1.5))
+    assert {(1.5, 0.5), (1.5, 4.5)} <= set(outer)
+    assert pillar == ((4.25, 2.5), (4.75, 2.5))
+
+
+def test_floor_that_the_scanner_missed_is_floor() -> None:
+    rows = ["##########", "#........#", "#..?.....#", "#......#?#", "#........#", "##########"]
+    assert len(walls(drawn_map(*rows), (2.5, 1.5), smallest=1.0)) == 1
+    assert len(walls(drawn_map(*rows), (2.5, 1.5))) == 2
+    assert len(walls(drawn_map(*(row.replace("?.", "??") for row in rows)), (2.5, 1.5), smallest=1.0)) == 2
+
+
+def test_a_map_ends_at_its_edge() -> None:
+    [wall] = walls(drawn_map("...", "..."), (0.5, 0.5))
+    assert contains(wall[:-1], (1.5, 1.0))
+    assert not contains(wall[:-1], (4.0, 1.0))
 
 
 def test_thin_walls_are_one_line_and_slanted_ones_few() -> None:
-    def pieces(cells: Any) -> int:
-        return sum(len(wall) - 1 for wall in walls_of(OccupancyMap(cells, 0.05, Pose(0.0, 0.0))))
+    def pieces(wall: Any) -> int:
+        solid = np.pad(wall, 3)
+        found = OccupancyMap(solid, ~solid, 1.0, Pose(0.0, 0.0))
+        return sum(len(each) - 1 for each in walls(found, (0.5, 0.5))) - 4  # of the edge
 
     assert pieces(drawn("#" * 30)) == 1
     assert pieces(np.eye(40, dtype=bool)) == 1
@@ -158,25 +195,38 @@ def test_thin_walls_are_one_line_and_slanted_ones_few() -> None:
     assert pieces(slope) == 1
 
 
-def test_nothing_occupied_is_no_wall() -> None:
-    assert walls_of(OccupancyMap(np.zeros((5, 5), dtype=bool), 0.05, Pose(0.0, 0.0))) == ()
+def test_where_the_robot_has_room() -> None:
+    room = drawn_map("." * 9, *["." * 9] * 8, resolution=0.1, origin=Pose(-0.7, -0.7))
+    assert room.spot_with_room(0.25) == pytest.approx((-0.25, -0.25))
+    assert room.spot_with_room(0.5) is None
+    assert room.free_near((5.0, 5.0), 0.5) is None
+    assert room.free_near((0.45, 0.04), 0.5) == (8, 7)
 
 
 @searches(60, 3000)
 @given(rows=st.lists(st.lists(st.booleans(), min_size=7, max_size=7), min_size=1, max_size=9))
-def test_walls_are_within_a_cell_of_the_outlines(rows: list[list[bool]]) -> None:
-    cells = np.array(rows)
-    walls = walls_of(OccupancyMap(cells, 1.0, Pose(0.0, 0.0)))
-    pieces = [(*a, *b) for wall in walls for a, b in pairwise(wall)]
-    loops = outlines(cells)
-    assert sum(len(loop) for loop in loops) >= len(pieces)
-    for loop in loops:
-        for corner in loop.tolist():
-            assert min(segment_distance((corner[0], corner[1]), piece) for piece in pieces) <= 1.0 + 1e-9
-        assert {tuple(corner) for corner in simplify(loop).tolist()} <= {tuple(corner) for corner in loop.tolist()}
-    area = sum(
-        (a[0] * b[1] - b[0] * a[1]) / 2
-        for loop in loops
-        for a, b in zip(loop.tolist(), [*loop.tolist()[1:], loop.tolist()[0]], strict=True)
-    )
-    assert area == cells.sum()  # outlines leave nothing out
+def test_walls_run_near_all_cells_beside_free_ones(rows: list[list[bool]]) -> None:
+    solid = np.pad(np.array(rows), 1, constant_values=True)
+    free = np.pad(~solid, 1)
+    beside = solid & (free[:-2, 1:-1] | free[2:, 1:-1] | free[1:-1, :-2] | free[1:-1, 2:])
+    paths = borders(solid)
+    assert {tuple(cell) for path in paths for cell in path.tolist()} == {(x, y) for y, x in np.argwhere(beside)}
+    for path in paths:
+        corners = simplify(path).tolist() if len(path) > 1 else [*path.tolist()] * 2
+        assert {*map(tuple, corners)} <= {*map(tuple, path.tolist())}
+        for x, y in path.tolist():
+            assert min(segment_distance((x, y), (*a, *b)) for a, b in pairwise(corners)) <= 0.7 + 1e-9
+
+
+@searches(40, 3000)
+@given(rows=st.lists(st.lists(st.booleans(), min_size=6, max_size=6), min_size=1, max_size=7), seed=st.integers(0, 41))
+def test_what_is_reached_is_joined_to_the_seed_and_all_of_it(rows: list[list[bool]], seed: int) -> None:
+    free = np.array(rows)
+    start = (seed % 6, min(seed // 6, len(rows) - 1))
+    wanted, left = set[tuple[int, int]](), [start]
+    while left:
+        column, row = left.pop()
+        if (column, row) not in wanted and 0 <= row < len(rows) and 0 <= column < 6 and rows[row][column]:
+            wanted.add((column, row))
+            left += [(column + 1, row), (column - 1, row), (column, row + 1), (column, row - 1)]
+    assert {(x, y) for y, x in np.argwhere(reached(free, [start, (-1, 9)]))} == wanted

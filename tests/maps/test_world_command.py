@@ -95,12 +95,12 @@ def test_nav2_and_back(capsys: pytest.CaptureFixture[str]) -> None:
     pytest.importorskip("yaml")
     assert btc("export", "shop.toml", "--to", "nav2", "-o", "maps") == 0
     assert btc("import", "maps/map.yaml", "maps/waypoints.yaml", "-o", "again.toml", "--start", "1,1,90") == 0
-    assert capsys.readouterr().err == ""
-    world = load_world("again.toml", bounded=True)
+    assert capsys.readouterr().err == 'Warning: on the map there is no way from the start to the place "shelf"\n'
+    world = load_world("again.toml", bounded=True)  # the shelf is behind a closed door, in a room of the same map
     assert [(place.name, place.x, place.y) for place in world.places] == [("shelf", 7.0, 4.0), ("dock", 0.5, 4.5)]
     assert world.places[0].facing == pytest.approx(90)
     assert world.dock == Place("dock", 0.5, 4.5, world.places[1].facing)
-    assert len(world.wall_segments()) == 16  # the outer wall, two rooms apart behind a closed door, a box
+    assert len(world.wall_segments()) == 12  # two rooms apart behind a closed door, a box
 
 
 def test_walls_of_a_map_and_places_of_a_rover(capsys: pytest.CaptureFixture[str]) -> None:
@@ -111,8 +111,9 @@ def test_walls_of_a_map_and_places_of_a_rover(capsys: pytest.CaptureFixture[str]
     capsys.readouterr()
     assert btc("import", "maps/map.yaml", "points.json", "-o", "again.toml") == 0
     told = capsys.readouterr().err.splitlines()
-    assert told[0] == 'Warning: the name "Desk" is given twice; the second is called "Desk 2"'
-    assert told[1].startswith('Warning: the place "sill" at (2, 0.1) is too near to a wall, so it is moved to (2')
+    assert told[0] == 'Warning: on the map there is no way from the start to the place "in the box"'
+    assert told[1] == 'Warning: the name "Desk" is given twice; the second is called "Desk 2"'
+    assert told[2].startswith('Warning: the place "sill" at (2, 0.1) is too near to a wall, so it is moved to (2')
     assert told[-1] == 'Warning: the place "moon" is outside the outer walls'
     world = load_world("again.toml")
     assert (world.start.x, world.start.y) == (2.0, 2.0)
@@ -130,6 +131,20 @@ def test_what_cannot_be_moved_is_left_out(capsys: pytest.CaptureFixture[str]) ->
     assert load_world("again.toml").places == ()
 
 
+def test_a_map_alone_has_a_start_where_there_is_room(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("map.json").write_text('{"image": "map.pgm", "resolution": 0.1, "origin": [-1, -1, 0]}')
+    rows = [bytes([0] * 30), *[bytes([0] + [254] * 28 + [0])] * 20, bytes([0] * 30)]
+    Path("map.pgm").write_bytes(b"P5 30 22 255\n" + b"".join(rows))
+    assert btc("import", "map.json", "-o", "room.toml") == 0
+    told = "Warning: the files have no start, so the robot starts at (0.05, 0.05)\n"
+    assert capsys.readouterr().err == told
+    assert btc("check", "room.toml") == 0
+    assert btc("import", "map.json", "-o", "room.toml", "--start=-3,0") == 2
+    assert "isn't on free floor of the map; give one with --start X,Y, such as --start=0.05,0.05" in (
+        capsys.readouterr().err
+    )
+
+
 @pytest.mark.parametrize(
     ("words", "message"),
     [
@@ -138,7 +153,8 @@ def test_what_cannot_be_moved_is_left_out(capsys: pytest.CaptureFixture[str]) ->
         (["import", "walls.json", "-o", "a.toml"], "walls must be a list of 2, 3 or 7 numbers"),
         (["import", "bad.json", "-o", "a.toml"], '"x" must be a number; write x = 1.5'),
         (["import", "two.json", "two.json", "-o", "a.toml"], "only one of the files may be a whole world"),
-        (["import", "map.json", "-o", "a.toml"], "there is no start: give it with --start X,Y"),
+        (["import", "map.json", "-o", "a.toml"], "the map has no free floor where the robot has room"),
+        (["import", "map.json", "points.json", "-o", "a.toml"], "the start at (1, 1) isn't on free floor of the map"),
         (["export", "no.toml", "--to", "json", "-o", "a.json"], "error BT001"),
         (["export", "shop.toml", "--to", "json", "-o", "no/a.json"], "error BT009"),
         (["export", "shop.toml", "--to", "nav2", "-o", "shop.toml"], "error BT009"),
@@ -150,6 +166,7 @@ def test_bad_input(words: list[str], message: str, capsys: pytest.CaptureFixture
     Path("walls.json").write_text('{"walls": []}')
     Path("bad.json").write_text('{"world": {"start": {"x": NaN, "y": 1}, "walls": 3}}')
     Path("two.json").write_text('{"world": {"start": {"x": 1, "y": 1}}}')
+    Path("points.json").write_text("[[1, 1]]")
     Path("map.json").write_text('{"image": "map.pgm", "resolution": 0.05}')
     Path("map.pgm").write_bytes(b"P5 2 2 255\n\0\0\0\0")
     assert btc(*words) == 2

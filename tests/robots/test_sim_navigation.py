@@ -9,6 +9,8 @@ from hypothesis import strategies as st
 from btlang.robots.geometry import Pose, segment_distance
 from btlang.robots.robot import RobotError
 from btlang.robots.simulation.robot import SimulatedRobot
+from btlang.robots.worlds.obstacles import Obstacles
+from btlang.robots.worlds.planning import ClearanceGrid
 from btlang.robots.worlds.world import FurnitureBox, Person, Place, World, WorldFault
 from btlang.robots.worlds.world_file import load_world
 
@@ -195,3 +197,12 @@ def test_a_pose_on_a_thing_is_reached_to_arms_length():
     robot = SimulatedRobot(HOUSE)
     assert to_pose(robot, Pose(thing.x, thing.y)).failure is None
     assert abs(robot.pose.bearing_to((thing.x, thing.y))) < 2
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.floats(0.05, 1.5), st.sampled_from([0.1, 0.2]))
+def test_the_room_beside_walls_is_exact_as_far_as_it_is_needed(within, size):
+    grid, obstacles = ClearanceGrid(HOUSE, size), Obstacles(HOUSE)
+    near, exact = grid.clearance(obstacles, within), grid.clearance(obstacles, 100.0)
+    assert (near[exact <= within] == exact[exact <= within]).all()
+    assert (near[exact > within] > within).all()

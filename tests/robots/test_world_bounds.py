@@ -7,7 +7,7 @@ from hypothesis import given
 
 from btlang.robots.geometry import Pose
 from btlang.robots.worlds.world import Door, World
-from btlang.robots.worlds.world_bounds import outer_wall
+from btlang.robots.worlds.world_bounds import closed_walls
 from btlang.robots.worlds.world_file import WorldError, load_world
 from btlang.robots.worlds.world_writing import to_toml
 from btlang.text.source import Source
@@ -64,6 +64,12 @@ def test_a_start_outside() -> None:
     assert told(ROOM.replace("x = 1,", "x = 9,")) == [(1, "the start at (9, 1) is outside the outer walls")]
 
 
+def test_what_a_wall_is_around_is_inside_whichever_is_the_largest() -> None:
+    far = ROOM.replace("[[3, 0]", "[[10, 0], [30, 0], [30, 20], [10, 20], [10, 0]], [[3, 0]")
+    assert told(far + 'places = [{ name = "lab", x = 20, y = 10 }]') == []
+    assert len(told(far + 'places = [{ name = "yard", x = 8, y = 1 }]')) == 1
+
+
 def test_nothing_is_outside_open_walls() -> None:
     assert told(ROOM.replace(", [0, 0]]", "]") + 'objects = [{ name = "cup", x = 7, y = 1 }]') == []
 
@@ -71,9 +77,8 @@ def test_nothing_is_outside_open_walls() -> None:
 def test_walls_and_doors_are_joined() -> None:
     walls = (((0.0, 0.0), (4.0, 0.0)), ((4.0, 3.0), (4.0, 0.0)), ((0.0, 3.0), (0.0, 1.0)), ((4.0, 3.0), (0.0, 3.0)))
     world = World(Pose(1.0, 1.0), walls=walls)
-    assert outer_wall(world) is None
-    wall = outer_wall(world.replace(doors=(Door("front door", (0.0, 0.0), (0.0, 1.0)),)))
-    assert wall is not None
+    assert closed_walls(world) == []
+    [wall] = closed_walls(world.replace(doors=(Door("front door", (0.0, 0.0), (0.0, 1.0)),)))
     assert set(wall) == {(0.0, 0.0), (4.0, 0.0), (4.0, 3.0), (0.0, 3.0), (0.0, 1.0)}
 
 

@@ -11,7 +11,7 @@ from random import Random
 import numpy as np
 import numpy.typing as npt
 
-from btlang.robots.geometry import Point, edges
+from btlang.robots.geometry import Point, Segment, edges
 from btlang.robots.robot import RobotError
 from btlang.robots.worlds.obstacles import Disc, Obstacles
 from btlang.robots.worlds.world import World
@@ -60,11 +60,16 @@ class ClearanceGrid:
             low_x + size * (np.arange(self.columns) + 0.5), low_y + size * (np.arange(self.rows) + 0.5)
         )
 
-    def clearance(self, obstacles: Obstacles) -> Array:
-        """Return the metres from each cell to the nearest wall, closed door or box, 0 inside a box."""
+    def clearance(self, obstacles: Obstacles, within: float) -> Array:
+        """Return the metres from each cell to the nearest wall, closed door or box, 0 inside a box.
+
+        A cell that is farther than `within` from all of them may have any greater number.
+        """
         nearest2 = np.full(self.xs.shape, np.inf)
-        for segment in obstacles.segments:
-            nearest2 = np.minimum(nearest2, self._squared(segment))
+        for segment in obstacles.segments:  # maps have thousands, so only the cells around each are looked at
+            window = self._window(segment, within)
+            near = nearest2[window]
+            np.minimum(near, self._squared(segment, window), out=near)
         for box in obstacles.boxes:
             inside = (np.abs(self.xs - box.x) <= box.width / 2) & (np.abs(self.ys - box.y) <= box.height / 2)
             nearest2[inside] = 0.0
@@ -115,12 +120,23 @@ class ClearanceGrid:
         rows = (np.linspace(a[1], b[1], count) - self.origin[1]) / self.size
         return bool((clearance[rows.astype(int), columns.astype(int)] >= room).all())
 
-    def _squared(self, segment: tuple[float, float, float, float]) -> Array:
-        """Return the squared metres from each cell to a segment."""
+    def _window(self, segment: Segment, within: float) -> tuple[slice, slice]:
+        """Return the rows and the columns of the cells that may be so near to a segment."""
+        ax, ay, bx, by = segment
+        spans = zip((min(ay, by), min(ax, bx)), (max(ay, by), max(ax, bx)), self.origin[::-1], strict=True)
+        rows, columns = (
+            slice(max(int((low - within - start) / self.size), 0), max(int((high + within - start) / self.size) + 1, 0))
+            for low, high, start in spans
+        )
+        return rows, columns
+
+    def _squared(self, segment: Segment, window: tuple[slice, slice] = (slice(None), slice(None))) -> Array:
+        """Return the squared metres from each cell, in a window, to a segment."""
         ax, ay, bx, by = segment
         dx, dy = bx - ax, by - ay
-        t = np.clip(((self.xs - ax) * dx + (self.ys - ay) * dy) / max(dx**2 + dy**2, 1e-12), 0.0, 1.0)
-        squared: Array = (self.xs - ax - t * dx) ** 2 + (self.ys - ay - t * dy) ** 2
+        xs, ys = self.xs[window], self.ys[window]
+        t = np.clip(((xs - ax) * dx + (ys - ay) * dy) / max(dx**2 + dy**2, 1e-12), 0.0, 1.0)
+        squared: Array = (xs - ax - t * dx) ** 2 + (ys - ay - t * dy) ** 2
         return squared
 
     def _inside(self, points: Sequence[Point]) -> Bools:
@@ -193,7 +209,7 @@ class PathPlanner:
             return
         grid = self._grid
         if self._fixed is None or self._walls != self._obstacles.walls:
-            self._fixed, self._walls = grid.clearance(self._obstacles), self._obstacles.walls
+            self._fixed, self._walls = grid.clearance(self._obstacles, self._comfort), self._obstacles.walls
         clearance = self._fixed.copy()
         for x, y, radius in (*self._obstacles.discs, *around):
             np.minimum(clearance, np.hypot(grid.xs - x, grid.ys - y) - radius, out=clearance)
@@ -330,7 +346,7 @@ class Walkways:
         if self._walls == self._obstacles.walls:
             return
         self._walls = self._obstacles.walls
-        free = self._grid.clearance(self._obstacles) >= self._room
+        free = self._grid.clearance(self._obstacles, self._room) >= self._room
         free[0, :] = free[-1, :] = free[:, 0] = free[:, -1] = False  # so that neighbours always exist
         self._blocked, self._free = ~free.ravel(), free.ravel().tolist()
         self._distances.clear()

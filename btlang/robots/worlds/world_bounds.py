@@ -27,15 +27,18 @@ _STANDING = {
 Polyline = tuple[Point, ...]
 
 
-def outer_wall(world: World) -> Polyline | None:
-    """Return the closed wall around the largest area, its first point once; None if no wall is closed.
+def closed_walls(world: World) -> list[Polyline]:
+    """Return the walls that are closed around an area, the first point of each once.
 
     Walls and doors that meet end to end are one wall.
     """
-    loops = [
-        wall for wall in _join_walls([*world.walls, *((door.start, door.end) for door in world.doors)]) if _area(wall)
-    ]
-    return max(loops, key=_area, default=())[:-1] or None
+    walls = _join_walls([*world.walls, *((door.start, door.end) for door in world.doors)])
+    return [wall[:-1] for wall in walls if _area(wall)]
+
+
+def is_outside(walls: Sequence[Polyline], point: Point) -> bool:
+    """Return whether there are closed walls, but none around the point."""
+    return bool(walls) and not any(contains(wall, point) for wall in walls)
 
 
 def _area(wall: Polyline) -> float:
@@ -90,21 +93,21 @@ def spots(rows: Rows, sections: Iterable[str] = _STANDING) -> Iterator[tuple[str
 
 
 def outside(world: World, rows: Rows) -> Iterator[Problem]:
-    """Return a Problem for each place, object, person, stop of a route, zone and door outside the outer wall.
+    """Return a Problem for each place, object, person, stop of a route, zone and door with no closed wall around it.
 
     `rows` are as those of `entries`.
     """
-    wall = outer_wall(world)
-    if wall is None:
+    walls = closed_walls(world)
+    if not walls:
         return
     for what, path, point in _points(world, rows):
-        if not contains(wall, point) and not _is_on(wall, point):
+        if not _is_within(walls, point):
             yield Problem(f"{what} at ({point[0]:g}, {point[1]:g}) is outside the outer walls", *path)
     for path, (zone,) in entries(rows, ("zones",)):
-        if not _reaches_into(zone, wall):
+        if not any(_reaches_into(zone, wall) for wall in walls):
             yield Problem(f'the zone "{zone.name}" is outside the outer walls', *path, "points")
     for path, (door,) in entries(rows, ("doors",)):
-        if not any(contains(wall, end) or _is_on(wall, end) for end in (door.start, door.end)):
+        if not any(_is_within(walls, end) for end in (door.start, door.end)):
             yield Problem(f'the door "{door.name}" is outside the outer walls', *path, "from")
 
 
@@ -117,8 +120,11 @@ def _points(world: World, rows: Rows) -> Iterator[tuple[str, Path, Point]]:
                 yield f'a stop of "{row.name}"', (*path, "walks", at), (stop.x, stop.y)
 
 
-def _is_on(wall: Polyline, point: Point) -> bool:
-    return any(segment_distance(point, (*a, *b)) <= _TOUCHING for a, b in edges(wall))
+def _is_within(walls: Sequence[Polyline], point: Point) -> bool:
+    """Return whether a point is inside one of the walls, or on it."""
+    return not is_outside(walls, point) or any(
+        segment_distance(point, (*a, *b)) <= _TOUCHING for wall in walls for a, b in edges(wall)
+    )
 
 
 def _reaches_into(zone: Zone, wall: Polyline) -> bool:
