@@ -186,3 +186,14 @@ def pose(text: str) -> Pose:
     if len(numbers) not in (2, 3) or not all(map(is_coordinate, numbers)):
         raise argparse.ArgumentTypeError(f"expected X,Y or X,Y,FACING, such as 1.5,2,90, not '{text}'")
     return Pose(*numbers)
+
+
+def latitude_longitude(text: str) -> tuple[float, float]:
+    """Read "LAT,LON" in degrees."""
+    try:
+        latitude, longitude = (float(part) for part in text.split(","))
+    except ValueError:
+        latitude = longitude = math.nan
+    if not (abs(latitude) <= 90.0 and abs(longitude) <= 180.0):
+        raise argparse.ArgumentTypeError(f"expected LAT,LON, such as 48.1,11.6, not '{text}'")
+    return latitude, longitude

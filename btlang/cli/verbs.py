@@ -48,6 +48,7 @@ from btlang.cli.values import (
     at_least,
     between,
     duration,
+    latitude_longitude,
     node_name,
     picture,
     pose,
@@ -558,7 +559,11 @@ _TABLE = (
             Option("--to", choices=("nav2", "json", "yaml"), help="what to export to"),
             Option(
                 "--start", type=pose, metavar="X,Y[,FACING]",
-                help="where the robot starts (default: the first way point)",
+                help="where the robot starts (default: the first way point, or where a map has room)",
+            ),
+            Option(
+                "--origin", type=latitude_longitude, metavar="LAT,LON",
+                help="latitude and longitude of the origin, for way points in degrees",
             ),
             Option(
                 "--resolution", type=between(0.005, 10.0), metavar="M",

@@ -31,8 +31,13 @@ _BAD_INPUT = 2
 _ACTS, _TARGETS = ("check", "import", "export"), ("nav2", "json", "yaml")
 _RESOLUTION = 0.05  # metres that a cell of an exported map is wide
 _ROWS = 10  # that the map leaves for the names
-_GIVEN = {"picture": "--picture", "out": "-o", "to": "--to", "start": "--start", "resolution": "--resolution"}
-_TAKES = {"": {"picture"}, "check": set[str](), "import": {"out", "start"}, "export": {"out", "to", "resolution"}}
+_GIVEN = {
+    "picture": "--picture", "out": "-o", "to": "--to", "start": "--start", "origin": "--origin",
+    "resolution": "--resolution",
+}  # fmt: skip
+_TAKES = {
+    "": {"picture"}, "check": set[str](), "import": {"out", "start", "origin"}, "export": {"out", "to", "resolution"},
+}  # fmt: skip
 
 
 def run_act(options: argparse.Namespace) -> int:
@@ -98,11 +103,13 @@ def _check(options: argparse.Namespace, files: list[str], body: Body) -> int:
 def _import(options: argparse.Namespace, files: list[str], body: Body) -> int:
     from btlang.maps.importing import import_world
 
-    world, notes = import_world(files, body.radius, options.start)
-    text = to_toml(world).encode(errors="replace").decode()
+    imported = import_world(files, body.radius, options.start, options.origin)
+    if not options.report.is_for_programs:
+        show("\n".join(map(one_line, imported.found)))
+    text = to_toml(imported.world).encode(errors="replace").decode()
     read_world(Source(text, options.out), body)  # what the files say together may not fit
-    for note in notes:
-        show(one_line(f"Warning: {note}"), sys.stderr)
+    for warning in imported.warnings:
+        show(one_line(f"Warning: {warning}"), sys.stderr)
     write_file(options.out, text)
     if not options.report.is_for_programs:
         show(f"Wrote {options.out}.")

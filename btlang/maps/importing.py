@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from math import cos, pi, sin
 
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
@@ -11,37 +11,71 @@ from btlang.diagnostics.files import read_source
 from btlang.maps.data_text import ForeignFileError, is_world, read_data, read_world_data
 from btlang.maps.occupancy import OccupancyMap, is_map, read_map, walls_of
 from btlang.maps.reach import reached
-from btlang.maps.way_points import way_points
+from btlang.maps.way_points import WayPoints, way_points
 from btlang.robots.files import as_mission_error
 from btlang.robots.geometry import Point, Pose, Segment
 from btlang.robots.worlds.world import Place, World
 from btlang.robots.worlds.world_bounds import closed_walls, is_outside
 from btlang.robots.worlds.world_file import WorldError, has_room
+from btlang.support.record import Record
 from btlang.text.source import NOWHERE
 from btlang.text.toml_table import Problem
 
 _FARTHEST, _STEP = 0.5, 0.05  # metres that a place without room is moved at most
+_MOST_SHOWN = 10  # way points of a file
 _MOST_CHECKS = 5_000_000  # of a place with a piece of wall: as many as a world file may take
 
 
-def import_world(paths: Sequence[str], radius: float, start: Pose | None = None) -> tuple[World, list[str]]:
-    """Return the world of all files together, and a line for each place that was moved, renamed or left out.
+class ImportedWorld(Record):
+    """A world from files of other programs.
 
-    It starts at `start`, by default at the first way point, and leaves room for a robot of that radius. Raises
-    MissionError with what is wrong in all files.
+    `found` are lines that show what was read from the files, `warnings` those about places that were moved, renamed or
+    left out and other things to look at.
     """
-    worlds, problems = [], []
+
+    world: World
+    found: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
+
+
+def import_world(
+    paths: Sequence[str], radius: float, start: Pose | None = None, origin: Point | None = None
+) -> ImportedWorld:
+    """Return the world of all files together.
+
+    It starts at `start`, by default at the first way point, and leaves room for a robot of that radius. Way points in
+    degrees need the latitude and longitude of the origin. Raises MissionError with what is wrong in all files.
+    """
+    parts, problems = list[World | WayPoints | OccupancyMap](), []
     for path in paths:
         try:
-            worlds.append(_read(path))
+            parts.append(_read(path, origin))
         except MissionError as error:
             problems += error.diagnostics
     if problems:
         raise MissionError(problems)
-    return _together(worlds, radius, start)
+    read = list(zip(paths, parts, strict=True))
+    found = [line for path, part in read for line in _show(path, part)]
+    notes = [f"{path}: {note}" for path, part in read if isinstance(part, WayPoints) for note in part.notes]
+    world, warnings = _together(parts, radius, start)
+    return ImportedWorld(world, tuple(found), (*notes, *warnings))
 
 
-def _read(path: str) -> World | list[Place] | OccupancyMap:
+def _show(path: str, part: World | WayPoints | OccupancyMap) -> Iterator[str]:
+    """Yield lines that show what a file was understood as."""
+    if isinstance(part, OccupancyMap):
+        rows, columns = part.free.shape
+        yield f"{path}: a map of {columns * part.resolution:g} m x {rows * part.resolution:g} m"
+    elif isinstance(part, WayPoints):
+        yield f"{path}: {len(part.places):,} way point{'s' * (len(part.places) != 1)}"
+        for place in part.places[:_MOST_SHOWN]:
+            facing = "" if place.facing is None else f", facing {place.facing:.4g} degrees"
+            yield f"  {place.name}: ({place.x:g}, {place.y:g}){facing}"
+        if len(part.places) > _MOST_SHOWN:
+            yield f"  ... and {len(part.places) - _MOST_SHOWN:,} more"
+
+
+def _read(path: str, origin: Point | None) -> World | WayPoints | OccupancyMap:
     """Read a file: a world, way points, or a map."""
     source = read_source(path)
     try:
@@ -50,7 +84,7 @@ def _read(path: str) -> World | list[Place] | OccupancyMap:
             return read_map(data, os.path.dirname(path) or os.curdir)
         if is_world(data):
             return read_world_data(data, path)
-        return way_points(data)
+        return way_points(data, origin)
     except (ForeignFileError, WorldError) as error:
         raise as_mission_error(error) from None
     except RecursionError:
@@ -60,7 +94,7 @@ def _read(path: str) -> World | list[Place] | OccupancyMap:
 
 
 def _together(
-    parts: Iterable[World | list[Place] | OccupancyMap], radius: float, start: Pose | None
+    parts: Iterable[World | WayPoints | OccupancyMap], radius: float, start: Pose | None
 ) -> tuple[World, list[str]]:
     whole: World | None = None
     maps: list[OccupancyMap] = []
@@ -70,8 +104,8 @@ def _together(
             raise _unusable("only one of the files may be a whole world")
         if isinstance(part, World):
             whole = part
-        elif isinstance(part, list):
-            places += part
+        elif isinstance(part, WayPoints):
+            places += part.places
         else:
             maps.append(part)
     notes: list[str] = []

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.maps.data_text import notation
-from btlang.maps.importing import import_world
+from btlang.maps.importing import ImportedWorld, import_world
 from btlang.robots.geometry import Pose
 from btlang.robots.worlds.world import World
 from tests.profiles import searches
@@ -38,7 +38,7 @@ def test_random_worlds_come_back(tmp_path: Path, to: str, world: World) -> None:
     pytest.importorskip("yaml")
     path = tmp_path / f"world.{to}"
     path.write_text(notation(world, to), encoding="utf-8")
-    assert import_world([str(path)], RADIUS) == (world, [])
+    assert import_world([str(path)], RADIUS) == ImportedWorld(world)
 
 
 _KEYS = (
@@ -107,3 +107,29 @@ def test_all_files_are_told_of(tmp_path: Path) -> None:
     with pytest.raises(MissionError) as caught:
         import_world([*map(str, paths), str(tmp_path / "none.json")], RADIUS)
     assert [problem.code for problem in caught.value.diagnostics] == ["BT001", "BT075", "BT075"]
+
+
+GPS = [
+    {"name": "gate", "latitude": 48.0, "longitude": 11.001},
+    {"name": "shed", "latitude": 48.0001, "longitude": 11.0},
+]
+
+
+def test_degrees_become_metres_from_an_origin(tmp_path: Path) -> None:
+    path = tmp_path / "gps.json"
+    path.write_text(json.dumps(GPS))
+    with pytest.raises(MissionError, match="give the origin of the world with --origin LAT,LON, such as --o"):
+        import_world([str(path)], RADIUS)
+    gate, shed = import_world([str(path)], RADIUS, origin=(48.0, 11.0)).world.places
+    assert (gate.x, gate.y) == pytest.approx((74.4, 0.0), abs=0.05)
+    assert (shed.x, shed.y) == pytest.approx((0.0, 11.12), abs=0.01)
+    with pytest.raises(MissionError, match='the way point "gate" is more than 100 km from --origin'):
+        import_world([str(path)], RADIUS, origin=(-48.0, 11.0))
+
+
+def test_what_was_read_is_shown(tmp_path: Path) -> None:
+    path = tmp_path / "points.json"
+    path.write_text(json.dumps({f"stop_{at}": [at, 0, 1.5707963] for at in range(12)}))
+    found = import_world([str(path)], RADIUS).found
+    assert found[:2] == (f"{path}: 12 way points", "  stop 0: (0, 0), facing 90 degrees")
+    assert found[-1] == "  ... and 2 more"

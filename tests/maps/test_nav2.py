@@ -97,9 +97,9 @@ def test_walls_come_back_within_two_cells(tmp_path: Path, walls: Any, resolution
     world = World(Pose(-5.0, -5.0), walls=walls)
     for name, content in nav2_files(world, resolution, 0.5).items():
         (tmp_path / name).write_bytes(content)
-    again, notes = import_world([str(tmp_path / "map.yaml")], 0.2, world.start)
-    assert notes == []
-    again = again.replace(walls=again.walls[1:])  # the first one is around the map
+    imported = import_world([str(tmp_path / "map.yaml")], 0.2, world.start)
+    assert imported.warnings == ()
+    again = imported.world.replace(walls=imported.world.walls[1:])  # the first one is around the map
     assert farthest(world, again) <= 2 * resolution
     assert farthest(again, world) <= 2 * resolution
 
@@ -154,7 +154,7 @@ def test_the_free_cells_of_a_map_come_back(tmp_path: Path, seed: int) -> None:
     about = {"image": "map.pgm", "resolution": map.resolution, "origin": [x, y, 0.0]}
     (tmp_path / "map.pgm").write_bytes(shades(map))
     (tmp_path / "map.json").write_text(json.dumps({**about, "free_thresh": 0.196}))
-    world, _ = import_world([str(tmp_path / "map.json")], 0.2, Pose(*start))
+    world = import_world([str(tmp_path / "map.json")], 0.2, Pose(*start)).world
     grid = CellGrid(world, map.resolution)
     again = nav2_files(world, map.resolution, 0.5)["map.pgm"]
     kept = np.frombuffer(again, np.uint8, offset=len(again) - grid.width * grid.height)

@@ -22,7 +22,7 @@ STAMPED = {"header": {"frame_id": "map"}, "pose": POSE}
 
 def named(data: Any) -> list[tuple[str, float, float, float | None]]:
     return [
-        (p.name, p.x, p.y, None if p.facing is None else round(p.facing, 3)) for p in way_points(data)
+        (p.name, p.x, p.y, None if p.facing is None else round(p.facing, 3)) for p in way_points(data).places
     ]  # fmt: skip
 
 
@@ -44,7 +44,7 @@ def named(data: Any) -> list[tuple[str, float, float, float | None]]:
         ({"frame_id": "map", "a": {"x": 1, "y": 2}}, [("a", 1, 2, None)]),
         (
             [{"name": "a", "position": {"x": 1, "y": 2, "z": 0}, "orientation": NORTH}, {"id": 7, "x": 3, "y": 4}],
-            [("a", 1, 2, 90), ("7", 3, 4, None)],
+            [("a", 1, 2, 90), ("point 7", 3, 4, None)],
         ),
         (
             [{"label": "a  b", "position": [1, 2, 0], "orientation": [0, 0, 0.70710678, 0.70710678]}],
@@ -56,6 +56,54 @@ def named(data: Any) -> list[tuple[str, float, float, float | None]]:
         ({"locations": {"a": {"position": {"x": 1, "y": 2}}}}, [("a", 1, 2, None)]),
         ([{"pose": [1, 2, 1.5707963]}], [("point 1", 1, 2, 90)]),
         ({"points": {"x": 1, "y": 2}, "b": [1, 2]}, [("points", 1, 2, None), ("b", 1, 2, None)]),
+        ([{"x": 1, "y": 2, "qz": 0.70710678, "qw": 0.70710678}], [("point 1", 1, 2, 90)]),
+        ({"a": {"x": 1, "y": 2, "z": 0.70710678, "w": 0.70710678}}, [("a", 1, 2, 90)]),
+        ({"a": [1, 2, 0.70710678, 0.70710678]}, [("a", 1, 2, 90)]),
+        ({"a": [[1, 2, 0], [0, 0, 0.70710678, 0.70710678]]}, [("a", 1, 2, 90)]),
+        ([{"point": POSE["position"], "quaternion": NORTH}], [("point 1", 1, 2, 90)]),
+        ([{"point": {"x": 1, "y": 2, "th": 1.5707963}}], [("point 1", 1, 2, 90)]),
+        ([{"location": {"X": 1, "Y": 2}, "name": "a"}], [("a", 1, 2, None)]),
+        ([{"location": "lab_door", "x_pose": 1, "y_pose": 2}], [("lab door", 1, 2, None)]),
+        ([{"position": [1, 2], "yaw_deg": 90}], [("point 1", 1, 2, 90)]),
+        ([{"position": [1, 2, 0], "orientation": [0, 0, 1.5707963]}], [("point 1", 1, 2, 90)]),
+        ([{"position": [1, 2, 0], "orientation": [0.70710678, 0, 0, 0.70710678]}], [("point 1", 1, 2, 90)]),
+        ([{"position": [1, 2, 0], "orientation": [0, 0, 0, 0]}], [("point 1", 1, 2, None)]),  # never set
+        ([{"pose": {"position": {"x": 1, "y": 2}, "angle": {"yaw": 90}}}], [("point 1", 1, 2, 90)]),
+        ([[1, 2, 90.0], [3, 4, 1.0]], [("point 1", 1, 2, 90), ("point 2", 3, 4, 1)]),  # all of them in degrees
+        (
+            {"patrol": {"ros__parameters": {"waypoints": ["a"], "a": [1, 2], "cycles": 3, "covariance": [1] * 36}}},
+            [("a", 1, 2, None)],
+        ),
+        (
+            {"/**": {"ros__parameters": {"waypoints": [1, 2, 0, 3, 4, 0, 5, 6, 0]}}},
+            [("point 1", 1, 2, 0), ("point 2", 3, 4, 0), ("point 3", 5, 6, 0)],
+        ),
+        ({"waypoints": [1, 2, 3, 4]}, [("point 1", 1, 2, None), ("point 2", 3, 4, None)]),
+        (
+            {"north": [[1, 2], [3, 4]], "south": [[5, 6]]},
+            [("north 1", 1, 2, None), ("north 2", 3, 4, None), ("south", 5, 6, None)],
+        ),
+        ([{"node": {"name": "a", "pose": POSE, "verts": [{"x": 9, "y": 9}]}, "meta": {"map": "m"}}], [("a", 1, 2, 90)]),
+        (
+            {
+                "type": "FeatureCollection",
+                "crs": {"properties": {"name": "urn:ogc:def:crs:EPSG::3857"}},
+                "features": [
+                    {"type": "Feature", "properties": {"id": 4}, "geometry": {"type": "Point", "coordinates": [1, 2]}},
+                    {
+                        "type": "Feature",
+                        "properties": {"name": "dock"},
+                        "geometry": {"type": "Point", "coordinates": [3, 4]},
+                    },
+                    {
+                        "type": "Feature",
+                        "properties": {"id": 9, "startid": 4},
+                        "geometry": {"type": "LineString", "coordinates": [[1, 2], [3, 4]]},
+                    },
+                ],
+            },
+            [("point 4", 1, 2, None), ("dock", 3, 4, None)],
+        ),
     ],
     ids=str,
 )
@@ -68,7 +116,7 @@ def test_the_yaw_of_quaternions(angle: float, length: float, roll: bool) -> None
     half = radians(angle) / 2
     z, w = sin(half) * length, cos(half) * length
     turned = {"x": w, "y": z, "z": 0.0, "w": 0.0} if roll else {"x": 0.0, "y": 0.0, "z": z, "w": w}  # rolled over
-    [place] = way_points([{"position": {"x": 0, "y": 0}, "orientation": turned}])
+    [place] = way_points([{"position": {"x": 0, "y": 0}, "orientation": turned}]).places
     assert place.facing == pytest.approx(angle, abs=1e-6)
 
 
@@ -77,19 +125,25 @@ def test_the_yaw_of_quaternions(angle: float, length: float, roll: bool) -> None
     [
         (None, "way points are a list or a table, not None"),
         ("kitchen", "way points are a list or a table, not 'kitchen'"),
-        ([], "there are no way points in it"),
+        ([], "there are no way points in it: write for example"),
         ({}, "there are no way points in it"),
-        ([3], "the list[0] must be a way point"),
-        ({"a": "b"}, "a must be a way point"),
+        ([3], "the list has 1 numbers, which may be points x, y or points x, y, yaw"),
+        ({"a": "b"}, "there are no way points in it"),
+        ({"waypoints": [1, 2, 3, 4, 5, 6]}, "waypoints has 6 numbers, which may be points x, y or points x, y, yaw"),
+        ({"a": {"lat": 48, "lon": 11}}, "give the origin of the world with --origin LAT,LON, such as --origin=48,11"),
+        ({"a": {"lat": 148, "lon": 11}}, "a.lat must be from -90 to 90"),
+        ({"a": {"lat": 48}}, "a.longitude must be a number, not None"),
+        (
+            {"type": "Feature", "geometry": {"type": "Point", "coordinates": [11, 48]}},
+            "give the origin of the world with --origin LAT,LON",
+        ),
         ({"a": {"x": 1}}, "a.y must be a number, not None"),
         ({"a": {"x": float("nan"), "y": 1}}, "a.x must be a number from -1,000,000"),
         ({"a": {"x": True, "y": 1}}, "a.x must be a number, not True"),
         ({"a": {"x": 10**400, "y": 1}}, "a.x must be a number from -1,000,000"),
-        ([[1]], "the list[0] must be a list of 2, 3 or 7 numbers"),
-        ({"a": {"x": 1, "y": 2, "orientation": {"z": 0, "w": 0}}}, "a.orientation must be a quaternion"),
-        ({"a": {"x": 1, "y": 2, "orientation": [1, 2]}}, "a.orientation must be a list of 4 numbers"),
-        ({"a": {"pose": {"pose": {"pose": {"pose": {"pose": POSE}}}}}}, "a.position.x must be a number, not None"),
-        ({"a": {"position": 3}}, "a.position must be a list of 2 or 3 numbers"),
+        ([[1]], "the list[0] has 1 numbers"),
+        ({"a": {"x": 1, "y": 2, "orientation": [1, 2]}}, "a.orientation must be a list of 3 or 4 numbers"),
+        ({"a": {"position": 3}}, "there are no way points in it"),
         ([[0, 0]] * 10_001, "a file may have at most 10,000 way points"),
     ],
     ids=lambda value: str(value)[:40],
@@ -134,4 +188,22 @@ def test_errors_of_yaml_have_a_line() -> None:
 def test_several_documents_are_a_list() -> None:
     pytest.importorskip("yaml")
     data = read_data(Source("position: {x: 1, y: 2}\n---\nposition: {x: 3, y: 4}\n---\n", "a.yaml"))
-    assert way_points(data) == [Place("point 1", 1.0, 2.0), Place("point 2", 3.0, 4.0)]
+    assert way_points(data).places == (Place("point 1", 1.0, 2.0), Place("point 2", 3.0, 4.0))
+
+
+@pytest.mark.parametrize(
+    ("data", "note"),
+    [
+        ([[1, 2, 180.0]], "directions are read as degrees, because one of them is more than a whole turn in radians"),
+        ([{"x": 1, "y": 2, "direction": "SOUTH"}], "the list[0] faces any direction: direction 'SOUTH' isn't an angle"),
+        ({"waypoints": [[1, 2]], "start": [0, 0]}, "left out, beside the way points: start"),
+    ],
+    ids=str,
+)
+def test_what_a_user_should_look_at(data: Any, note: str) -> None:
+    assert way_points(data).notes == (note,)
+
+
+def test_compass_headings_of_geographic_points() -> None:
+    [place] = way_points([{"latitude": 48.0, "longitude": 11.0, "heading": 0}], (48.0, 11.0)).places
+    assert (place.x, place.y, place.facing) == (0.0, 0.0, 90.0)
