@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
 
 from btlang.components.checking import check_robot, describe_apart, levels
@@ -42,12 +43,15 @@ def read_robot_file(act: str, path: str) -> int:
 
 
 def _import(source: Source) -> str:
-    from btlang.robots.bodies.urdf import read_urdf  # brings numpy
+    from btlang.robots.bodies.urdf_reader import read_urdf  # brings numpy
 
     try:
-        return read_urdf(source).toml
+        found = read_urdf(source)
     except BodyError as problem:
         raise as_mission_error(problem) from None
+    for note in found.notes:
+        show(one_line(f"Check: {note}"), sys.stderr)
+    return found.toml
 
 
 def draw_robot(body: Body) -> Iterator[str]:
