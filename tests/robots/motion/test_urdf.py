@@ -131,7 +131,7 @@ def test_wheels_are_a_base_and_no_joints(tmp_path: Path) -> None:
     assert [joint.name for joint in found.joints] == ["neck"]
     assert (found.joints[0].low, found.joints[0].high) == (-180.0, 180.0)
     assert found.gap == 0.3  # the caster is farther out
-    assert found.radius == pytest.approx(0.316, abs=0.001)  # to the corners of the box behind
+    assert found.radius == 0.317  # to the corners of the box behind
     assert found.notes == (
         'the joint "neck" has no top speed; 57 degrees per second is a guess',
         "the wheels are 0.3 m apart, by the places of their joints",
