@@ -36,12 +36,13 @@ class KeywordPack(Record):
 def pack_of_files(
     sources: Sequence[Source], vocabulary: Lexicon, load: Callable[[Source], Lexicon]
 ) -> tuple[KeywordPack, KeywordFile]:
-    """Make a pack for the unknown nodes in XML files, as `keyword_pack` does, and what it declares, at the nodes'
-    tags.
+    """Make a pack for the unknown nodes in XML files and those that they include, as `keyword_pack` does.
+
+    Return it with what it declares, at the nodes' tags.
 
     The warnings are those of the files, too. Raises MissionError (BT120 to BT129).
     """
-    read = read_files(sources)
+    read = read_files(sources, follows_includes=True)
     places = read.places()
     models = [*read.known_models(), *read.models.values()]  # what the files themselves describe counts, even if bare
     pack = keyword_pack(leaves_of(models, read.nodes(), vocabulary), vocabulary, load, places)

@@ -265,6 +265,10 @@ _ALL = (
     Code("BT240", "There are no words for the node '{id}': {reason}.", "Missions say it by its id: do \"{id}\"", "warning",
          "node without words"),
     Code("BT241", "Nothing sets '{key}', which the port {port} of {id} reads.", "", "warning", "unset value"),
+    Code("BT242", "BehaviorTree.CPP 4.10 refuses text in double quotes in scripts: \"{text}\".",
+         "Write '{text}' in single quotes, which all versions take.", "warning", "double quotes"),
+    Code("BT243", "This {parent} starts {id} again at each tick while a later child runs.",
+         "Put {id} before it, in a Sequence around both.", "warning", "restarted action"),
 )  # fmt: skip
 
 CODES = {entry.code: entry for entry in _ALL}

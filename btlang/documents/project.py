@@ -137,7 +137,7 @@ def read_documents(
             left_out.append(name)
     if not names:
         raise empty_folder_error(paths[0], "there are no trees in XML and no missions in it that can be read")
-    read = read_files(source for _, source in trees)
+    read = read_files([source for _, source in trees])
     models, described = read.models, dict[str, tuple[NodeModel, ...]]()
     for (name, _), file in zip(trees, read.files, strict=True):
         chapters += _trees(name, file, models.values(), vocabulary)

@@ -87,7 +87,7 @@ def way_points(data: Any, origin: Point | None = None) -> WayPoints:
             raise Problem(f"a file may have at most {MOST:,} way points")
         found.append((name or f"point {len(found) + 1}", reader.pose(value, where)))
     if not found:
-        raise Problem(f"there are no way points in it: {_expected(data)}")
+        raise Problem(_expected(data))
     notes = reader.notes
     if any(pose.geographic for _, pose in found):
         if origin is None:
@@ -103,8 +103,9 @@ def way_points(data: Any, origin: Point | None = None) -> WayPoints:
 
 
 def _expected(data: Any) -> str:
-    wanted = 'write for example {"kitchen": {"x": 2.5, "y": 4, "yaw": 1.57}}'
-    return wanted if isinstance(data, list | dict) else f"way points are a list or a table, not {shown(data)}"
+    if not isinstance(data, list | dict):
+        return f"way points are a list or a table, not {shown(data)}"
+    return 'there are no way points in it: write for example {"kitchen": {"x": 2.5, "y": 4, "yaw": 1.57}}'
 
 
 def _is_geographic(data: Any) -> bool:

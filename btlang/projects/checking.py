@@ -24,6 +24,7 @@ from btlang.projects.ports import (
     several_alone,
     subtree_problems,
 )
+from btlang.projects.restarts import double_quotes, restarted_actions
 from btlang.projects.unused import keys_read, unknown_nodes, unread_subtree_ports, unread_values, unused_trees
 from btlang.text.source import NOWHERE, Span
 from btlang.tree.catalogue import BEHAVIOR_TREE_CPP, CATALOGUE, SEQUENCE, SUBTREE
@@ -84,6 +85,8 @@ class _Check:
         yield from unknown_nodes(self._nodes, self._described, self._words, self._project.dialects)
         yield from self._wrong_ports()
         yield from unused_trees(self._project)
+        yield from double_quotes(node for node in self._nodes if self._dialect(node) == 4)
+        yield from restarted_actions(self._nodes, self._sort)
         yield from unread_values(self._nodes, self._outputs, keys_read(self._nodes, self._outputs))
         if self._project.is_round:
             return
@@ -94,6 +97,18 @@ class _Check:
         for one in PASSES:
             if not one.needs_text:
                 yield from one.run(compilation)
+
+    def _sort(self, node: Node) -> str:
+        """Return whether a leaf is an "Action" that takes time, a "Condition", or "" if that isn't known, as of most
+        nodes of others: many of their actions are meant to be done at each tick.
+        """
+        kind, entry = CATALOGUE.get(node.id), self._vocabulary.entries.get(node.id, (None,))[0]
+        if kind is not None:  # scripts and the like are meant to run at each tick
+            return "Condition" if not kind.takes_time and not kind.least else ""
+        if entry is not None:
+            return "Action" if entry.sort == "action" and not entry.instant else "Condition"
+        model = self._model(node)
+        return "Condition" if model is not None and model.kind == "Condition" else ""
 
     def _ids_from_elsewhere(self, vocabulary: Lexicon) -> set[str]:
         """Return the ids of leaves that aren't the vocabulary's: their models differ, or their files have others,

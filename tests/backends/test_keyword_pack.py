@@ -58,6 +58,21 @@ def said(*models: str) -> list[str]:
     ]
 
 
+def test_included_files_count_where_they_are_there(tmp_path: Path) -> None:
+    (tmp_path / "arm.xml").write_text(
+        '<root BTCPP_format="4"><TreeNodesModel><Action ID="Grab"/></TreeNodesModel></root>', encoding="utf-8"
+    )
+    text = (
+        '<root BTCPP_format="4"><include path="arm.xml"/><include ros_pkg="elsewhere" path="gone.xml"/>'
+        '<BehaviorTree ID="A"><Sequence><Grab/><Drop/></Sequence></BehaviorTree></root>'
+    )
+    path = tmp_path / "main.xml"
+    path.write_text(text, encoding="utf-8")
+    assert [line for line in pack_of(read_source(str(path))).text.splitlines() if line.startswith("id")] == [
+        'id = "Grab"', 'id = "Drop"'
+    ]  # fmt: skip
+
+
 def test_conditions_say_what_is_so() -> None:
     ids = ("IsDoorOpen", "IsObjectInGripper", "HasPayload", "CanReach", "PosesNear", "WouldAPlanHelp", "CheckLid")
     assert said(*(f'<Condition ID="{id}"/>' for id in ids)) == [

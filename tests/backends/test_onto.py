@@ -144,3 +144,45 @@ def _written(tree: Tree) -> Source:
         return Source(to_xml(tree, WORDS))
     except MissionError:
         reject()
+
+
+LINES = """<root BTCPP_format="4" main_tree_to_execute="__Up__">
+  <BehaviorTree ID="__Up__">
+    <Sequence>
+      <PickUp item="cup"/>
+      <SubTree ID="_Down"/>
+    </Sequence>
+  </BehaviorTree>
+  <BehaviorTree ID="_Down">
+    <PickUp item="mug"/>
+  </BehaviorTree>
+  <TreeNodesModel>
+    <Action ID="PickUp">
+      <description>Picks a thing up.
+      It waits.</description>
+      <input_port name="item" type="std::string">what
+      to pick up</input_port>
+    </Action>
+  </TreeNodesModel>
+</root>
+"""
+
+
+def test_descriptions_of_several_lines_and_ids_with_underscores_come_back() -> None:
+    vocabulary = world_vocabulary()
+    text = to_english(read_xml(Source(LINES, "up.xml")), vocabulary)
+    tree = lower_mission(read_mission(Source(text), vocabulary).mission, vocabulary)
+    written = to_xml(tree, vocabulary)
+    for line in LINES.splitlines():
+        assert line.strip() in written
+
+
+def test_a_file_with_one_tree_of_its_own_needs_no_main_tree(tmp_path: Path) -> None:
+    tree = '<BehaviorTree ID="{}"><AlwaysSuccess/></BehaviorTree>'
+    library = f'<root BTCPP_format="4">{tree.format("A")}{tree.format("B")}</root>'
+    (tmp_path / "library.xml").write_text(library, encoding="utf-8")
+    path = tmp_path / "own.xml"
+    path.write_text(
+        f'<root BTCPP_format="4"><include path="library.xml"/>{tree.format("Own")}</root>', encoding="utf-8"
+    )
+    assert read_xml(read_source(str(path))).name == "Own"

@@ -76,6 +76,7 @@ def run(code: str, **values: object) -> object:
         ("x:=3;x+=1", 4), ("x:=3;x-=1;x", 2), ("x:=3;x*=2;x", 6), ("x:=3;x/=2;x", 1.5), ("x:='a';x+='b';x", "ab"),
         ("x:=3; x=4; x", 4), ("x := 3; x := '4'; x + 1", 5), ("x := 1; x = 'RED'; x", 1), ("x := 1; x := x + 1; x", 2),
         ("x := 1; x += x := 5; x", 10), ("@g := 2; @g + g", 4), ("a := 1 == 1; a", 1),
+        ('x := "it\'s"; x', "it's"), ("x := '\"'; x == '\"'", 1),
     ],
 )  # fmt: skip
 def test_values(code: str, value: object) -> None:
@@ -100,7 +101,7 @@ def test_values(code: str, value: object) -> None:
         ("1 2 ;; , 3", "',' isn't valid in a script", 7),
         ("a := 'don't'", "this quote is not closed", 11),
         ("x := 'abc", "this quote is not closed", 5),
-        ('x := "abc"', "'\"' isn't valid in a script", 5),
+        ('x := "abc', "this quote is not closed", 5),
         ("1 + \\ \n 2", "'\\\\' isn't valid in a script", 4),
         ("2 % 3", "'%' isn't valid in a script", 2),
         ("1 . 2", "'.' isn't valid in a script", 2),

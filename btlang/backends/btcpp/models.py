@@ -175,7 +175,8 @@ def tree_ids(tree: Tree, leaves: Iterable[str], dialect: int) -> dict[str, str]:
     taken = {*_RESERVED, *leaves}
     wanted = [tree.name or MAIN_TREE, *(name for name, _ in tree.subtrees)]
     for at, name in enumerate(wanted):
-        plain = _REFUSED.sub("_", name).strip("_") if dialect == 4 else name
+        # an ID that needs no change keeps its underscores at the ends
+        plain = _REFUSED.sub("_", name).strip("_") if dialect == 4 and _REFUSED.search(name) else name
         made = plain or "tree"
         number = 2
         while made in taken:

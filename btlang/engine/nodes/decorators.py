@@ -6,6 +6,7 @@ text there becomes one, and values that aren't texts are passed on as they are.
 
 from __future__ import annotations
 
+import json
 from collections import deque
 from collections.abc import Callable, Sequence
 
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 
     Next = Callable[[], list[Any]]
 
+_JSON = "json:"
 _FIRST_PAUSE, _LONGEST_PAUSE = 500.0, 8000.0  # milliseconds
 WAS_TRUE = "it is true"
 """The reason of an Inverter: what it denies succeeded."""
@@ -247,7 +249,16 @@ def _find_queue(instance: NodeInstance, key: str) -> Any:
 
 
 def _split(text: str) -> list[str]:
-    return text.removesuffix(";").split(";") if text else []
+    """Return the parts of a queue, `a;b` or `json:["a", "b"]`. Raises ActionFailed for other JSON."""
+    if not text.startswith(_JSON):
+        return text.removesuffix(";").split(";") if text else []
+    try:
+        found = json.loads(text.removeprefix(_JSON))
+    except (ValueError, RecursionError):
+        found = None
+    if not isinstance(found, list) or any(isinstance(each, dict | list | None) for each in found):
+        raise ActionFailed(f"the queue must be a list of values, such as json:[1, 2], not {text!r}")
+    return [each if isinstance(each, str) else json.dumps(each) for each in found]
 
 
 def _convert(value: Any, convert: Callable[[str], Any], sort: str) -> Any:

@@ -6,11 +6,13 @@ import re
 
 _TOKEN = re.compile(
     r"""(?P<number>(?:0[xX][0-9A-Fa-f]+|[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?)(?![A-Za-z0-9_@]|\.(?!\.)))
-    |(?P<text>'[^']*')
+    |(?P<text>'[^']*'|"[^"]*")
     |(?P<name>[A-Za-z_@][A-Za-z0-9_]*)
     |(?P<sign>:=|==|!=|<=|>=|&&|\|\||\.\.|[-+*/]=|[-+*/&|^~!<>=?:();])""",
     re.VERBOSE,
 )
+QUOTES = ("'", '"')
+"""The marks around a text; versions before 4.10 took double quotes, too."""
 BOOLEANS = {"true": 1.0, "false": 0.0}
 ASSIGNMENTS = (":=", "=", "+=", "-=", "*=", "/=")
 _SPACE = re.compile(r"(?:[ \t\r\n]|\\\r?\n)*")  # versions before 4.9 took a backslash at the end of a line
@@ -59,7 +61,7 @@ class Tokens:
 
     def _unknown(self) -> ScriptError:
         rest = self.source[self.position]
-        if rest == "'":
+        if rest in QUOTES:
             return ScriptError("this quote is not closed", self.position)
         number = _LIKE_A_NUMBER.match(self.source, self.position)
         if number is not None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.diagnostics.files import MOST_DEEP, TOO_DEEP, included_path, read_included, real_path
@@ -20,6 +20,9 @@ from btlang.tree.visit import in_order_of_use
 _NO_NODES = CATALOGUE.keys() | TO_4.keys() | {"root", "BehaviorTree", MODEL, *MODEL_KINDS}
 """Tags that are no ids of nodes that somebody made."""
 _ROS_FOLDERS = "AMENT_PREFIX_PATH"  # where ROS 2 has its packages
+
+
+_NOT_INCLUDED = "BT128"
 
 
 class XmlFiles:
@@ -200,16 +203,19 @@ class XmlFiles:
         return found[0] if len(found) == 1 else ""
 
     def _not_included(self, span: Span, *, path: str, reason: str) -> None:
-        self.problems.append(diagnostic("BT128", span, path=path, reason=reason))
+        self.problems.append(diagnostic(_NOT_INCLUDED, span, path=path, reason=reason))
 
 
-def read_files(sources: Iterable[Source]) -> XmlFiles:
-    """These files with their trees and none that they include; one may have only models. Raises MissionError (BT120 to
-    BT129), where a file has an ID twice, too: those of several files may be of several robots.
+def read_files(sources: Sequence[Source], *, follows_includes: bool = False) -> XmlFiles:
+    """These files with their trees, and with those that they include and that can be read if that is asked for.
+
+    A file may have only models. Raises MissionError (BT120 to BT129), where a file has an ID twice, too: those of
+    several files may be of several robots.
     """
-    read = XmlFiles(follows_includes=False)
+    read = XmlFiles(sources, follows_includes=follows_includes)
     for source in sources:
         read.add(source)
+    read.problems = [problem for problem in read.problems if problem.code != _NOT_INCLUDED]
     read.problems += [problem for file in read.files for problem in repeated(file.heads)]
     if not read.problems:
         read.read_trees(read.models)

@@ -75,6 +75,7 @@ def marked(lines: Iterable[str]) -> Iterator[str]:
         if not at:
             yield f"{KEPT} {_NOTICE}"
         mark = KEPT
+        line = line.replace("\r", "&#13;").replace("\n", "&#10;")  # of a description; as XML reads them back
         while line:
             yield f"{mark} {line[:_WIDTH]}"
             line, mark = line[_WIDTH:], _GOES_ON

@@ -73,6 +73,9 @@ class _Reader:
             return MAIN_TREE if MAIN_TREE in trees else next(iter(trees))
         used = read.used
         tops = [name for name in trees if name not in used] or list(trees)
+        own = [name for name in tops if heads[name] in file.heads]
+        if len(own) == 1:  # the other files are libraries
+            return own[0]
         if len(tops) > 1:
             listed = ", ".join(f"'{name}'" for name in tops)
             places = tuple((heads[name].span, "this may be it") for name in tops[:5])

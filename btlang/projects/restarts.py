@@ -1,0 +1,49 @@
+"""Actions that start again at each tick (BT243), and scripts as they were before BehaviorTree.CPP 4.10 (BT242)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.engine.script.tokens import ScriptError, Tokens
+from btlang.projects.ports import attribute_value
+from btlang.tree.catalogue import CATALOGUE, ON_SUCCESS, SCRIPT, port_content
+from btlang.tree.node import Node
+
+
+def restarted_actions(nodes: Iterable[Node], sort_of: Callable[[Node], str]) -> Iterator[Diagnostic]:
+    """Report BT243 for actions that succeed and start again, because a later child of a ReactiveSequence may run on.
+
+    `sort_of` says of a leaf whether it is an "Action" that takes time, a "Condition", or "" for what isn't known.
+    """
+    for node in nodes:
+        kind = CATALOGUE.get(node.id)
+        if kind is None or not kind.reactive or kind.goes_on != ON_SUCCESS:
+            continue
+        for at, child in enumerate(node.children[:-1]):
+            later = node.children[at + 1 :]
+            if not child.children and sort_of(child) == "Action" and child.span is not None:
+                if any(each.children or sort_of(each) != "Condition" for each in later):
+                    yield diagnostic("BT243", child.span, id=child.id, parent=node.id)
+
+
+def double_quotes(nodes: Iterable[Node]) -> Iterator[Diagnostic]:
+    """Report BT242 for scripts with a text in double quotes."""
+    for node in nodes:
+        for port, code in node.ports:
+            text = _double_quoted(code) if '"' in code and port_content(node.id, port) == SCRIPT else ""
+            if text:
+                yield diagnostic("BT242", attribute_value(node, port), text=text[1:-1])
+
+
+def _double_quoted(code: str) -> str:
+    """Return the first text in double quotes; "" if there isn't any, or the code is no script."""
+    try:
+        tokens = Tokens(code)
+        while tokens.kind != "end":
+            if tokens.kind == "text" and tokens.text[0] == '"':
+                return tokens.text
+            tokens.advance()
+    except ScriptError:
+        pass
+    return ""
