@@ -13,6 +13,7 @@ from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.files import read_source
 from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.support.test_files import is_test_file
+from btlang.text.formatting import one_line
 from btlang.text.output import listing_width, pass_on, show
 from btlang.text.source import Source
 
@@ -207,7 +208,19 @@ def make_project(options: argparse.Namespace) -> int:
     """Make the folder of a new project; return the exit code. Raises MissionError (BT009)."""
     from btlang.templates import project
 
-    show("\n".join(project.make_project(options.kind, options.name)))
+    worlds = [path for path in (options.map, options.waypoints) if path is not None]
+    if options.urdf is None and not worlds:
+        show("\n".join(project.make_project(options.kind, options.name)))
+    elif options.kind != "robot":
+        options.refuse("--from, --map and --waypoints are for a robot")
+    else:
+        from btlang.templates.own_robot import own_robot
+
+        template = project.template_text(options.kind, options.name, "robot.toml")
+        own = own_robot(options.name, options.urdf, worlds, template, options.start, options.origin)
+        show("\n".join(map(one_line, own.found)))
+        show("\n".join(project.make_project(options.kind, options.name, own.files, own.checks)))
+        show("\n".join(one_line(f"Check: {check}") for check in own.checks), sys.stderr)
     show(f"\nGo on in the folder {options.name}: its README.md says how to try it.")
     return _SUCCESS
 

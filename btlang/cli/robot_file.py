@@ -51,7 +51,7 @@ def _import(source: Source) -> str:
         raise as_mission_error(problem) from None
     for note in found.notes:
         show(one_line(f"Check: {note}"), sys.stderr)
-    return found.toml
+    return found.toml()
 
 
 def draw_robot(body: Body) -> Iterator[str]:

@@ -628,8 +628,22 @@ _TABLE = (
                 "kind", choices=("component", "device", "robot"), metavar="KIND", help="component, device or robot"
             ),
             Option("name", type=project_name, metavar="NAME", help="name of the project and of its folder"),
+            Option("--from", dest="urdf", metavar="URDF", help="for a robot: the file that describes it"),
+            Option("--map", metavar="YAML", help="for a robot: the map of ROS where it works"),
+            Option("--waypoints", metavar="FILE", help="for a robot: way points in JSON or YAML, which become places"),
+            Option(
+                "--start", type=pose, metavar="X,Y[,FACING]",
+                help="where the robot starts (default: the first way point, or where a map has room)",
+            ),
+            Option(
+                "--origin", type=latitude_longitude, metavar="LAT,LON",
+                help="latitude and longitude of the origin, for way points in degrees",
+            ),
         ),
-        examples=(("btc new robot rover", "the folder rover, whose README.md says how to go on"),),
+        examples=(
+            ("btc new robot rover", "the folder rover, whose README.md says how to go on"),
+            ("btc new robot rover --from rover.urdf --map lab.yaml --waypoints stops.yaml", "with what you have"),
+        ),
     ),
     Verb(
         "compile", SHARE, "write the tree of a mission as XML, English, JSON, a picture ...",

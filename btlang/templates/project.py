@@ -6,7 +6,7 @@ import os
 import re
 import sys
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from importlib.util import find_spec
 
 from btlang.api import parse_tree
@@ -21,12 +21,21 @@ _TEMPLATES = os.path.dirname(os.path.abspath(__file__))
 _NAMES = re.compile("my_gadget|Gadget|gadget")
 
 
-def make_project(kind: str, name: str) -> list[str]:
+def template_text(kind: str, name: str, file: str) -> str:
+    """Return the text of a file of a new project."""
+    return _files(kind, name)[os.path.join(name, file)]
+
+
+def make_project(kind: str, name: str, own: Mapping[str, str] = {}, notes: Sequence[str] = ()) -> list[str]:
     """Make the folder `name`, which is one of a Python module, in the current folder; return the paths of its files.
 
+    `own` has texts in place of those of the template; its README lists the `notes`, for the user to check.
     Raises MissionError (BT009) where there is one that isn't empty, or it can't be made, or the name has a meaning.
     """
-    files = _files(kind, name)
+    files = {**_files(kind, name), **{os.path.join(name, file): text for file, text in own.items()}}
+    if notes:
+        lines = "".join(f"- [ ] {' '.join(note.split())}\n" for note in notes)
+        files[os.path.join(name, "README.md")] += f"\n## To check\n\nThis was guessed or left out:\n\n{lines}"
     refused = _meaning(kind, name, files)
     if refused:
         raise MissionError([unwritable(name, refused)])

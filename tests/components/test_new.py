@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import signal
@@ -45,6 +46,50 @@ def test_its_own_tests_pass(kind: str, folder: Path) -> None:
     done = python("-m", "pytest", "-q", "-p", "no:xdist", "-W", "error", cwd=folder / NAME)
     assert done.returncode == 0, done.stdout
     assert " passed" in done.stdout
+
+
+WHEEL = (
+    '<link name="{0}_wheel"/><joint name="{0}" type="continuous"><parent link="base_link"/><child link="{0}_wheel"/>'
+    '<origin xyz="0 {1} 0"/></joint>'
+)
+BOX = '<collision><geometry><box size="0.3 0.2 0.1"/></geometry></collision>'
+URDF = f"""<robot name="cart"><link name="base_link">{BOX}</link>
+{WHEEL.format("left", 0.12)}{WHEEL.format("right", -0.12)}</robot>"""
+STOPS = {"home": [0.5, 0.5], "tool_shelf": {"x": 2.5, "y": 0.5, "yaw": 1.57}, "vault": [3.5, 0.5], "moon": [40, 40]}
+
+
+def test_a_robot_of_files_that_a_team_has(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    rows = [bytes([0] * 45), *[bytes([0] + [254] * 34 + [0] + [254] * 8 + [0])] * 20, bytes([0] * 45)]
+    Path("map.pgm").write_bytes(b"P5 45 22 255\n" + b"".join(rows))
+    Path("map.json").write_text('{"image": "map.pgm", "resolution": 0.1, "origin": [-0.5, -0.5, 0]}')
+    Path("stops.json").write_text(json.dumps(STOPS))
+    Path("cart.urdf").write_text(URDF)
+    files = ["--from", "cart.urdf", "--map", "map.json", "--waypoints", "stops.json"]
+    assert main(["new", "robot", "cart", *files]) == 0
+    told = capsys.readouterr()
+    assert "stops.json: 4 way points\n  home: (0.5, 0.5)\n  tool shelf: (2.5, 0.5), facing 89.95 degrees" in told.out
+    checks = [line.removeprefix("Check: ") for line in told.err.splitlines()]
+    assert checks == [
+        "the wheels are 0.24 m apart, by the places of their joints",
+        "the speeds and accelerations of the base are guesses",
+        'on the map there is no way from the start to the place "vault"',
+        'the place "moon" is outside the outer walls',
+        'the robot finds no way to the place "vault"',
+        'the robot finds no way to the place "moon"',
+    ]
+    assert all(f"- [ ] {check}" in Path("cart/README.md").read_text() for check in checks)
+    assert "go to the home, then go to the tool shelf\n" in Path("cart/patrol.txt").read_text()
+    assert main(["run", "cart/patrol.txt", "--robot", "cart/robot.toml", "--speed", "max", "--quiet"]) == 0
+    assert main(["test", "cart"]) == 0
+
+
+@pytest.mark.parametrize("kind", ["component", "device"])
+def test_only_robots_are_made_of_files(kind: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["new", kind, "gripper", "--from", "cart.urdf"])
+    assert "--from, --map and --waypoints are for a robot" in capsys.readouterr().err
+    assert main(["new", "robot", "gripper", "--from", "gone.urdf"]) == 2
+    assert not Path("gripper").exists()
 
 
 def test_a_robot_with_words_as_its_readme_says(folder: Path) -> None:

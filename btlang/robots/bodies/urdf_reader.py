@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from math import atan2, ceil, cos, degrees, pi, sin, sqrt
 
 import numpy as np
@@ -47,11 +47,10 @@ class Skeleton(Record):
     scanners: tuple[Sensor, ...] = ()
     notes: tuple[str, ...] = ()
 
-    @property
-    def toml(self) -> str:
-        """A robot file, to be completed by hand."""
+    def toml(self, more: Iterable[str] = ()) -> str:
+        """Return a robot file, to be completed by hand, with `more` lines about the whole robot."""
         lines = [f"# Check: {' '.join(note.split())}" for note in self.notes]
-        lines += [f"name = {_quote(self.name)}", f"radius = {self.radius:.4g}", ""]
+        lines += [f"name = {_quote(self.name)}", f"radius = {self.radius:.4g}", *more, ""]
         if self.gap is not None:
             lines += [*describe_base(self.drive or Drive(), self.gap), ""]
             lines += ["[navigation]", f"objects = {self.radius + 0.3:.4g}", f"people = {self.radius + 0.6:.4g}", ""]

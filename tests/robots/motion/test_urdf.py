@@ -40,7 +40,7 @@ def test_what_is_written_is_read_as_it_was(tmp_path: Path) -> None:
     found = read_urdf(Source(urdf(guide()), "guide.urdf"))
     assert found.capsules == guide().capsules
     again = tmp_path / "again.toml"
-    again.write_text(found.toml)
+    again.write_text(found.toml())
     joints = {joint.name: joint for joint in load_body(str(again)).joints}
     assert joints.keys() == {joint.name for joint in guide().joints}
     for joint in guide().joints:
@@ -139,7 +139,7 @@ def test_wheels_are_a_base_and_no_joints(tmp_path: Path) -> None:
         'the link "lidar_link" is taken for a laser scanner that sees 8 m',
         "names are without expressions such as ${namespace}, which a launch file fills in",
     )
-    (tmp_path / "rover.toml").write_text(found.toml)
+    (tmp_path / "rover.toml").write_text(found.toml())
     body = load_body(str(tmp_path / "rover.toml"))
     assert body.base is not None
     assert (body.base.wheel_gap, body.driving.top_speed) == (0.3, 0.5)
