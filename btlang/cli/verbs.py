@@ -565,6 +565,7 @@ _TABLE = (
                 "--origin", type=latitude_longitude, metavar="LAT,LON",
                 help="latitude and longitude of the origin, for way points in degrees",
             ),
+            Option("--level", metavar="NAME", help="the level to import of a building of Open-RMF"),
             Option(
                 "--resolution", type=between(0.005, 10.0), metavar="M",
                 help="size of a cell of an exported map, in metres (default: 0.05)",

@@ -32,11 +32,12 @@ _ACTS, _TARGETS = ("check", "import", "export"), ("nav2", "json", "yaml")
 _RESOLUTION = 0.05  # metres that a cell of an exported map is wide
 _ROWS = 10  # that the map leaves for the names
 _GIVEN = {
-    "picture": "--picture", "out": "-o", "to": "--to", "start": "--start", "origin": "--origin",
+    "picture": "--picture", "out": "-o", "to": "--to", "start": "--start", "origin": "--origin", "level": "--level",
     "resolution": "--resolution",
 }  # fmt: skip
 _TAKES = {
-    "": {"picture"}, "check": set[str](), "import": {"out", "start", "origin"}, "export": {"out", "to", "resolution"},
+    "": {"picture"}, "check": set[str](), "import": {"out", "start", "origin", "level"},
+    "export": {"out", "to", "resolution"},
 }  # fmt: skip
 
 
@@ -103,7 +104,7 @@ def _check(options: argparse.Namespace, files: list[str], body: Body) -> int:
 def _import(options: argparse.Namespace, files: list[str], body: Body) -> int:
     from btlang.maps.importing import import_world
 
-    imported = import_world(files, body.radius, options.start, options.origin)
+    imported = import_world(files, body.radius, options.start, options.origin, options.level)
     if not options.report.is_for_programs:
         show("\n".join(map(one_line, imported.found)))
     text = to_toml(imported.world).encode(errors="replace").decode()

@@ -8,22 +8,30 @@ from math import cos, pi, sin
 
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.diagnostics.files import read_source
+from btlang.maps.building import Building, is_building, read_building
 from btlang.maps.data_text import ForeignFileError, is_world, read_data, read_world_data
 from btlang.maps.occupancy import OccupancyMap, is_map, read_map, walls_of
 from btlang.maps.reach import reached
 from btlang.maps.way_points import WayPoints, way_points
 from btlang.robots.files import as_mission_error
 from btlang.robots.geometry import Point, Pose, Segment
-from btlang.robots.worlds.world import Place, World
+from btlang.robots.worlds.world import Door, Place, World
 from btlang.robots.worlds.world_bounds import closed_walls, is_outside
 from btlang.robots.worlds.world_file import WorldError, has_room
 from btlang.support.record import Record
 from btlang.text.source import NOWHERE
 from btlang.text.toml_table import Problem
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
 _FARTHEST, _STEP = 0.5, 0.05  # metres that a place without room is moved at most
 _MOST_SHOWN = 10  # way points of a file
 _MOST_CHECKS = 5_000_000  # of a place with a piece of wall: as many as a world file may take
+
+
+_Part: TypeAlias = "World | WayPoints | OccupancyMap | Building"
 
 
 class ImportedWorld(Record):
@@ -39,35 +47,44 @@ class ImportedWorld(Record):
 
 
 def import_world(
-    paths: Sequence[str], radius: float, start: Pose | None = None, origin: Point | None = None
+    paths: Sequence[str],
+    radius: float,
+    start: Pose | None = None,
+    origin: Point | None = None,
+    level: str | None = None,
 ) -> ImportedWorld:
     """Return the world of all files together.
 
     It starts at `start`, by default at the first way point, and leaves room for a robot of that radius. Way points in
-    degrees need the latitude and longitude of the origin. Raises MissionError with what is wrong in all files.
+    degrees need the latitude and longitude of the `origin`, and buildings with several levels the name of one. Raises
+    MissionError with what is wrong in all files.
     """
-    parts, problems = list[World | WayPoints | OccupancyMap](), []
+    parts, problems = list[_Part](), []
     for path in paths:
         try:
-            parts.append(_read(path, origin))
+            parts.append(_read(path, origin, level))
         except MissionError as error:
             problems += error.diagnostics
     if problems:
         raise MissionError(problems)
     read = list(zip(paths, parts, strict=True))
     found = [line for path, part in read for line in _show(path, part)]
-    notes = [f"{path}: {note}" for path, part in read if isinstance(part, WayPoints) for note in part.notes]
+    notes = [f"{path}: {note}" for path, part in read if isinstance(part, WayPoints | Building) for note in part.notes]
     world, warnings = _together(parts, radius, start)
     return ImportedWorld(world, tuple(found), (*notes, *warnings))
 
 
-def _show(path: str, part: World | WayPoints | OccupancyMap) -> Iterator[str]:
+def _show(path: str, part: _Part) -> Iterator[str]:
     """Yield lines that show what a file was understood as."""
     if isinstance(part, OccupancyMap):
         rows, columns = part.free.shape
         yield f"{path}: a map of {columns * part.resolution:g} m x {rows * part.resolution:g} m"
-    elif isinstance(part, WayPoints):
-        yield f"{path}: {len(part.places):,} way point{'s' * (len(part.places) != 1)}"
+    elif not isinstance(part, World):
+        count, ending = len(part.places), "s" if len(part.places) != 1 else ""
+        if isinstance(part, Building):
+            yield f"{path}: the level {part.level} of a building, with {count:,} place{ending}"
+        else:
+            yield f"{path}: {count:,} way point{ending}"
         for place in part.places[:_MOST_SHOWN]:
             facing = "" if place.facing is None else f", facing {place.facing:.4g} degrees"
             yield f"  {place.name}: ({place.x:g}, {place.y:g}){facing}"
@@ -75,8 +92,8 @@ def _show(path: str, part: World | WayPoints | OccupancyMap) -> Iterator[str]:
             yield f"  ... and {len(part.places) - _MOST_SHOWN:,} more"
 
 
-def _read(path: str, origin: Point | None) -> World | WayPoints | OccupancyMap:
-    """Read a file: a world, way points, or a map."""
+def _read(path: str, origin: Point | None, level: str | None) -> _Part:
+    """Read a file: a world, a building, way points, or a map."""
     source = read_source(path)
     try:
         data = read_data(source)
@@ -84,6 +101,8 @@ def _read(path: str, origin: Point | None) -> World | WayPoints | OccupancyMap:
             return read_map(data, os.path.dirname(path) or os.curdir)
         if is_world(data):
             return read_world_data(data, path)
+        if is_building(data):
+            return read_building(data, level)
         return way_points(data, origin)
     except (ForeignFileError, WorldError) as error:
         raise as_mission_error(error) from None
@@ -93,12 +112,13 @@ def _read(path: str, origin: Point | None) -> World | WayPoints | OccupancyMap:
         raise as_mission_error(ForeignFileError(problem.message, path, None, source)) from None
 
 
-def _together(
-    parts: Iterable[World | WayPoints | OccupancyMap], radius: float, start: Pose | None
-) -> tuple[World, list[str]]:
+def _together(parts: Iterable[_Part], radius: float, start: Pose | None) -> tuple[World, list[str]]:
     whole: World | None = None
     maps: list[OccupancyMap] = []
     places: list[Place] = []
+    doors: list[Door] = []
+    chargers: set[str] = set()
+    walls: list[tuple[Point, ...]] = []
     for part in parts:
         if isinstance(part, World) and whole is not None:
             raise _unusable("only one of the files may be a whole world")
@@ -106,6 +126,12 @@ def _together(
             whole = part
         elif isinstance(part, WayPoints):
             places += part.places
+        elif isinstance(part, Building):
+            walls += part.walls
+            doors += part.doors
+            places += part.places
+            chargers |= part.chargers
+            start = start or part.start
         else:
             maps.append(part)
     notes: list[str] = []
@@ -117,13 +143,16 @@ def _together(
             notes.append(f"the files have no start, so the robot starts at ({start.x:g}, {start.y:g})")
     base = whole or World(start or Pose(0.0, 0.0))
     start = start or base.start
-    walls: list[tuple[Point, ...]] = []
     for each in maps:
         around, apart = _walls(each, (start.x, start.y), places, radius)
         walls += around
         notes += apart
-    world, changes = _with_room(base.replace(start=start, walls=(*base.walls, *walls)), places, radius)
-    return world, notes + changes
+    base = base.replace(start=start, walls=(*base.walls, *walls), doors=(*base.doors, *doors))
+    world, changes = _with_room(base, places, radius)
+    at_chargers = [place for place in world.places if place.name in chargers and place != world.dock]
+    others = tuple(place for place in world.places if place not in at_chargers)
+    docks = tuple(place.replace(facing=place.facing or 0.0) for place in at_chargers)
+    return world.replace(places=(*others, *docks), docks=(*world.docks, *docks)), notes + changes
 
 
 def _guess_start(occupancy: OccupancyMap, radius: float) -> Pose:
@@ -181,7 +210,7 @@ def _with_room(world: World, more: Sequence[Place], radius: float) -> tuple[Worl
             name = _free(place.name, known)
             if name != place.name:
                 notes.append(f'the name "{place.name}" is given twice; the second is called "{name}"')
-            added.append(Place(name, *spot, place.facing))
+            added.append(place.replace(name=name, x=spot[0], y=spot[1]))
     walls = closed_walls(world)
     beyond = (place for place in added if is_outside(walls, (place.x, place.y)))
     notes += [f'the place "{place.name}" is outside the outer walls' for place in beyond]

@@ -148,7 +148,7 @@ def _are_numbers(value: Any) -> bool:
     )
 
 
-def _clean(text: object) -> str:
+def place_name(text: object) -> str:
     """Return the name of a place that people can say: with blanks for underscores, and "point 7" for a number."""
     name = " ".join(str(text).replace("_", " ").split())[:200]
     return f"point {name}" if name.isdigit() else name
@@ -188,7 +188,7 @@ class _Reader:
                     is_named = key not in lists and str(key) not in _UNNAMED
                     is_named = is_named and not (isinstance(value, dict) and "ros__parameters" in value)
                     own = self._name(value) if str(key).lower() in _GENERIC else ""
-                    own = own or (_clean(key) if is_named else name)
+                    own = own or (place_name(key) if is_named else name)
                     for point in self.points(value, own, f"{where}.{key}" if where else str(key)):
                         found = True
                         yield point
@@ -234,7 +234,7 @@ class _Reader:
         for table in (fields, _fields(fields.get("properties"))):
             text = next((table[key] for key in _NAMES if isinstance(table.get(key), str | int)), "")
             if text != "":
-                return _clean(text)
+                return place_name(text)
         return ""
 
     def pose(self, value: Any, where: str) -> _Pose:

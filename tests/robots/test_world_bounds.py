@@ -7,7 +7,7 @@ from hypothesis import given
 
 from btlang.robots.geometry import Pose
 from btlang.robots.worlds.world import Door, World
-from btlang.robots.worlds.world_bounds import closed_walls
+from btlang.robots.worlds.world_bounds import closed_walls, is_outside
 from btlang.robots.worlds.world_file import WorldError, load_world
 from btlang.robots.worlds.world_writing import to_toml
 from btlang.text.source import Source
@@ -80,6 +80,21 @@ def test_walls_and_doors_are_joined() -> None:
     assert closed_walls(world) == []
     [wall] = closed_walls(world.replace(doors=(Door("front door", (0.0, 0.0), (0.0, 1.0)),)))
     assert set(wall) == {(0.0, 0.0), (4.0, 0.0), (4.0, 3.0), (0.0, 3.0), (0.0, 1.0)}
+
+
+def test_walls_that_meet_three_by_three_are_closed() -> None:
+    corners = [(0.0, 0.0), (4.0, 0.0), (8.0, 0.0), (8.0, 3.0), (4.0, 3.0), (0.0, 3.0)]
+    walls = tuple((corners[at - 1], corners[at]) for at in range(6))
+    more = (((4.0, 0.0), (4.0, 3.0)), ((4.0, 3.0), (5.0, 2.0)), ((8.5, 3.5), (8.5, 3.0)))
+    [outline] = closed_walls(World(Pose(1.0, 1.0), walls=(*walls, *more)))
+    assert [is_outside([outline], point) for point in ((2, 1), (6, 1), (9, 1), (4, 4))] == [False, False, True, True]
+
+
+def test_a_closed_room_is_no_outer_wall_of_an_open_building() -> None:
+    room = ((1.0, 1.0), (2.0, 1.0), (2.0, 2.0), (1.0, 2.0), (1.0, 1.0))
+    hall = ((0.0, 0.0), (9.0, 0.0), (9.0, 6.0), (0.0, 6.0), (0.0, 5.0))
+    assert closed_walls(World(Pose(1.0, 1.0), walls=(room, hall))) == []
+    assert len(closed_walls(World(Pose(1.0, 1.0), walls=(room, (*hall, (0.0, 0.0)))))) == 2
 
 
 def test_all_is_told_at_once_and_at_its_line() -> None:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
+from math import atan2, tau
 
-from btlang.robots.geometry import Point, contains, edges, segment_distance
+from btlang.robots.geometry import Point, Segment, contains, edges, segment_distance
 from btlang.robots.worlds.world import Person, World, Zone
 from btlang.text.toml_table import Problem
 
@@ -28,12 +29,46 @@ Polyline = tuple[Point, ...]
 
 
 def closed_walls(world: World) -> list[Polyline]:
-    """Return the walls that are closed around an area, the first point of each once.
+    """Return the outline of each group of walls and doors that meet at their corners, if it is closed around an area.
 
-    Walls and doors that meet end to end are one wall.
+    Each corner of the way around is there as often as the way passes it. There are none if all outlines together are
+    around less than half of the rectangle that holds the walls: closed rooms in a building that is open.
     """
-    walls = _join_walls([*world.walls, *((door.start, door.end) for door in world.doors)])
-    return [wall[:-1] for wall in walls if _area(wall)]
+    beside: dict[Point, set[Point]] = {}
+    for wall in (*world.walls, *((door.start, door.end) for door in world.doors)):
+        for one, other in pairwise(wall):
+            if one != other:
+                beside.setdefault(one, set()).add(other)
+                beside.setdefault(other, set()).add(one)
+    seen = set[Point]()
+    outlines = []
+    for corner in sorted(beside):
+        if corner not in seen:  # the corner of a new group that is farthest west
+            outlines.append(_outline(corner, beside))
+            left = [corner]
+            while left:
+                at = left.pop()
+                if at not in seen:
+                    seen.add(at)
+                    left += beside[at]
+    closed = [outline for outline in outlines if _area(outline)]
+    xs, ys = ([corner[axis] for corner in beside] for axis in (0, 1))
+    whole = (max(xs) - min(xs)) * (max(ys) - min(ys)) if beside else 0.0
+    return closed if sum(map(_area, closed)) >= whole / 2 else []
+
+
+def _outline(first: Point, beside: Mapping[Point, set[Point]]) -> Polyline:
+    """Return the way around a group of walls from its westernmost corner, always along the next one to the left."""
+    found, passed, at, back = list[Point](), set[Segment](), first, (first[0] - 1.0, first[1])
+    while True:
+        behind = atan2(back[1] - at[1], back[0] - at[0])
+        turns = {to: (atan2(to[1] - at[1], to[0] - at[0]) - behind) % tau or tau for to in sorted(beside[at])}
+        to = min(turns, key=turns.__getitem__)
+        if (*at, *to) in passed:  # once around; walls that lie on each other may cut the way short
+            return tuple(found)
+        passed.add((*at, *to))
+        found.append(at)
+        back, at = at, to
 
 
 def is_outside(walls: Sequence[Polyline], point: Point) -> bool:
@@ -41,37 +76,9 @@ def is_outside(walls: Sequence[Polyline], point: Point) -> bool:
     return bool(walls) and not any(contains(wall, point) for wall in walls)
 
 
-def _area(wall: Polyline) -> float:
-    """Return the square metres inside a closed wall, 0 for any other."""
-    if wall[0] != wall[-1]:
-        return 0.0
-    return abs(sum(ax * by - bx * ay for (ax, ay), (bx, by) in pairwise(wall))) / 2
-
-
-def _join_walls(walls: list[Polyline]) -> list[Polyline]:
-    """Return the walls; two are joined if their ends meet and no other one ends there."""
-    ends: dict[Point, list[Polyline]] = {}
-    done = [wall for wall in walls if wall[0] == wall[-1]]
-    for wall in walls:
-        if wall[0] != wall[-1]:
-            for end in (wall[0], wall[-1]):
-                ends.setdefault(end, []).append(wall)
-    for point, meeting in list(ends.items()):
-        if len(meeting) != 2:
-            continue
-        one, other = meeting
-        if one is other:  # its two ends have met
-            continue
-        before = one if one[-1] == point else one[::-1]
-        after = other if other[0] == point else other[::-1]
-        whole = before + after[1:]
-        for old, end in ((one, before[0]), (other, after[-1])):
-            ends[end][next(at for at, wall in enumerate(ends[end]) if wall is old)] = whole
-        ends[point] = []
-        if whole[0] == whole[-1]:
-            done.append(whole)
-            ends[whole[0]] = []
-    return done
+def _area(outline: Polyline) -> float:
+    """Return the square metres inside an outline."""
+    return abs(sum(ax * by - bx * ay for (ax, ay), (bx, by) in edges(outline))) / 2
 
 
 def entries(rows: Rows, sections: Iterable[str]) -> Iterator[tuple[Path, tuple[Any, ...]]]:
