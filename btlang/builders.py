@@ -119,9 +119,11 @@ def reactive_fallback(*children: Child, name: str = "", **scripts: Unpack[Script
     return built("ReactiveFallback", children, {}, name, scripts)
 
 
-def round_robin(*children: Child, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
+def round_robin(
+    *children: Child, wrap_around: bool | str | None = None, name: str = "", **scripts: Unpack[Scripts]
+) -> Behavior:
     """Make the node RoundRobin of Nav2."""
-    return built("RoundRobin", children, {}, name, scripts)
+    return built("RoundRobin", children, {"wrap_around": wrap_around}, name, scripts)
 
 
 def parallel(

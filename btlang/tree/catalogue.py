@@ -162,7 +162,10 @@ CATALOGUE: dict[str, NodeKind] = {
         _control("Fallback", waits=True, tags_3=("Fallback", "FallbackStar"), **_IN_TURN),
         _control("AsyncFallback", waits=True, **_IN_TURN),
         _control("ReactiveFallback", reactive=True, interrupts=True, tags_3=("ReactiveFallback",), **_IN_TURN),
-        _control("RoundRobin", origin=NAV2, waits=True, rotates=True, goes_on=ON_FAILURE, skipped="all"),
+        _control(
+            "RoundRobin", ports={"wrap_around": Port("bool", "true")}, origin=NAV2, waits=True, rotates=True,
+            goes_on=ON_FAILURE, skipped="all",
+        ),
         _control(
             "Parallel",
             ports={

@@ -83,7 +83,7 @@ def _more_parents(children: st.SearchStrategy[Node]) -> list[st.SearchStrategy[N
         several("Whenever", 3, 3),
         several("PipelineSequence", 1, 4),
         several("PipelineSequence", 1, 4),
-        several("RoundRobin", 1, 4),
+        st.sampled_from(("true", "false")).flatmap(lambda wraps: several("RoundRobin", 1, 4, wrap_around=wraps)),
         st.integers(0, 2).flatmap(lambda retries: several("RecoveryNode", 2, 2, number_of_retries=retries)),
         around("RateController", hz=st.sampled_from((0.4, 0.5, 2))),
         around("RunOnce", then_skip=st.sampled_from(("true", "false"))),

@@ -305,6 +305,8 @@ class MoreNodes(ReferenceNode):
                 return SUCCESS
             self.failures += result == FAILURE
             skipped += result == SKIPPED
+            if self.at == 0 and self.node.port("wrap_around") == "false":
+                break
         self.at = self.failures = 0
         return SKIPPED if skipped == size else FAILURE
 

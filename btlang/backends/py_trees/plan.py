@@ -239,6 +239,8 @@ Its Inverter does not: it makes a SUCCESS of a condition that could not know.
 
 def _ours(node: Node) -> tuple[str, tuple[tuple[str, Any], ...]]:
     """Return our class for a node, and its arguments."""
+    if node.id == "RoundRobin" and not _truth(node, "wrap_around"):
+        raise _Inexpressible("py_trees has no such node without wrap_around and btlang has no replacement")
     if node.id in OURS:
         return OURS[node.id], ()
     if node.id == "Whenever":

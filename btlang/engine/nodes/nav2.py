@@ -1,7 +1,8 @@
 """Nodes of Nav2 (nav2_behavior_tree/plugins/control and decorator) in the form they have for BehaviorTree.CPP 4.
 
-One difference: a RecoveryNode whose recovery was SKIPPED fails and forgets its count, as after any other failure. There
-the count stays, and the next run has fewer retries. What resets the count by distance or time is not here.
+Two differences: a RecoveryNode whose recovery was SKIPPED fails and forgets its count, as after any other failure. There
+the count stays, and the next run has fewer retries. A RoundRobin with wrap_around="false" succeeds with its last child;
+there it fails, though that child succeeded. What resets the count by distance or time is not here.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from btlang.engine.instance import NodeInstance, split_children
-from btlang.engine.nodes.ports import rate_port
+from btlang.engine.nodes.ports import TRUTHS, choice_port, rate_port
 from btlang.engine.nodes.timed import Stopwatch
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
 
@@ -99,17 +100,18 @@ def recovery_node(instance: NodeInstance, children: Sequence[Compiled]) -> Compi
 def round_robin(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
     """Run one child after the other until one succeeds; the next run begins after that one (round_robin_node.cpp).
 
-    FAILURE when all have failed or were SKIPPED, SKIPPED when all were SKIPPED; then, and when it is halted while it
-    runs, the next run begins with the first child.
+    FAILURE when all have failed or were SKIPPED, SKIPPED when all were SKIPPED; with wrap_around="false" when that is so
+    of the last child. Then, and when it is halted while it runs, the next run begins with the first child.
     """
     ticks, halts = split_children(children)
+    wraps = choice_port(instance, "wrap_around", TRUTHS)
     count = len(ticks)
     position = failed = 0
     running = False
 
     def tick() -> int:
         nonlocal position, failed, running
-        running = True
+        running, around = True, wraps()
         skipped = 0
         while failed + skipped < count:
             status = ticks[position]()
@@ -124,6 +126,8 @@ def round_robin(instance: NodeInstance, children: Sequence[Compiled]) -> Compile
                 return SUCCESS
             if status == FAILURE:
                 failed += 1
+            if position == 0 and not around:
+                break
         position = failed = 0
         running = False
         return SKIPPED if skipped == count else FAILURE
