@@ -43,6 +43,7 @@ __all__ = [
     "loop_double",
     "loop_int",
     "loop_string",
+    "nonblocking_sequence",
     "parallel",
     "parallel_all",
     "pipeline_sequence",
@@ -60,6 +61,7 @@ __all__ = [
     "sequence",
     "sequence_with_memory",
     "set_blackboard",
+    "single_trigger",
     "skip_unless_updated",
     "sleep",
     "sub_tree",
@@ -102,6 +104,11 @@ def reactive_sequence(*children: Child, name: str = "", **scripts: Unpack[Script
 def pipeline_sequence(*children: Child, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
     """Make the node PipelineSequence of Nav2."""
     return built("PipelineSequence", children, {}, name, scripts)
+
+
+def nonblocking_sequence(*children: Child, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
+    """Make the node NonblockingSequence of Nav2."""
+    return built("NonblockingSequence", children, {}, name, scripts)
 
 
 def fallback(*children: Child, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
@@ -398,6 +405,11 @@ def rate_controller(
 ) -> Behavior:
     """Make the node RateController of Nav2."""
     return built("RateController", (child,), {"hz": hz}, name, scripts)
+
+
+def single_trigger(child: Child, *, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
+    """Make the node SingleTrigger of Nav2."""
+    return built("SingleTrigger", (child,), {}, name, scripts)
 
 
 def run_once(

@@ -44,6 +44,8 @@ SEMANTICS: dict[str, Callable[[NodeInstance, Sequence[Compiled]], Compiled]] = {
     "TryCatch": branches.try_catch,
     "Whenever": rules.whenever,
     "PipelineSequence": nav2.pipeline_sequence,
+    "NonblockingSequence": nav2.nonblocking_sequence,
+    "SingleTrigger": nav2.single_trigger,
     "RecoveryNode": nav2.recovery_node,
     "RoundRobin": nav2.round_robin,
     "Inverter": decorators.inverter,

@@ -25,6 +25,8 @@ RUNS: dict[str, tuple[str, dict[str, str]]] = {
     "TryCatch": ("s R s", {}),
     "Whenever": ("R s R", {}),
     "PipelineSequence": ("s R", {}),
+    "NonblockingSequence": ("R s R", {}),
+    "SingleTrigger": ("R", {}),
     "RecoveryNode": ("f R", {}),
     "RoundRobin": ("f R", {}),
     "Inverter": ("R", {}),

@@ -82,6 +82,11 @@ def _more_parents(children: st.SearchStrategy[Node]) -> list[st.SearchStrategy[N
         several("Whenever", 3, 3),
         several("Whenever", 3, 3),
         several("PipelineSequence", 1, 4),
+        several("NonblockingSequence", 1, 4),
+        several("PipelineSequence", 1, 4).flatmap(
+            lambda many: st.just(n(many.id, n("SingleTrigger", many.children[0]), *many.children[1:]))
+        ),
+        around("SingleTrigger"),
         several("PipelineSequence", 1, 4),
         st.sampled_from(("true", "false")).flatmap(lambda wraps: several("RoundRobin", 1, 4, wrap_around=wraps)),
         st.integers(0, 2).flatmap(lambda retries: several("RecoveryNode", 2, 2, number_of_retries=retries)),

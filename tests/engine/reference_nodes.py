@@ -265,6 +265,30 @@ class MoreNodes(ReferenceNode):
         self.at = 0
         return SKIPPED if skipped == len(self.children) else SUCCESS
 
+    def NonblockingSequence(self) -> int:
+        self.status = RUNNING
+        results = []
+        for child in self.children:
+            results.append(child.execute())
+            if results[-1] == FAILURE:
+                break
+        if RUNNING in results and FAILURE not in results:
+            return RUNNING
+        self.reset_children()
+        if FAILURE in results:
+            return FAILURE
+        return SUCCESS if SUCCESS in results else SKIPPED
+
+    def SingleTrigger(self) -> int:
+        if self.status in (IDLE, SKIPPED):
+            self.triggered = False
+        self.status = RUNNING
+        if self.triggered:
+            return FAILURE
+        result = self.once_more()
+        self.triggered = result in (SUCCESS, FAILURE)
+        return result
+
     def RecoveryNode(self) -> int:
         self.status = RUNNING
         main, recovery = self.children

@@ -106,3 +106,11 @@ def test_a_switch_resets_what_it_had_skipped() -> None:
         engine.blackboard.set("x", x)
         letters += world.ticks(engine, 1)
     assert letters == "rksr"  # the count of the first round is forgotten
+
+
+def test_a_single_trigger_fails_once_its_child_has_ended_where_it_stays_completed() -> None:
+    for parent, statuses in (("PipelineSequence", "rf"), ("NonblockingSequence", "rf"), ("Sequence", "rr")):
+        world = World()
+        engine = world.engine(n(parent, n("SingleTrigger", world.fn("Beep", "s")), world.cls("Follow", "r")))
+        assert world.ticks(engine, 2) == statuses
+        assert world.log.count("Beep") == 1

@@ -1,8 +1,9 @@
 """Nodes of Nav2 (nav2_behavior_tree/plugins/control and decorator) in the form they have for BehaviorTree.CPP 4.
 
-Two differences: a RecoveryNode whose recovery was SKIPPED fails and forgets its count, as after any other failure. There
-the count stays, and the next run has fewer retries. A RoundRobin with wrap_around="false" succeeds with its last child;
-there it fails, though that child succeeded. What resets the count by distance or time is not here.
+Differences: a RecoveryNode whose recovery was SKIPPED fails and forgets its count, as after any other failure. There
+the count stays, and the next run has fewer retries; what resets it by distance or time is not here. A RoundRobin with
+wrap_around="false" succeeds with its last child; there it fails. A NonblockingSequence takes a child that was SKIPPED
+as one that succeeded; there it throws.
 """
 
 from __future__ import annotations
@@ -100,8 +101,8 @@ def recovery_node(instance: NodeInstance, children: Sequence[Compiled]) -> Compi
 def round_robin(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
     """Run one child after the other until one succeeds; the next run begins after that one (round_robin_node.cpp).
 
-    FAILURE when all have failed or were SKIPPED, SKIPPED when all were SKIPPED; with wrap_around="false" when that is so
-    of the last child. Then, and when it is halted while it runs, the next run begins with the first child.
+    FAILURE when all have failed or were SKIPPED, SKIPPED when all were SKIPPED; with wrap_around="false" once the last
+    one has. Then, and when it is halted while it runs, the next run begins with the first child.
     """
     ticks, halts = split_children(children)
     wraps = choice_port(instance, "wrap_around", TRUTHS)
@@ -138,6 +139,61 @@ def round_robin(instance: NodeInstance, children: Sequence[Compiled]) -> Compile
         if running and not keep:
             position = failed = 0
             running = False
+
+    return tick, halt
+
+
+def nonblocking_sequence(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
+    """Tick all children at each tick, again those that have completed (nonblocking_sequence.cpp).
+
+    A failure, or that none is RUNNING any more, ends it and halts the others.
+    """
+    ticks, halts = split_children(children)
+    count = len(ticks)
+
+    def tick() -> int:
+        skipped, running = 0, False
+        for child in ticks:
+            status = child()
+            if status == FAILURE:
+                halt(False)
+                return FAILURE
+            running = running or status == RUNNING
+            skipped += status == SKIPPED
+        if running:
+            return RUNNING
+        halt(False)
+        return SKIPPED if skipped == count else SUCCESS
+
+    def halt(keep: bool) -> None:
+        for stop in halts:
+            stop(keep)
+
+    return tick, halt
+
+
+def single_trigger(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
+    """Run its child once, then return FAILURE until it is halted (single_trigger_node.cpp).
+
+    Only a PipelineSequence and a NonblockingSequence keep nodes that have completed; elsewhere it starts anew.
+    """
+    [(child, halt_child)] = children
+    stays = instance.parent_keeps_completed
+    done = False
+
+    def tick() -> int:
+        nonlocal done
+        if done:
+            return FAILURE
+        status = child()
+        done = stays and status in (SUCCESS, FAILURE)
+        return status
+
+    def halt(keep: bool) -> None:
+        nonlocal done
+        halt_child(keep)
+        if not keep:
+            done = False
 
     return tick, halt
 
