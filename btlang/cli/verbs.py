@@ -643,7 +643,7 @@ _TABLE = (
         ),
         examples=(
             ("btc new robot rover", "the folder rover, whose README.md says how to go on"),
-            ("btc new robot rover --from rover.urdf --map lab.yaml --waypoints stops.yaml", "with what you have"),
+            ("btc new robot cart --from cart.urdf --waypoints points.json", "of what you have; --map takes a map"),
         ),
     ),
     Verb(
