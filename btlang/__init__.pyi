@@ -22,6 +22,7 @@ from btlang.builders import loop_bool as loop_bool
 from btlang.builders import loop_double as loop_double
 from btlang.builders import loop_int as loop_int
 from btlang.builders import loop_string as loop_string
+from btlang.builders import nonblocking_sequence as nonblocking_sequence
 from btlang.builders import parallel as parallel
 from btlang.builders import parallel_all as parallel_all
 from btlang.builders import pipeline_sequence as pipeline_sequence
@@ -39,6 +40,7 @@ from btlang.builders import script_condition as script_condition
 from btlang.builders import sequence as sequence
 from btlang.builders import sequence_with_memory as sequence_with_memory
 from btlang.builders import set_blackboard as set_blackboard
+from btlang.builders import single_trigger as single_trigger
 from btlang.builders import skip_unless_updated as skip_unless_updated
 from btlang.builders import sleep as sleep
 from btlang.builders import sub_tree as sub_tree
