@@ -50,7 +50,8 @@ def find_asked_once(compilation: Compilation) -> Iterator[Diagnostic]:
                 elif sentence and "\n" not in node.span.text:
                     before_it = sentence[-1] if type(node.body) is ast.Fail else None  # `A, and abort if C`
                     warnings = list(_warn(node, before_it, vocabulary))  # `A, and when C, B`
-                    yield from warnings or _too_late(node, sentence, vocabulary)
+                    between = node.span.source.text[sentence[-1].span.end : node.span.start]
+                    yield from warnings or ([] if "\n" in between else _too_late(node, sentence, vocabulary))
 
 
 def _sentence_before(items: Sequence[ast.Ast], at: int) -> Sequence[ast.Ast]:

@@ -162,7 +162,8 @@ def find_rules_at_goals(compilation: Compilation) -> Iterator[Diagnostic]:
     if MOVES not in journey.entry.resources or not is_about_people:
         return
     whole = Span(journey.span.source, journey.span.start, rule.span.end)
-    if "\n" in whole.text:
+    between = whole.source.text[journey.span.end : rule.span.start]
+    if "\n" in whole.text or _SENTENCE_END.search(between) is None:
         return
     taken = f"{rule.span.text}. {journey.span.text}"
     other = f"{journey.span.text}, {vocabulary.word('then')} {vocabulary.word('wait_forever')}. {rule.span.text}"

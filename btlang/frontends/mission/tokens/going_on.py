@@ -10,17 +10,19 @@ from btlang.frontends.mission.token import (
     RULES,
     STATEMENT_ENDS,
     Called,
+    Listed,
     Token,
     drives,
     go_on,
     run_start,
+    statement_start,
 )
 from btlang.frontends.mission.tokens.rules_inside import ON_WAY
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, hears, searches
 from btlang.frontends.mission.tokens.settling import FAILS, MEASURES, TURNED, WORKS, asked_about, is_about, settle
 from btlang.text.source import Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
-from btlang.tree.answers import ASK
+from btlang.tree.answers import ASK, EXAMPLE
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.value_type import PLACE
 from btlang.vocabulary.word_tree import find
@@ -28,6 +30,7 @@ from btlang.vocabulary.word_tree import find
 _JOINTS = JOINTS | STATEMENT_ENDS
 _UNANSWERED = "if_unanswered"
 _STOP = "Stop"
+_DONE, _ASKED = ("command", "name"), ("condition", "not")
 _ENDS = (END_OF_STATEMENT, END_OF_TEXT, ";", ")")
 _CHOICES = frozenset(("if", "unless", "otherwise", WORKS))
 _MEANWHILE = frozenset((*RULES, "while", "until", "meanwhile", "in_parallel"))
@@ -142,6 +145,34 @@ class GoingOn(SentenceReader):
         kinds = self._statement(len(self._tokens) - 1)[1]
         if FAILS in kinds and WORKS not in kinds and kinds.isdisjoint(FORMS):
             otherwise.role = TURNED
+
+    def _ask_alone(self) -> None:
+        """`go to the door and check if it is open. If so, A`: about what is checked, not about the journey."""
+        tokens = self._tokens
+        last = run_start(tokens, len(tokens) - 1, JOINTS | STATEMENT_ENDS)
+        first = statement_start(tokens, last)
+        check = next((at for at in reversed(range(first, last)) if tokens[at].kind == "check"), first)
+        joint = run_start(tokens, check, JOINTS)
+        is_plain = all(token.kind in (*_DONE, *JOINTS) for token in tokens[first:joint])
+        if first < joint < check and is_plain and all(each.kind in _ASKED for each in tokens[check + 1 : last]):
+            tokens[joint:check] = [Token("semi", tokens[check].start, tokens[check].start)]
+
+    def _doubt_silence(self, words: Span) -> None:
+        """BT144 for `ask Alice and Bob "Tea?". If they don't answer, A`: whoever is silent, or both."""
+        asked = next((token for token in reversed(self._tokens) if token.kind == "command" and hears(token)), None)
+        if asked is not None and isinstance(asked.value, Listed):
+            said, problem = words.text.rstrip(" ,"), "could be about one of them or about all"
+            self._calls.problems.append(diagnostic("BT144", words, words=said, problem=problem, example=EXAMPLE))
+
+    def _in_round(self) -> bool:
+        """Make one round for each thing of the list or set in the statement before; False without such a one."""
+        tokens, listed = self._tokens, self._context.listed
+        last = run_start(tokens, len(tokens) - 1, JOINTS | STATEMENT_ENDS)
+        said = [token for token in tokens[statement_start(tokens, last) : last] if token.kind == "command"]
+        entries = {token.value.entry.id for token in said if isinstance(token.value, Called | Listed)}
+        if any(self._calls.is_set(token) for token in said) or (len(said) > 1 and len(entries) == 1):
+            return True
+        return any(self._calls.is_round(token, goal) for token in said for goal in listed.values() if goal)
 
     def check_asked(self, match: Match, at: int) -> None:
         """BT145 for `wave or, if he doesn't answer, nod`."""

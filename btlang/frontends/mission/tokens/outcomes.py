@@ -34,7 +34,6 @@ from btlang.frontends.mission.tokens.settling import (
 from btlang.frontends.mission.tokens.silent_words import begins
 from btlang.frontends.mission.tokens.tries import LIMIT
 from btlang.text.source import Span
-from btlang.tree.answers import EXAMPLE
 from btlang.tree.rounds import ONE_FAILS
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.value_type import OBJECT, PERSON, PLACE
@@ -47,7 +46,6 @@ if TYPE_CHECKING:
 _ASKING = frozenset(("if", "as_soon_as", "once"))
 _HOLDS, _WHERE = "Holding", ("PersonIsAt", "ObjectIsAt")
 _DONE = ("command", "name")
-_ASKED = ("condition", "not")
 
 
 class Outcomes(GoingOn):
@@ -84,34 +82,6 @@ class Outcomes(GoingOn):
         if role == "if_unanswered":
             return self.unanswered(match.last)
         return self._limit_before(match.last, role) if said in (WORKS, FAILS) else match.last
-
-    def _ask_alone(self) -> None:
-        """`go to the door and check if it is open. If so, A`: about what is checked, not about the journey."""
-        tokens = self._tokens
-        last = run_start(tokens, len(tokens) - 1, JOINTS | STATEMENT_ENDS)
-        first = statement_start(tokens, last)
-        check = next((at for at in reversed(range(first, last)) if tokens[at].kind == "check"), first)
-        joint = run_start(tokens, check, JOINTS)
-        is_plain = all(token.kind in (*_DONE, *JOINTS) for token in tokens[first:joint])
-        if first < joint < check and is_plain and all(each.kind in _ASKED for each in tokens[check + 1 : last]):
-            tokens[joint:check] = [Token("semi", tokens[check].start, tokens[check].start)]
-
-    def _doubt_silence(self, words: Span) -> None:
-        """BT144 for `ask Alice and Bob "Tea?". If they don't answer, A`: whoever is silent, or both."""
-        asked = next((token for token in reversed(self._tokens) if token.kind == "command" and hears(token)), None)
-        if asked is not None and isinstance(asked.value, Listed):
-            said, problem = words.text.rstrip(" ,"), "could be about one of them or about all"
-            self._calls.problems.append(diagnostic("BT144", words, words=said, problem=problem, example=EXAMPLE))
-
-    def _in_round(self) -> bool:
-        """Make one round for each thing of the list or set in the statement before; False without such a one."""
-        tokens, listed = self._tokens, self._context.listed
-        last = run_start(tokens, len(tokens) - 1, JOINTS | STATEMENT_ENDS)
-        said = [token for token in tokens[statement_start(tokens, last) : last] if token.kind == "command"]
-        entries = {token.value.entry.id for token in said if isinstance(token.value, Called | Listed)}
-        if any(self._calls.is_set(token) for token in said) or (len(said) > 1 and len(entries) == 1):
-            return True
-        return any(self._calls.is_round(token, goal) for token in said for goal in listed.values() if goal)
 
     def _doubt_count(self, count: Token, match: Match, at: int) -> None:
         """BT151 for `turn left up to 8 times until C`: at most so often, or so often again and again."""
