@@ -141,13 +141,13 @@ def with_stays(tokens: list[Token], source: Source, standing: Container[str]) ->
 
     `standing` are the verbs that say so, `stand`.
     """
-    starts = [at for at in range(len(tokens)) if at == 0 or tokens[at - 1].kind in STATEMENT_ENDS]
-    starts = [at for at in starts if tokens[at].kind not in ("define", *STATEMENT_ENDS)]
-    depth = 0
-    outside = []
+    if not any(token.kind in RULES for token in tokens):
+        return  # as nearly always
+    depth, outside = 0, list[int]()
     for at, token in enumerate(tokens):
         depth += (token.kind == "indent") - (token.kind == "dedent")
-        if depth == 0 and at in starts:
+        begins = at == 0 or tokens[at - 1].kind in STATEMENT_ENDS
+        if depth == 0 and begins and token.kind not in ("define", *STATEMENT_ENDS):
             outside.append(at)
     commands = [at for at in outside if tokens[at].kind not in RULES]
     if len(commands) == len(outside) or not commands:
