@@ -5,29 +5,32 @@ from __future__ import annotations
 import json
 import os
 import signal
-import socket
 import ssl
 import sys
 import threading
+import time
 from contextlib import suppress
-from ipaddress import ip_address
+from ipaddress import ip_address, ip_network
 
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.diagnostics.files import os_error_reason
-from btlang.robots.files import socket_folder
 from btlang.support.user_dirs import user_dir
-from btlang.task.commands.companion import require_server
+from btlang.task.commands.companion import Companion, require_server
 from btlang.text.output import show
 from btlang.text.source import NOWHERE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     import argparse
+    import socket
 
     from btlang.server.accounts.accounts import Accounts
     from btlang.server.accounts.certificate import Certificate
 
+UP = "The emergency stop is up."
+"""The first line of the process of the emergency stop."""
 _ADMINISTRATOR = "admin"
+_TAKEN = 1.5  # seconds for which the port of the emergency stop may still be that of a server before
 _NICE = 5  # robots on this computer come first
 
 
@@ -36,26 +39,14 @@ def server_folder() -> str:
     return os.path.join(user_dir("data"), "server")
 
 
-def control_path() -> str:
-    """Return the path of the Unix socket over which `btc user` notifies a running server."""
-    return os.path.join(socket_folder(), "server.control")
-
-
-def notify_changes() -> None:
-    """Make a running server check again who may log in; do nothing if there is none."""
-    with suppress(OSError), socket.socket(socket.AF_UNIX) as connection:
-        connection.settimeout(2.0)
-        connection.connect(control_path())
-        connection.recv(1)
-
-
 def serve(options: argparse.Namespace) -> int:
     """Serve until SIGINT or SIGTERM; return the exit code. Raises MissionError."""
     require_server()
     from btlang.ros.available import require_package
     from btlang.server.accounts.accounts import Accounts
     from btlang.server.http.app import Api
-    from btlang.server.http.listener import load_key, open_listener
+    from btlang.server.http.connections import Connections
+    from btlang.server.http.listener import load_key, most_connections, open_listener, web_server
     from btlang.server.http.listener import serve as serve_listener
 
     if (options.cert is None) != (options.key is None):
@@ -76,6 +67,17 @@ def serve(options: argparse.Namespace) -> int:
     port = listener.getsockname()[1]
     _write_listener(certificate, port)
     scheme = "http" if certificate is None else "https"
+    api = Api(accounts, load_key(server_folder()), ros=options.ros)
+    stop_listener = _open_stop_listener(options, port)
+    api.stop_port = stop_listener.getsockname()[1]
+    settings = {
+        "folder": server_folder(), "key": load_key(server_folder()), "cookie": api.access.cookie,
+        "certificate": None if certificate is None else list(certificate.as_dict().values()),
+        "descriptor": stop_listener.fileno(), "proxies": options.proxy, "notice": listener_path(),
+    }  # fmt: skip
+    connections = Connections(most_connections(), proxies=[ip_network(each) for each in options.proxy])
+    for _, address in accounts.addresses():
+        connections.remember(address)
 
     def ready() -> None:
         show(f"The server is up: {scheme}://{_format_host(options.host)}:{port}")
@@ -85,18 +87,49 @@ def serve(options: argparse.Namespace) -> int:
             show(f"Log in as '{_ADMINISTRATOR}' with the password {password}")
             show(f"It is shown this once. For another one: btc user passwd {_ADMINISTRATOR}")
 
-    os.nice(_NICE)
-    if options.until_eof:
-        threading.Thread(target=_end_at_eof, daemon=True).start()
+    # uvicorn ends with the signal that ended it, which would leave the process of the emergency stop alone
+    signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(128 + number))
+    stop = Companion(
+        "emergency stop", ["btlang.server.stop.stop_server"], json.dumps(settings), _report_stop_server,
+        [stop_listener.fileno()],
+    )  # fmt: skip
     try:
-        serve_listener(
-            Api(accounts, load_key(server_folder()), ros=options.ros), listener, certificate, control_path(), ready
-        )
+        stop.start()
+        os.nice(_NICE)
+        if options.until_eof:
+            threading.Thread(target=_end_at_eof, daemon=True).start()
+        serve_listener(web_server(api.app(), certificate, connections, options.proxy), listener, ready)
     except (OSError, ssl.SSLError) as error:
         raise _refuse(options, os_error_reason(error)) from None
     finally:
+        stop.close()
+        stop_listener.close()
         accounts.close()
     return 0
+
+
+def _report_stop_server(line: str) -> None:
+    if line != UP:
+        show(line, sys.stderr)
+
+
+def _open_stop_listener(options: argparse.Namespace, port: int) -> socket.socket:
+    """Open the socket of the emergency stop, by default the next port, or any where that is taken.
+
+    The process of a server that was killed gives it free once it sees that there is another one.
+    """
+    from btlang.server.http.listener import open_listener
+
+    until = time.monotonic() + _TAKEN
+    while True:
+        try:
+            return open_listener(options.host, options.stop_port or min(port + 1, 65535))
+        except MissionError:
+            if time.monotonic() > until:
+                if options.stop_port:
+                    raise
+                return open_listener(options.host, 0)
+        time.sleep(0.1)
 
 
 def _end_at_eof() -> None:
@@ -128,20 +161,21 @@ def _certificate(options: argparse.Namespace) -> Certificate:
 
 
 def listener_path() -> str:
-    """Return the file in which a server with TLS writes its pin and port, for `btc robot invite`."""
+    """Return the file in which a server writes its process, its port and, with TLS, its pin, for other processes."""
     return os.path.join(server_folder(), "door.json")
 
 
 def _write_listener(certificate: Certificate | None, port: int) -> None:
-    """Write the pin and the port for `btc robot invite`, which is another process."""
+    """Write what other processes need to know of this one."""
     from btlang.server.accounts.certificate import pin_of
     from btlang.support.private_file import write_private
 
     with suppress(FileNotFoundError):
         os.unlink(listener_path())
+    known: dict[str, object] = {"port": port, "process": os.getpid()}
     if certificate is not None:
-        known = {"pin": pin_of(certificate.certificate).hex(), "port": port}
-        write_private(listener_path(), json.dumps(known).encode())
+        known["pin"] = pin_of(certificate.certificate).hex()
+    write_private(listener_path(), json.dumps(known).encode())
 
 
 def _first_password(accounts: Accounts) -> str:

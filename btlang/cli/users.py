@@ -8,7 +8,7 @@ import socket
 import sys
 import time
 
-from btlang.cli.server import listener_path, notify_changes, server_folder
+from btlang.cli.server import listener_path, server_folder
 from btlang.task.commands.checks import refusal_error
 from btlang.task.commands.client import check_name, names_up
 from btlang.task.commands.companion import require_server
@@ -30,7 +30,7 @@ def run_act(options: argparse.Namespace) -> int:
     require_server("user")
     from btlang.server.accounts.accounts import Accounts
 
-    accounts = Accounts(server_folder(), notify_changes)
+    accounts = Accounts(server_folder())
     try:
         _do(options, accounts)
     finally:
@@ -143,7 +143,7 @@ def change_invitations(options: argparse.Namespace) -> int:
 
     accounts = Accounts(server_folder())
     try:
-        _invite(options, Fleet(accounts.database, notify_changes))
+        _invite(options, Fleet(accounts.database))
     finally:
         accounts.close()
     return 0

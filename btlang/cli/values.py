@@ -93,6 +93,16 @@ def port(text: str) -> int:
     return int(text)
 
 
+def network(text: str) -> str:
+    """Read an IP address, or a network such as 10.0.0.0/8."""
+    from ipaddress import ip_network
+
+    try:
+        return str(ip_network(text))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"expected an address or a network such as 10.0.0.0/8, not '{text}'") from None
+
+
 def size(text: str) -> int:
     """Read a number of bytes, written with kB, MB or GB."""
     units = {"kb": 1_000, "mb": 1_000_000, "gb": 1_000_000_000}

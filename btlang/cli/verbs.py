@@ -49,8 +49,10 @@ from btlang.cli.values import (
     between,
     duration,
     latitude_longitude,
+    network,
     node_name,
     picture,
+    port,
     pose,
     project_name,
     robot_name,
@@ -510,6 +512,14 @@ _TABLE = (
             ),
             Option("--key", metavar="FILE", help="key of the certificate (PEM)"),
             Option("--no-tls", action="store_true", help="use plain HTTP, on this computer only"),
+            Option(
+                "--stop-port", type=port, default=0, metavar="PORT",
+                help="port of the emergency stop (default: the next one after --port)",
+            ),
+            Option(
+                "--proxy", action="append", default=[], type=network, metavar="ADDRESS",
+                help="address or network of a proxy whose X-Forwarded-For is believed; may be repeated",
+            ),
             Option("--until-eof", action="store_true", help="end when standard input ends"),
             Option(
                 "--ros", action="append", default=[], type=ros_name, metavar="NAME",

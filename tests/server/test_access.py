@@ -15,6 +15,7 @@ from btlang.server.accounts.accounts import Accounts, Identity, UserRole
 from btlang.server.accounts.passwords import FREE, Throttle, hash_password
 from btlang.server.http import access as module
 from btlang.server.http.access import COOKIE, CSRF, Access, AccessError, address_of, is_same_site
+from btlang.task.store.database import store_error
 from tests.server.doors import PASSWORD
 
 HERE, THERE = "10.0.0.1", "10.0.0.2"
@@ -94,7 +95,7 @@ def test_somebody_who_guesses_waits_and_is_not_heard(guard: Guard) -> None:
     error = refusal(lambda: guard.log_in("bo"))  # the right one
     assert (error.status, error.wait) == (429, 1.0)
     assert error.reason == "Too many wrong passwords. Try again in 1 s."
-    assert guard.wait("bo", THERE) == 1.0  # the account is guarded wherever somebody is
+    assert guard.status("bo", PASSWORD, THERE) == 200  # where nobody has guessed
     assert guard.wait("ann") == 1.0  # and the address, whatever the account
     assert guard.wait("ann", THERE) == 0.0
     guard.now += 1.0
@@ -114,7 +115,7 @@ def test_an_account_of_ones_own_makes_guessing_at_others_no_cheaper(guard: Guard
         assert guard.wait("ann") == 0.0
     guard.log_in("bo")
     assert guard.wait("somebody else") == 0.0
-    assert guard.wait("bo") == 1.0
+    assert guard.wait("ann") == 1.0
 
 
 def test_who_mistyped_and_then_was_right_is_forgiven(guard: Guard) -> None:
@@ -122,9 +123,52 @@ def test_who_mistyped_and_then_was_right_is_forgiven(guard: Guard) -> None:
         guard.wait("bo")
     guard.wait("ann")
     guard.log_in("bo")
-    for _ in range(FREE - 1):  # beside the one of ann
-        assert guard.wait("bo") == 0.0
-    assert guard.wait("bo") == 1.0
+    for number in range(FREE - 1):  # beside the one of ann
+        assert guard.wait(f"somebody {number}") == 0.0
+    assert guard.wait("somebody else") == 1.0
+
+
+def test_an_outsider_keeps_nobody_out(guard: Guard) -> None:
+    """Three guesses a second had kept a user out who had the right password, and others at that address."""
+    guard.log_in("bo")
+    device = guard.access.device("", "bo")
+    for address in (THERE, HERE):
+        for name in ("ann", "bo"):
+            for _ in range(30):
+                guard.now += 0.3
+                guard.status(name, "a wrong password", address)
+    assert guard.wait("bo") > 0  # who guesses at the address of bo is still held up
+    for _ in range(15):
+        assert asyncio.run(guard.access.log_in("bo", PASSWORD, HERE, device))[0].user == "bo"
+    assert guard.status("ann", PASSWORD, "10.0.0.3") == 200
+
+
+def test_a_device_counts_its_own_guesses(guard: Guard) -> None:
+    device = guard.access.device("", "bo")
+    assert guard.access.device(device, "ann").count(".") == 1
+    for _ in range(FREE):
+        refusal(lambda: asyncio.run(guard.access.log_in("bo", "a wrong password", HERE, device)))
+    assert refusal(lambda: asyncio.run(guard.access.log_in("bo", PASSWORD, HERE, device))).status == 429
+    assert refusal(lambda: asyncio.run(guard.access.log_in("ann", PASSWORD + "x", HERE, device))).status == 401
+    assert guard.status("bo", PASSWORD) == 200
+    forged = device[:-2] + ("AA" if device[-2:] != "AA" else "BB")
+    assert guard.access._devices.number(forged, "bo") == ""
+
+
+def test_guesses_that_come_at_once_count_before_they_are_verified(guard: Guard) -> None:
+    """Of sixty, 33 had been verified."""
+
+    async def guess() -> list[int]:
+        async def status() -> int:
+            try:
+                await guard.access.log_in("bo", "a wrong password", HERE)
+            except AccessError as error:
+                return error.status
+            return 200
+
+        return sorted(await asyncio.gather(*(status() for _ in range(60))))
+
+    assert asyncio.run(guess()) == [401] * FREE + [429] * (60 - FREE)
 
 
 def test_too_many_at_once(guard: Guard, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -182,6 +226,8 @@ def test_what_changes_something_comes_from_the_page(guard: Guard) -> None:
         assert (error.status, error.reason) == (403, "This request doesn't come from the page of this server."), bad
         assert guard.identify(changes=False, **{**good, **bad}) == identity
     assert not is_same_site({"origin": "null", "host": ""})
+    page = {"origin": "http://host", "host": "host"}
+    assert [is_same_site(page, scheme) for scheme in ("http", "ws", "https", "wss")] == [True, True, False, False]
 
 
 def test_who_was_here_a_moment_ago_is_known_without_the_disk(guard: Guard) -> None:
@@ -198,8 +244,10 @@ def test_who_was_here_a_moment_ago_is_known_without_the_disk(guard: Guard) -> No
     assert guard.identify(authorization=header).role is UserRole.EDITOR
     assert refusal(lambda: guard.identify(authorization=f"Bearer {gone}")).status == 401
     guard.accounts.set_role("bo", UserRole.OPERATOR)
-    guard.access.forget()
-    assert guard.identify(authorization=header).role is UserRole.OPERATOR
+    now = asyncio.run(guard.access.still(guard.identify(authorization=header)))
+    assert now.role is UserRole.OPERATOR
+    guard.accounts.revoke("bo", "script")
+    assert refusal(lambda: asyncio.run(guard.access.still(now))).status == 401
 
 
 def test_those_who_are_known_fill_no_memory(guard: Guard, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -212,6 +260,24 @@ def test_those_who_are_known_fill_no_memory(guard: Guard, monkeypatch: pytest.Mo
     for number in range(20):
         refusal(lambda number=number: guard.identify(authorization=f"Bearer btl_{number}"))
     assert len(guard.access._known) <= 3
+
+
+def test_a_session_begins_on_a_full_disk_and_ends_with_the_password(
+    guard: Guard, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(user: str, address: str) -> str:
+        raise store_error("here", "the disk is full")
+
+    monkeypatch.setattr(guard.accounts, "log_in", full)
+    identity, secret = guard.log_in("bo")
+    assert guard.identify(cookie=f"{COOKIE}={secret}") == identity
+    guard.now += 11.0
+    assert guard.identify(cookie=f"{COOKIE}={secret}") == identity
+    assert refusal(lambda: guard.identify(cookie=f"{COOKIE}={secret}x")).status == 401
+    guard.accounts.set_password("bo", "other")
+    assert refusal(lambda: asyncio.run(guard.access.still(identity))).status == 401
+    guard.now += 11.0
+    assert refusal(lambda: guard.identify(cookie=f"{COOKIE}={secret}")).status == 401
 
 
 def test_its_threads_end(guard: Guard) -> None:

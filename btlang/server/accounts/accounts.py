@@ -68,6 +68,8 @@ IDLE, LONGEST = 8 * 3600.0, 7 * 86_400.0
 """The seconds after which a session ends that nobody uses, and after which every one does."""
 _NOTED = 60.0  # seconds between two notes that a session or token is used
 _TOKEN = "btl_"
+_MOST_IDENTITIES = 10_000
+_NEXT = "generation = generation + 1"
 MOST_ENTRIES = 100_000
 """The limit of the trail."""
 _NOT_COPIED = ("session",)  # else a restore would bring back one that was logged out
@@ -97,16 +99,21 @@ _STEPS = [
             seen DOUBLE PRECISION
         )""",
     ),
+    ("ALTER TABLE user ADD COLUMN generation BIGINT NOT NULL DEFAULT 0",),
 ]
 
 
 class User(Record):
-    """A user. `password` is a hash. `created` is in seconds since 1970."""
+    """A user. `password` is a hash. `created` is in seconds since 1970.
+
+    `generation` is another number after each change of what the user may do: of role, password, sessions or tokens.
+    """
 
     name: str
     role: UserRole
     password: str
     created: float
+    generation: int = 0
 
 
 class Login(Record):
@@ -140,33 +147,35 @@ class TrailEntry(Record):
 
 
 class Identity(Record):
-    """The identity of who asks: `id` is that of a session or token, which ends when it is revoked."""
+    """The identity of who asks, as it was in a `generation` of the user.
+
+    `id` is that of a session or token, which ends when it is revoked. `is_stored` is False for a session that was made
+    while the disk was full: it is known by a signature, and ends with the generation.
+    """
 
     user: str
     role: UserRole
     id: str
     is_session: bool
+    generation: int = 0
+    is_stored: bool = True
 
 
 class Accounts:
     """The accounts of a server, in a folder.
 
-    They may be used from any thread and by several processes at once; methods raise StoreError (BT195).
+    They may be used from any thread and by several processes at once; methods raise StoreError (BT195). A server looks
+    at the generation of a user before each command, so a change needs no notice.
 
-    `changed` is called after a change that may end somebody's access. `clock` gives seconds since 1970.
+    `clock` gives seconds since 1970.
     """
 
-    def __init__(
-        self,
-        folder: str,
-        changed: Callable[[], object] = lambda: None,
-        clock: Callable[[], float] = time.time,
-    ) -> None:
+    def __init__(self, folder: str, clock: Callable[[], float] = time.time) -> None:
         os.makedirs(folder, mode=0o700, exist_ok=True)
         self.database = Sqlite(os.path.join(folder, "accounts.db"), durable=True)
         self.database.check()
         migrate(self.database, _STEPS)
-        self._changed, self._clock = changed, clock
+        self._clock = clock
 
     def close(self) -> None:
         """End its connections."""
@@ -182,7 +191,8 @@ class Accounts:
 
     def add(self, name: str, role: UserRole, password: str) -> User:
         """Add a user with the hash of a password. Raises MissionError (BT187) if there is one of that name."""
-        added = User(name, role, password, self._clock())
+        now = self._clock()
+        added = User(name, role, password, now, int(now * 1000))  # not one that a user of that name had before
         with self.database.transaction(Mode.ALONE) as execute:
             if execute("SELECT 1 FROM user WHERE name = ?", (name,)):
                 raise refusal_error(f"The user '{name}'", "exists already")
@@ -194,15 +204,14 @@ class Accounts:
 
         Raises MissionError (BT187).
         """
-        self._change(name, "UPDATE user SET password = ? WHERE name = ? RETURNING name", password)
+        self._change(name, f"UPDATE user SET password = ?, {_NEXT} WHERE name = ? RETURNING name", password)
         self.log_out(name)
 
     def set_role(self, name: str, role: UserRole) -> None:
         """Set the role of a user. Raises MissionError (BT187), also for the last administrator."""
         if role is not UserRole.ADMINISTRATOR:
             self._keep_an_administrator(name)
-        self._change(name, "UPDATE user SET role = ? WHERE name = ? RETURNING name", role.value)
-        self._changed()
+        self._change(name, f"UPDATE user SET role = ?, {_NEXT} WHERE name = ? RETURNING name", role.value)
 
     def remove(self, name: str) -> None:
         """Remove a user, and end all sessions and tokens.
@@ -227,7 +236,7 @@ class Accounts:
         """End a session of a user, or all."""
         with self.database.transaction() as execute:
             execute("DELETE FROM session WHERE user = ? AND (id = ? OR ? = '')", (user, id, id))
-        self._changed()
+            execute(f"UPDATE user SET {_NEXT} WHERE name = ?", (user,))
 
     def add_token(self, user: str, name: str) -> str:
         """Make a token; return what a program sends. Raises MissionError (BT187): no such user, or a name in use."""
@@ -249,7 +258,7 @@ class Accounts:
         with self.database.transaction() as execute:
             if not execute("DELETE FROM token WHERE user = ? AND name = ? RETURNING name", (user, name)):
                 raise refusal_error(f"The token '{name}' of '{user}'", "isn't known")
-        self._changed()
+            execute(f"UPDATE user SET {_NEXT} WHERE name = ?", (user,))
 
     def identity(self, secret: str) -> Identity | None:
         """Return who brings a secret, of a cookie or of a program; None for nobody."""
@@ -268,12 +277,36 @@ class Accounts:
             self._note("session", id, now)
         return self._identify(login.user, id, is_session=True)
 
+    def identities(self) -> list[Identity]:
+        """Return all who may come in with a session or a token at this moment; of very many, those who did lately."""
+        now = self._clock()
+        sql = """SELECT user.name, user.role, access.id, access.is_session, user.generation FROM (
+            SELECT id, user, used, 1 AS is_session FROM session WHERE used > ? AND created > ?
+            UNION ALL SELECT id, user, coalesce(used, created), 0 FROM token
+        ) AS access JOIN user ON user.name = access.user ORDER BY access.used DESC LIMIT ?"""
+        with self.database.transaction(Mode.READ) as execute:
+            rows = execute(sql, (now - IDLE, now - LONGEST, _MOST_IDENTITIES))
+        return [Identity(name, UserRole(role), id, bool(kind), number) for name, role, id, kind, number in rows]
+
     def still(self, identity: Identity) -> Identity | None:
         """Return the same identity as it is now, perhaps with another role; None if it was revoked."""
+        user = self.user(identity.user)
+        if user is None or user.generation == identity.generation:
+            return identity if user is not None else None
         table = "session" if identity.is_session else "token"
         with self.database.transaction(Mode.READ) as execute:
-            found = execute(f"SELECT 1 FROM {table} WHERE id = ?", (identity.id,))
-        return self._identify(identity.user, identity.id, is_session=identity.is_session) if found else None
+            found = identity.is_stored and execute(f"SELECT 1 FROM {table} WHERE id = ?", (identity.id,))
+        return identity.replace(role=user.role, generation=user.generation) if found else None
+
+    def generations(self) -> dict[str, int]:
+        """Return the generation of each user."""
+        with self.database.transaction(Mode.READ) as execute:
+            return {str(name): int(number) for name, number in execute("SELECT name, generation FROM user")}
+
+    def addresses(self) -> list[tuple[str, str]]:
+        """Return the users with the addresses at which they have logged in lately."""
+        with self.database.transaction(Mode.READ) as execute:
+            return [(str(user), str(address)) for user, address in execute("SELECT user, address FROM session")]
 
     def log(self, user: str, address: str, what: str, outcome: str) -> None:
         """Add to the trail, from which the oldest entries go: who tries again and again can't fill the disk."""
@@ -299,11 +332,10 @@ class Accounts:
         no backup; then nothing is changed.
         """
         fill_from_backup(self.database, path, _STEPS, _NOT_COPIED)
-        self._changed()
 
     def _identify(self, name: str, id: str, *, is_session: bool) -> Identity | None:
         user = self.user(name)
-        return None if user is None else Identity(user.name, user.role, id, is_session)
+        return None if user is None else Identity(user.name, user.role, id, is_session, user.generation)
 
     def _keep_an_administrator(self, name: str) -> None:
         others = [user for user in self.users() if user.role is UserRole.ADMINISTRATOR and user.name != name]

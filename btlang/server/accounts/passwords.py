@@ -69,10 +69,10 @@ class BusyError(Exception):
 
 
 class Verifier:
-    """A verifier of passwords for an event loop. An unknown user takes as long as a known one."""
+    """A verifier of passwords for an event loop, some at once. An unknown user takes as long as a known one."""
 
-    def __init__(self) -> None:
-        self._threads = ThreadPoolExecutor(_AT_ONCE, "btlang passwords")
+    def __init__(self, at_once: int = _AT_ONCE) -> None:
+        self._threads = ThreadPoolExecutor(at_once, "btlang passwords")
         self._waiting = 0
 
     async def fits(self, password: str, kept: str | None) -> bool:
@@ -105,19 +105,20 @@ class Throttle:
 
     Each one after the first few doubles the time to wait.
 
-    It forgets who was wrong least recently when too many are known. `clock` gives seconds.
+    It forgets who was wrong least recently when too many are known. `clock` gives seconds, `free` is how many wrong
+    ones cost nothing.
     """
 
-    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
-        self._clock = clock
+    def __init__(self, clock: Callable[[], float] = time.monotonic, free: int = FREE) -> None:
+        self._clock, self._free = clock, free
         self._wrong: OrderedDict[str, tuple[int, float]] = OrderedDict()  # how many, and when the last one was
 
     def wait(self, key: str) -> float:
         """Return the seconds until somebody may try again, 0 if at once."""
         count, last = self._known(key)
-        if count < FREE:
+        if count < self._free:
             return 0.0
-        pause = min(_FIRST * 2.0 ** (count - FREE), _LONGEST)
+        pause = min(_FIRST * 2.0 ** min(count - self._free, 16), _LONGEST)
         return max(0.0, last + pause - self._clock())
 
     def wrong(self, key: str) -> None:

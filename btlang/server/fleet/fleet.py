@@ -39,14 +39,10 @@ class Fleet:
     """The robots that may join, in the database of the accounts.
 
     Usable from any thread and several processes; methods raise StoreError (BT195).
-
-    `changed` is called after a robot was invited or revoked.
     """
 
-    def __init__(
-        self, database: Sqlite, changed: Callable[[], object] = lambda: None, clock: Callable[[], float] = time.time
-    ) -> None:
-        self._database, self._changed, self._clock = database, changed, clock
+    def __init__(self, database: Sqlite, clock: Callable[[], float] = time.time) -> None:
+        self._database, self._clock = database, clock
 
     def robots(self) -> list[FleetRobot]:
         """Return all robots that were invited, by name."""
@@ -62,7 +58,6 @@ class Fleet:
             if execute("SELECT 1 FROM robot WHERE name = ?", (name,)):
                 raise refusal_error(f"The robot '{name}'", "has joined already; revoke it first")
             insert(execute, "robot", invited)
-        self._changed()
         return code
 
     def revoke(self, name: str) -> None:
@@ -70,7 +65,6 @@ class Fleet:
         with self._database.transaction() as execute:
             if not execute("DELETE FROM robot WHERE name = ? RETURNING name", (name,)):
                 raise refusal_error(f"The robot '{name}'", "isn't known")
-        self._changed()
 
     def admit(self, key: str, code: str) -> FleetRobot | None:
         """Return the robot whose key it is, None for nobody's; that of a good code becomes known.

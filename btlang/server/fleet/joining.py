@@ -21,7 +21,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.server.accounts.passwords import Throttle
 from btlang.server.fleet.fleet import Fleet, FleetRobot
-from btlang.server.http.access import Access, AccessError, address_of, read_object, text_in
+from btlang.server.http.access import Access, AccessError, address_of, admit, read_object, text_in
 from btlang.server.live.robot_connection import LONGEST, STREAM
 from btlang.server.live.robot_feeds import RobotFeed, RobotFeeds
 from btlang.server.live.sockets import FORBIDDEN, REVOKED
@@ -195,6 +195,7 @@ class Joins:
                 await socket.send_json({"type": "refused", "text": reason})
                 await socket.close(FORBIDDEN)
                 return
+            admit(socket, f"robot {robot.name}")
             await socket.send_json({"type": "joined", "name": robot.name})
             noting = asyncio.create_task(self._note(robot.name))
             try:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import time
+from collections import Counter, OrderedDict
 from contextlib import suppress
 from http.cookies import CookieError, SimpleCookie
 from urllib.parse import urlsplit
@@ -16,6 +17,8 @@ from starlette.responses import Response
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.server.accounts.accounts import Accounts, Identity
 from btlang.server.accounts.passwords import BusyError, Throttle, Verifier
+from btlang.server.accounts.signed import Devices, SignedSessions
+from btlang.task.store.database import StoreError
 from btlang.task.store.records import is_whole
 from btlang.text.formatting import one_line
 from btlang.text.json_text import load_json
@@ -31,6 +34,8 @@ COOKIE = "__Host-btlang"
 CSRF = "x-csrf-token"
 _KNOWN = 10.0  # seconds for which somebody who was looked up is known
 _MOST_KNOWN = 2000
+_MANY = 50  # wrong passwords of strangers for one account, from all addresses together, that cost nothing
+_MOST_PAIRS = 10_000  # users with an address at which they have logged in
 
 
 class AccessError(Exception):
@@ -55,52 +60,76 @@ class Access:
     ) -> None:
         self.accounts, self.cookie, self._clock = accounts, cookie, clock
         self._known: dict[str, tuple[Identity, float]] = {}
-        self._verifier = Verifier()
-        self._signer = Signer(key, salt="csrf")
-        self._by_account, self._by_address, self._by_both = Throttle(clock), Throttle(clock), Throttle(clock)
+        self._strangers, self._friends = Verifier(), Verifier(1)
+        self._signer, self._signed, self._devices = Signer(key, salt="csrf"), SignedSessions(key), Devices(key)
+        self._pairs = OrderedDict.fromkeys(accounts.addresses())
+        self._by_account, self._by_address, self._own = Throttle(clock, _MANY), Throttle(clock), Throttle(clock)
 
-    async def log_in(self, name: str, password: str, address: str) -> tuple[Identity, str]:
-        """Log a user in; return who it is, and the secret for a cookie.
+    async def log_in(self, name: str, password: str, address: str, device: str = "") -> tuple[Identity, str]:
+        """Log a user in; return who it is, and the secret for a cookie. `device` is the cookie of the browser.
 
-        Raises AccessError, an unknown user's after as long as others.
+        What somebody gets wrong keeps out those alone who can't be told from them: a browser in which the user has
+        logged in before has a count of its own, and so has an address. Raises AccessError, an unknown user's after as
+        long as others.
         """
-        both = f"{address} {name}"
-        wait = max(self._by_account.wait(name), self._by_address.wait(address))
+        number = self._devices.number(device, name)
+        is_friend = bool(number) or (name, address) in self._pairs
+        own = (self._own, f"{number or address} {name}")
+        counts = [own] if is_friend else [own, (self._by_address, address), (self._by_account, name)]
+        wait = max(throttle.wait(key) for throttle, key in counts)
         if wait:
             raise AccessError(429, f"Too many wrong passwords. Try again in {wait:.0f} s.", wait)
+        for throttle, key in counts:  # before it is known: else as many guesses are free as come at once
+            throttle.wrong(key)
         user = await asyncio.to_thread(self.accounts.user, name) if name and is_whole(name) else None
         try:
-            fits = await self._verifier.fits(password, None if user is None else user.password)
+            verifier = self._friends if is_friend else self._strangers
+            fits = await verifier.fits(password, None if user is None else user.password)
         except BusyError:
+            for throttle, key in counts:
+                throttle.forgive(key, 1)
             raise AccessError(503, "Too many people log in at this moment.", 1.0) from None
         if not fits or user is None:
-            self._by_account.wrong(name)
-            self._by_address.wrong(address)
-            self._by_both.wrong(both)
             await self.note(one_line(name)[:100], address, "log in", "wrong")
             raise AccessError(401, "The name or the password is wrong.")
-        self._by_account.right(name)
         # what others got wrong at this address counts on: an account of one's own mustn't make guessing free
-        self._by_address.forgive(address, self._by_both.right(both))
-        secret = await asyncio.to_thread(self.accounts.log_in, user.name, address)
+        wrong = self._own.right(own[1])
+        for throttle, key in counts[1:]:
+            throttle.forgive(key, wrong)
+        self._pairs[name, address] = None
+        if len(self._pairs) > _MOST_PAIRS:
+            self._pairs.popitem(last=False)
+        try:
+            secret = await asyncio.to_thread(self.accounts.log_in, user.name, address)
+        except StoreError:  # the disk is full: nobody may be kept from stopping a robot
+            secret = self._signed.begin(user)
         await self.note(user.name, address, "log in", "ok")
         identity = await self._identity(secret)
         if identity is None:
             raise AccessError(401, "The name or the password is wrong.")
         return identity, secret
 
+    def device(self, cookie: str, user: str) -> str:
+        """Return the cookie of a browser in which a user has logged in."""
+        return self._devices.add(cookie, user)
+
     async def note(self, user: str, address: str, what: str, outcome: str) -> None:
         """Add to the trail, as soon as the disk takes it."""
         with suppress(MissionError):
             await asyncio.to_thread(self.accounts.log, user, address, what, outcome)
 
-    def forget(self) -> None:
-        """Look everybody up again: something has changed."""
-        self._known.clear()
+    async def still(self, identity: Identity) -> Identity:
+        """Return the same identity as it is now. Raises AccessError (401) if it was revoked."""
+        now = await asyncio.to_thread(self.accounts.still, identity)
+        if now is None:
+            raise AccessError(401, "Log in again: this access was revoked.")
+        return now
 
-    async def identify(self, headers: Mapping[str, str], *, changes: bool) -> Identity:
+    async def identify(self, headers: Mapping[str, str], *, changes: bool, scheme: str = "http") -> Identity:
         """Identify who sends a request: by a token (Authorization: Bearer) or a cookie; with a cookie, what `changes`
-        anything needs the CSRF token too. Raises AccessError (401, 403).
+        anything needs the CSRF token too, and a page of the same host. Raises AccessError (401, 403).
+
+        Who was here a moment ago isn't looked up again: `still` does that.
         """
         kind, _, token = headers.get("authorization", "").partition(" ")
         if kind:
@@ -108,10 +137,10 @@ class Access:
             if identity is None or identity.is_session:
                 raise AccessError(401, "This token isn't valid.")
             return identity
-        identity = await self._identity(_cookie(headers.get("cookie", ""), self.cookie))
+        identity = await self._identity(cookie_in(headers, self.cookie))
         if identity is None or not identity.is_session:
             raise AccessError(401, "Log in first.")
-        if changes and not (is_same_site(headers) and self._is_csrf(identity, headers.get(CSRF, ""))):
+        if changes and not (is_same_site(headers, scheme) and self._is_csrf(identity, headers.get(CSRF, ""))):
             raise AccessError(403, "This request doesn't come from the page of this server.")
         return identity
 
@@ -126,18 +155,22 @@ class Access:
 
     def close(self) -> None:
         """End its threads."""
-        self._verifier.close()
+        self._strangers.close()
+        self._friends.close()
 
     async def _identity(self, secret: str) -> Identity | None:
         known = self._known.get(secret)
         if known is not None and self._clock() < known[1]:
             return known[0]
-        found = await asyncio.to_thread(self.accounts.identity, secret) if secret and is_whole(secret) else None
+        found = await asyncio.to_thread(self._look_up, secret) if secret and is_whole(secret) else None
         if len(self._known) >= _MOST_KNOWN:
             self._known.clear()
         if found is not None:
             self._known[secret] = found, self._clock() + _KNOWN
         return found
+
+    def _look_up(self, secret: str) -> Identity | None:
+        return self._signed.identity(secret, self.accounts) or self.accounts.identity(secret)
 
     def _is_csrf(self, identity: Identity, given: str) -> bool:
         try:
@@ -146,10 +179,25 @@ class Access:
             return False
 
 
-def is_same_site(headers: Mapping[str, str]) -> bool:
-    """Return whether a browser sent a request from a page of this host. Programs send no Origin."""
+def is_same_site(headers: Mapping[str, str], scheme: str = "http") -> bool:
+    """Return whether a browser sent a request from a page of this host. Programs send no Origin.
+
+    With the `scheme` of a request over TLS, the page has to have come over TLS, too: others may have written one that
+    hasn't. Without TLS, a proxy may have ended it.
+    """
     origin = headers.get("origin")
-    return origin is None or (origin != "null" and urlsplit(origin).netloc == headers.get("host"))
+    if origin is None:
+        return True
+    page = urlsplit(origin)
+    is_safe = page.scheme == "https" or scheme not in ("https", "wss")
+    return origin != "null" and page.netloc == headers.get("host") and is_safe
+
+
+def admit(connection: HTTPConnection, user: str) -> None:
+    """Count a connection as one of a user who has logged in. Raises AccessError (429) if the user has too many."""
+    known = connection.scope.get("state", {}).get("connection")
+    if known is not None and not known.admit(user):
+        raise AccessError(429, "You have too many connections.", 1.0)
 
 
 def address_of(connection: HTTPConnection) -> str:
@@ -157,9 +205,10 @@ def address_of(connection: HTTPConnection) -> str:
     return connection.client.host if connection.client is not None else ""
 
 
-def _cookie(header: str, name: str) -> str:
+def cookie_in(headers: Mapping[str, str], name: str) -> str:
+    """Return the cookie of a name, "" for none."""
     try:
-        morsel = SimpleCookie(header).get(name)
+        morsel = SimpleCookie(headers.get("cookie", "")).get(name)
     except CookieError:
         return ""
     return morsel.value if morsel is not None else ""
@@ -167,6 +216,9 @@ def _cookie(header: str, name: str) -> str:
 
 MOST_BYTES = 1_000_000
 """The limit of the body of a request."""
+SMALL = 16_384
+"""The bytes of a body that anybody may send."""
+_MOST_LARGE = 8  # bodies that are larger, of one user at a time
 _PATIENCE = 15.0  # seconds for it
 
 
@@ -179,23 +231,39 @@ class JsonResponse(Response):
         return json.dumps(content, separators=(",", ":")).encode()
 
 
-async def json_object(request: Request) -> dict[str, Any]:
-    """Return the body, which has to be an object. Raises AccessError (400, 413, 415)."""
+_large: Counter[str] = Counter()  # bodies that are on their way, by user
+
+
+async def json_object(request: Request, user: str = "") -> dict[str, Any]:
+    """Return the body, which has to be an object; that of a stranger, without a `user`, has to be small.
+
+    Raises AccessError (400, 408, 413, 415, 429).
+    """
     if request.headers.get("content-encoding", "identity") != "identity":  # a few bytes may become gigabytes
         raise AccessError(415, "The body must not be compressed.")
     if request.headers.get("content-type", "").partition(";")[0].strip().casefold() != "application/json":
         raise AccessError(415, "The body must be application/json.")  # which no form of another site can send
-    body = bytearray()
+    body, most, is_large = bytearray(), MOST_BYTES if user else SMALL, False
     try:
         async with asyncio.timeout(_PATIENCE):
             async for part in request.stream():
                 body += part
-                if len(body) > MOST_BYTES:
-                    raise AccessError(413, f"The body must have at most {MOST_BYTES:,} bytes.")
+                if len(body) > most:
+                    raise AccessError(413, f"The body must have at most {most:,} bytes.")
+                if len(body) > SMALL and not is_large:
+                    if _large[user] >= _MOST_LARGE:
+                        raise AccessError(429, "You send too much at once.", 1.0)
+                    _large[user] += 1
+                    is_large = True
     except TimeoutError:
         raise AccessError(408, "The body takes too long.") from None
     except ClientDisconnect:
         raise AccessError(400, "The body isn't complete.") from None
+    finally:
+        if is_large:
+            _large[user] -= 1
+            if not _large[user]:
+                del _large[user]
     return read_object(bytes(body))
 
 

@@ -19,13 +19,25 @@ from btlang.editing.words import RobotWords
 from btlang.server.accounts.accounts import LONGEST, NEEDED, Accounts, Identity
 from btlang.server.fleet.fleet import Fleet
 from btlang.server.fleet.joining import Joins
-from btlang.server.http.access import COOKIE, Access, AccessError, JsonResponse, address_of, json_object, text_in
+from btlang.server.http.access import (
+    COOKIE,
+    Access,
+    AccessError,
+    JsonResponse,
+    address_of,
+    admit,
+    cookie_in,
+    json_object,
+    text_in,
+)
+from btlang.server.http.listener import MOST_HEAD
 from btlang.server.http.openapi import LIBRARY, VERSION, document
 from btlang.server.http.pages import page_routes
 from btlang.server.live.clients import ClientProtocol
 from btlang.server.live.robot_feeds import RobotFeed, RobotFeeds, metrics
 from btlang.server.live.rosbridge import Rosbridge
 from btlang.server.live.sockets import Sockets
+from btlang.server.live.supervision import supervise
 from btlang.server.page.processes import ASKED, TRIES, Checker, arguments_of, comparison, film, tree
 from btlang.server.page.recordings import (
     RecordingResponse,
@@ -44,8 +56,10 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-MOST_HEAD = 16 * 1024  # bytes
 _MOST_FETCHING = 2  # recordings of robots elsewhere that are shown at a time: each is copied
+_LOOK = 1.0  # seconds between two looks at who may still be here
+_KNOWN_DEVICE = 365 * 86_400  # seconds for which a browser is known
+UNREADABLE = "The server can't read or write its data: the disk may be full."
 _HEADERS = {
     b"content-security-policy": b"default-src 'none'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'",
     b"x-frame-options": b"DENY",
@@ -77,6 +91,8 @@ class Api:
         self.access, self.checker, self.trials = Access(accounts, key, cookie), Checker(), Checker()
         self.sockets, self.clients = Sockets(self.access), ClientProtocol(self.robots, self.send)
         self.rosbridge = Rosbridge(self.access, ros) if ros else None
+        self.stop_port = 0
+        """The port of the process of the emergency stop, 0 for none."""
         self._fetching = asyncio.Semaphore(_MOST_FETCHING)
         self.joins = Joins(Fleet(accounts.database), self.robots, self.access)
 
@@ -103,7 +119,7 @@ class Api:
             self._route("/api/urdf", self._urdf, "GET"),
             self._route("/metrics", self._metrics, "GET"),
             Route("/openapi.json", lambda request: JsonResponse(document())),
-            *page_routes(self.access),
+            *page_routes(self.access, lambda: self.stop_port),
             Route("/live", _word("live")),
             Route("/ready", _word("ready")),
             WebSocketRoute("/api/ws", partial(self.sockets.serve, self.clients)),
@@ -115,12 +131,17 @@ class Api:
         ]
 
     async def check(self) -> None:
-        """Send away who may no longer be here: the accounts have changed."""
+        """Send away who may no longer be here, and look which robots may join."""
         await self.sockets.check()
         await self.joins.check()
 
     async def send(self, identity: Identity, robot: str, command: Command, address: str) -> Answer:
-        """Return a command to a robot, by somebody who may. Raises AccessError."""
+        """Send a command to a robot, by somebody who may at this moment; return the answer. Raises AccessError.
+
+        The emergency stop waits for no disk: it is enough that the access was valid some seconds ago.
+        """
+        if not isinstance(command, messages.EmergencyStop):
+            identity = await self.access.still(identity)
         if not identity.role.covers(NEEDED[type(command)]):
             await self.access.note(identity.user, address, command.tag, "refused")
             raise AccessError(403, f"Only {NEEDED[type(command)]}s may do this.")
@@ -148,18 +169,27 @@ class Api:
     @asynccontextmanager
     async def _life(self, app: Starlette) -> AsyncIterator[None]:
         await self.joins.check()
-        following = asyncio.create_task(self.robots.follow())
+        tasks = [
+            asyncio.create_task(supervise("look for robots", self.robots.follow)),
+            asyncio.create_task(supervise("look at the accounts", self._watch_accounts)),
+        ]
         try:
             yield
         finally:
-            following.cancel()
-            with suppress(asyncio.CancelledError):
-                await following
+            for task in tasks:
+                task.cancel()
+            await asyncio.wait(tasks)
             self.access.close()
             self.checker.close()
             self.trials.close()
             if self.rosbridge is not None:
                 await self.rosbridge.close()
+
+    async def _watch_accounts(self) -> None:
+        while True:
+            await asyncio.sleep(_LOOK)
+            with suppress(StoreError):  # nobody is sent away because a disk doesn't answer
+                await self.check()
 
     def _route(self, path: str, do: Callable[[Request], Awaitable[Response]], method: str) -> Route:
         async def answered(request: Request) -> Response:
@@ -169,25 +199,37 @@ class Api:
                 headers = {"retry-after": f"{error.wait + 1:.0f}"} if error.wait else None
                 return JsonResponse({"ok": False, "text": error.reason, "code": ""}, error.status, headers)
             except StoreError:  # whose text has paths
-                text = "The server can't read or write its data: the disk may be full."
-                return JsonResponse({"ok": False, "text": text, "code": ""}, 503)
+                return JsonResponse({"ok": False, "text": UNREADABLE, "code": ""}, 503)
             except MissionError as error:
                 first = error.diagnostics[0]
                 return JsonResponse({"ok": False, "text": str(error), "code": first.code}, 400)
 
         return Route(path, answered, methods=[method])
 
-    async def _who(self, request: Request) -> Identity:
-        return await self.access.identify(request.headers, changes=request.method not in ("GET", "HEAD"))
+    async def _who(self, request: Request, *, stops: bool = False) -> Identity:
+        """Return who asks, as it is at this moment; one who `stops` a robot waits for no disk."""
+        changes = request.method not in ("GET", "HEAD")
+        identity = await self.access.identify(request.headers, changes=changes, scheme=request.url.scheme)
+        if not stops:
+            identity = await self.access.still(identity)
+        admit(request, identity.user)
+        return identity
 
     async def _log_in(self, request: Request) -> Response:
         data = await json_object(request)
-        address = address_of(request)
-        identity, secret = await self.access.log_in(text_in(data, "name"), text_in(data, "password"), address)
-        return self._logged_in(identity, secret)
-
-    def _logged_in(self, identity: Identity, secret: str) -> Response:
+        name, device = text_in(data, "name"), cookie_in(request.headers, self._device_cookie)
+        identity, secret = await self.access.log_in(name, text_in(data, "password"), address_of(request), device)
+        admit(request, identity.user)
         response = JsonResponse(self._describe(identity))
+        known = self.access.device(device, identity.user)
+        response.set_cookie(value=known, max_age=_KNOWN_DEVICE, **{**self._cookie, "key": self._device_cookie})
+        return self._logged_in(response, secret)
+
+    @property
+    def _device_cookie(self) -> str:
+        return f"{self.access.cookie}-device"
+
+    def _logged_in(self, response: Response, secret: str) -> Response:
         response.set_cookie(value=secret, max_age=int(LONGEST), **self._cookie)
         return response
 
@@ -199,7 +241,7 @@ class Api:
 
     async def _log_out(self, request: Request) -> Response:
         identity = await self._who(request)
-        data = await json_object(request)
+        data = await json_object(request, identity.user)
         ended = "" if data.get("everywhere") is True else identity.id
         await asyncio.to_thread(self.accounts.log_out, identity.user, ended)
         await self.sockets.check()
@@ -219,21 +261,21 @@ class Api:
         return JsonResponse({"robots": listed})
 
     async def _stop(self, request: Request) -> Response:
-        identity = await self._who(request)
-        data = await json_object(request)
+        identity = await self._who(request, stops=True)
+        data = await json_object(request, identity.user)
         robot, reason = data.get("robot", ""), data.get("reason", "")
         command = messages.EmergencyStop(reason if isinstance(reason, str) else "")
         return _answer(await self.send(identity, str(robot), command, address_of(request)))
 
     async def _command(self, request: Request) -> Response:
         identity = await self._who(request)
-        data = await json_object(request)
+        data = await json_object(request, identity.user)
         robot = data.pop("robot", "")
         return _answer(await self.send(identity, str(robot), read_command(data), address_of(request)))
 
     async def _text(self, kind: str, request: Request) -> Response:
         identity = await self._who(request)
-        data = await json_object(request)
+        data = await json_object(request, identity.user)
         text, robot = text_in(data, "text"), str(data.get("robot", ""))
         arguments = arguments_of(kind, data, text)
         words = self.words or (self.feed(robot).words if robot or self.robots.feeds else RobotWords())
@@ -321,7 +363,7 @@ class Api:
 
     async def _put(self, kind: LibraryKind, request: Request) -> Response:
         identity = await self._who(request)
-        data = await json_object(request)
+        data = await json_object(request, identity.user)
         revision = data.get("revision")
         if revision is not None and not isinstance(revision, int):
             raise AccessError(400, "'revision' must be a number.")
@@ -340,7 +382,11 @@ class Api:
         return await self.send(await self._who(request), robot, command, address_of(request))
 
     def _describe(self, identity: Identity) -> dict[str, Any]:
-        described = {"ok": True, "user": identity.user, "role": identity.role, "version": VERSION}
+        described: dict[str, Any] = {
+            "ok": True, "user": identity.user, "role": identity.role, "version": VERSION,
+        }  # fmt: skip
+        if self.stop_port:
+            described["stop"] = self.stop_port
         return {**described, "csrf": self.access.csrf(identity)} if identity.is_session else described
 
 

@@ -1,22 +1,29 @@
-"""The server's process: TLS, the socket it listens on, and connections that say nothing."""
+"""The server's process: TLS, the socket it listens on, and what a client may take of its time and memory."""
 
 from __future__ import annotations
 
 import asyncio
+import ctypes
 import logging
 import os
+import resource
 import secrets
 import socket
 import ssl
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Sequence
 from contextlib import suppress
+from functools import partial
+from ipaddress import ip_network
 
 import uvicorn
+from uvicorn.config import STARTUP_FAILURE
 from uvicorn.protocols.http.h11_impl import H11Protocol
+from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.diagnostics.files import os_error_reason
-from btlang.server.http.app import MOST_HEAD, Api
+from btlang.server.http.connections import HEAD, Acceptor, Connection, Connections
 from btlang.support.private_file import write_private
 from btlang.text.source import NOWHERE
 
@@ -24,32 +31,79 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+    from starlette.types import ASGIApp
+
     from btlang.server.accounts.certificate import Certificate
 
-_HEAD = 10.0  # seconds for the head of the first request
-_MOST_CONNECTIONS = 4000
+MOST_HEAD = 16 * 1024
+"""The bytes of the head of a request."""
 _MOST_FRAME = 256 * 1024  # bytes
+_BUFFER = 64 * 1024  # bytes that wait for a client until its sender waits, too
+_MOST_DESCRIPTORS = 8192
+_RESERVED = 256  # descriptors for robots, files and databases
+_MMAP_THRESHOLD = -3  # the parameter of glibc's mallopt
 
 
 class _Protocol(H11Protocol):
-    """A protocol that hangs up on who connects and says nothing: uvicorn would wait for ever."""
+    """The protocol of one connection over HTTP, which hangs up on who is silent; uvicorn would wait forever."""
+
+    def __init__(self, connection: Connection, **options: Any) -> None:
+        super().__init__(**options)
+        self._connection = connection
+        self.app_state = {**self.app_state, "connection": connection}
+        self.ws_protocol_class = partial(_WebSocketProtocol, connection)  # type: ignore[assignment]
 
     def connection_made(self, transport: Any) -> None:
+        self._connection.transport = transport
+        transport.set_write_buffer_limits(_BUFFER)
         super().connection_made(transport)
-        self._silence = self.loop.call_later(_HEAD, self._hang_up)
 
     def connection_lost(self, exc: Exception | None) -> None:
-        self._silence.cancel()
+        self._connection.gone()
         super().connection_lost(exc)
 
     def handle_events(self) -> None:
+        before = self.cycle
         super().handle_events()
-        if self.cycle is not None or self.transport.get_protocol() is not self:
-            self._silence.cancel()
+        if self.cycle is not before or self.transport.get_protocol() is not self:
+            self._connection.met()
 
-    def _hang_up(self) -> None:
-        if self.cycle is None and self.transport.get_protocol() is self:
-            self.transport.close()
+    def on_response_complete(self) -> None:
+        self._connection.expect(HEAD)
+        super().on_response_complete()
+
+
+class _WebSocketProtocol(WebSocketsSansIOProtocol):
+    """The protocol of one connection over WebSocket."""
+
+    def __init__(self, connection: Connection, **options: Any) -> None:
+        super().__init__(**options)
+        self._connection = connection
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        self._connection.gone()
+        super().connection_lost(exc)
+
+
+class WebServer(uvicorn.Server):
+    """A server of an ASGI application, whose connections are limited before they cost anything."""
+
+    def __init__(self, config: uvicorn.Config, connections: Connections) -> None:
+        super().__init__(config)
+        self.connections = connections
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        await self.lifespan.startup()
+        if self.lifespan.should_exit:
+            sys.exit(STARTUP_FAILURE)
+        acceptors: list[Any] = [
+            Acceptor(each, self.connections, self._protocol, self.config.ssl) for each in sockets or ()
+        ]
+        self.servers = acceptors
+        self.started = True
+
+    def _protocol(self, connection: Connection) -> asyncio.Protocol:
+        return _Protocol(connection, config=self.config, server_state=self.server_state, app_state=self.lifespan.state)
 
 
 def open_listener(host: str, port: int) -> socket.socket:
@@ -65,21 +119,16 @@ def open_listener(host: str, port: int) -> socket.socket:
         raise MissionError([diagnostic("BT201", NOWHERE, place=f"{host}:{port}", reason=reason)]) from None
 
 
-def serve(
-    api: Api, listener: socket.socket, certificate: Certificate | None, control: str, ready: Callable[[], object]
-) -> None:
-    """Serve until SIGINT or SIGTERM.
+def web_server(
+    app: ASGIApp, certificate: Certificate | None, connections: Connections | None = None, proxies: Sequence[str] = ()
+) -> WebServer:
+    """Make the server of an application, with the limits that strangers need.
 
-    Whoever connects to the Unix socket `control` says that the accounts have changed.
+    `proxies` are the addresses and networks of proxies whose X-Forwarded-For and X-Forwarded-Proto are believed.
     """
-    asyncio.run(_serve(api, web_server(api, certificate), listener, control, ready))
-
-
-def web_server(api: Api, certificate: Certificate | None) -> uvicorn.Server:
-    """Make the server of an API, with the limits that strangers need."""
     config = uvicorn.Config(
-        api.app(), http=_Protocol, ws="websockets-sansio", lifespan="on", access_log=False, log_level="error",
-        server_header=False, proxy_headers=False, limit_concurrency=_MOST_CONNECTIONS, timeout_keep_alive=10,
+        app, http=_Protocol, ws=_WebSocketProtocol, lifespan="on", access_log=False, log_level="error",
+        server_header=False, proxy_headers=bool(proxies), forwarded_allow_ips=[*proxies], timeout_keep_alive=int(HEAD),
         h11_max_incomplete_event_size=MOST_HEAD, ws_max_size=_MOST_FRAME, ws_per_message_deflate=False,
         ws_ping_interval=20, ws_ping_timeout=20, timeout_graceful_shutdown=3,
         ssl_context_factory=None if certificate is None else lambda config, usual: tls(certificate),
@@ -87,30 +136,37 @@ def web_server(api: Api, certificate: Certificate | None) -> uvicorn.Server:
     # each write to a client that vanished while its questions are answered is a warning otherwise: a full log, or a
     # pipe that nobody reads, which holds up the end of the server
     logging.getLogger("asyncio").setLevel(logging.ERROR)
-    return uvicorn.Server(config)
+    _return_memory()
+    return WebServer(config, connections or Connections(proxies=[ip_network(each) for each in proxies]))
 
 
-async def _serve(
-    api: Api, server: uvicorn.Server, listener: socket.socket, control: str, ready: Callable[[], object]
-) -> None:
-    async def changed(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        await api.check()
-        writer.close()  # so that the caller knows that the change is in effect
+def most_connections() -> int:
+    """Return how many connections this process may have, once it has asked for as many descriptors as it may get."""
+    _, most = resource.getrlimit(resource.RLIMIT_NOFILE)
+    wanted = _MOST_DESCRIPTORS if most == resource.RLIM_INFINITY else min(most, _MOST_DESCRIPTORS)
+    with suppress(OSError, ValueError):
+        resource.setrlimit(resource.RLIMIT_NOFILE, (wanted, most))
+    limit = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
+    return max(limit - _RESERVED, limit // 2)
 
-    with suppress(FileNotFoundError):
-        os.unlink(control)
-    control_server = await asyncio.start_unix_server(changed, control)
-    os.chmod(control, 0o600)
+
+def serve(server: WebServer, listener: socket.socket, ready: Callable[[], object]) -> None:
+    """Serve until SIGINT or SIGTERM; call `ready` once others can connect."""
+    asyncio.run(_serve(server, listener, ready))
+
+
+async def _serve(server: WebServer, listener: socket.socket, ready: Callable[[], object]) -> None:
     serving = asyncio.create_task(server.serve([listener]))
     while not server.started and not serving.done():
         await asyncio.sleep(0.01)
     ready()
-    try:
-        await serving
-    finally:
-        control_server.close()
-        with suppress(FileNotFoundError):
-            os.unlink(control)
+    await serving
+
+
+def _return_memory() -> None:
+    """Let glibc give large blocks back at once: by default it keeps more of them, the more often it gets some."""
+    with suppress(OSError, AttributeError):
+        ctypes.CDLL(None).mallopt(_MMAP_THRESHOLD, _BUFFER)
 
 
 def tls(certificate: Certificate) -> ssl.SSLContext:

@@ -12,6 +12,7 @@ from btlang.editing.words import RobotWords
 from btlang.server.live.client_queue import ClientQueue, RobotNews
 from btlang.server.live.robot_connection import LocalConnection
 from btlang.server.live.robot_view import RobotView
+from btlang.server.live.supervision import restarts, supervise
 from btlang.task.commands.client import names_up
 from btlang.task.messages import Answer, Command, as_json
 
@@ -126,11 +127,13 @@ class RobotFeed:
     async def follow(self) -> None:
         """Read what happens, until it is cancelled; go on after the last change when the robot is up again."""
         while True:
-            with suppress(*_BROKEN):
-                async with aclosing(self._messages(self._view.change)) as messages:
-                    async for message in messages:
-                        self._take(message)
-            self.leave()
+            try:
+                with suppress(*_BROKEN):
+                    async with aclosing(self._messages(self._view.change)) as messages:
+                        async for message in messages:
+                            self._take(message)
+            finally:
+                self.leave()
             await asyncio.sleep(_AGAIN)
 
     def leave(self) -> None:
@@ -222,7 +225,7 @@ class RobotFeeds:
     def add(self, feed: RobotFeed) -> None:
         """Follow a robot from now on."""
         self.feeds[feed.name] = feed
-        self._following[feed.name] = asyncio.create_task(feed.follow())
+        self._following[feed.name] = asyncio.create_task(supervise(f"follow the robot '{feed.name}'", feed.follow))
         self.came(feed)
 
     def remove(self, name: str) -> None:
@@ -240,11 +243,13 @@ class RobotFeeds:
         """Look for robots again and again, until it is cancelled."""
         try:
             while True:
-                self.look()
+                with suppress(OSError):  # no descriptor is left for the folder
+                    self.look()
                 await asyncio.sleep(_AGAIN)
-        finally:
+        except asyncio.CancelledError:
             for task in self._following.values():
                 task.cancel()
+            raise
 
 
 def metrics(feeds: Iterable[RobotFeed], clients: int) -> str:
@@ -265,5 +270,7 @@ def metrics(feeds: Iterable[RobotFeed], clients: int) -> str:
         if not lines or name not in lines[-1]:
             lines += [f"# HELP {name} {text}", f"# TYPE {name} gauge"]
         lines.append(f'{name}{{robot="{robot}"}} {float(value):g}')
+    lines += ["# HELP btlang_restarts_total Tasks of the server that had to be begun again."]
+    lines += ["# TYPE btlang_restarts_total counter", f"btlang_restarts_total {restarts.total()}"]
     lines += ["# HELP btlang_clients Open WebSockets.", "# TYPE btlang_clients gauge", f"btlang_clients {clients}"]
     return "\n".join(lines) + "\n"

@@ -8,7 +8,7 @@ from contextlib import suppress
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from btlang.server.accounts.accounts import Identity
-from btlang.server.http.access import Access, AccessError, address_of, is_same_site, read_object
+from btlang.server.http.access import Access, AccessError, address_of, admit, is_same_site, read_object
 from btlang.server.live.client_queue import ClientQueue
 from btlang.task.live.feed import Allowance
 
@@ -35,8 +35,10 @@ if TYPE_CHECKING:
 
 
 _LOG_IN = 10.0  # seconds that somebody has for that
-REVOKED, FORBIDDEN, LOST = 4001, 4003, 1011
+REVOKED, FORBIDDEN, TOO_MANY, LOST = 4001, 4003, 4029, 1011
 """The codes with which a socket is closed."""
+MOST_OF_USER = 100
+"""The sockets that a user may have."""
 _UNSUPPORTED = 1003  # the code for what isn't text
 
 
@@ -111,13 +113,16 @@ class Sockets:
 
     async def serve(self, subprotocol: Subprotocol, socket: WebSocket) -> None:
         """Serve one socket, until it ends."""
-        if not is_same_site(socket.headers):  # a page of another site, with our cookie
+        if not is_same_site(socket.headers, socket.url.scheme):  # a page of another site, with our cookie
             await socket.close(FORBIDDEN)
             return
         await socket.accept()
         try:
             identity = await self._log_in(subprotocol, socket)
             if identity is None:
+                return
+            if sum(each.identity.user == identity.user for each in self._clients) >= MOST_OF_USER:
+                await socket.close(TOO_MANY)
                 return
             client = ConnectedClient(socket, identity)
             self._clients.add(client)
@@ -131,9 +136,12 @@ class Sockets:
 
     async def check(self) -> None:
         """End the sockets of those who may no longer be here, and give the others their present role."""
-        self._access.forget()
+        if not self._clients:
+            return
+        now = await asyncio.to_thread(self._access.accounts.generations)
         for client in tuple(self._clients):
-            await self._look(client)
+            if now.get(client.identity.user) != client.identity.generation:
+                await self._look(client)
 
     async def _look(self, client: ConnectedClient) -> None:
         now = await asyncio.to_thread(self._access.accounts.still, client.identity)
@@ -145,6 +153,7 @@ class Sockets:
     async def _log_in(self, subprotocol: Subprotocol, socket: WebSocket) -> Identity | None:
         with suppress(AccessError):
             identity = await self._access.identify(socket.headers, changes=False)
+            admit(socket, identity.user)
             return await _welcome(subprotocol, socket, identity)
         if subprotocol.greeting is not None:
             await socket.send_json(subprotocol.greeting)
@@ -154,6 +163,7 @@ class Sockets:
             token = subprotocol.token(read_object(text))
             found = await self._access.by_token(token) if isinstance(token, str) else None
             if found is not None:
+                admit(socket, found.user)
                 return await _welcome(subprotocol, socket, found)
         await socket.send_json(subprotocol.refusal)
         await socket.close(FORBIDDEN)

@@ -315,8 +315,8 @@ class EditorApi(LocalApi):
         return _answer(await asyncio.to_thread(self._files.read, request.path_params["name"]))
 
     async def _save_file(self, request: Request) -> Response:
-        await self._who(request)
-        data = await json_object(request)
+        identity = await self._who(request)
+        data = await json_object(request, identity.user)
         text, revision = text_in(data, "text"), text_in(data, "revision")
         if not is_whole(text):
             raise AccessError(400, "'text' must be a text that a file can hold: without NUL or half a character.")

@@ -24,7 +24,7 @@ from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.editing.words import RobotWords
 from btlang.run.terminal import interrupted_by_signals
 from btlang.server.accounts.accounts import Accounts, Identity, UserRole
-from btlang.server.http.access import AccessError, address_of, is_same_site, json_object, text_in
+from btlang.server.http.access import AccessError, JsonResponse, address_of, is_same_site, json_object, text_in
 from btlang.server.http.app import Api
 from btlang.server.http.listener import open_listener, web_server
 from btlang.server.http.pages import BUILT
@@ -94,7 +94,7 @@ class LocalApi(Api):
         secret = await asyncio.to_thread(self.accounts.log_in, _USER, address_of(request))
         identity = await asyncio.to_thread(self.accounts.identity, secret)
         assert identity is not None
-        return self._logged_in(identity, secret)
+        return self._logged_in(JsonResponse(self._describe(identity)), secret)
 
     def _describe(self, identity: Identity) -> dict[str, Any]:
         return {**super()._describe(identity), "screen": self._screen}
@@ -189,7 +189,7 @@ def local_page(make: Callable[[Accounts, int, str], LocalApi], port: int = 0) ->
         closing(Accounts(folder, clock=lambda: 0.0)) as accounts,  # its session ends with it, however long that is
     ):
         api = make(accounts, port, folder)
-        server = web_server(api, None)
+        server = web_server(api.app(), None)
         thread = threading.Thread(target=lambda: asyncio.run(server.serve([listener])), name="btlang page", daemon=True)
         thread.start()
         try:

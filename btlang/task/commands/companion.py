@@ -41,11 +41,18 @@ class Companion:
     """A module of btlang that runs as a process.
 
     It ends when its standard input, whose first line is `given`, does: also if this process is killed. `report` gets
-    its lines, and a line when it ends.
+    its lines, and a line when it ends. It has the `descriptors` of this process, by the same numbers.
     """
 
-    def __init__(self, name: str, words: Sequence[str], given: str, report: Callable[[str], object]) -> None:
-        self._name, self._given, self._report = name, given, report
+    def __init__(
+        self,
+        name: str,
+        words: Sequence[str],
+        given: str,
+        report: Callable[[str], object],
+        descriptors: Sequence[int] = (),
+    ) -> None:
+        self._name, self._given, self._report, self._descriptors = name, given, report, descriptors
         self._command = [sys.executable, "-P", "-m", *words]  # -P: a file beside the mission is no module
         self._began, self._closed = threading.Event(), threading.Event()
         self._spoke = False
@@ -69,7 +76,9 @@ class Companion:
         self._thread.join(_PATIENCE)
 
     def _begin(self) -> subprocess.Popen[str]:
-        process = subprocess.Popen(self._command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        process = subprocess.Popen(
+            self._command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, pass_fds=self._descriptors
+        )
         assert process.stdin is not None
         with suppress(OSError):  # it has ended, and its exit code says why
             process.stdin.write(f"{self._given}\n")

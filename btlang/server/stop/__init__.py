@@ -1,0 +1,1 @@
+"""The emergency stop over the network, in a process of its own."""

@@ -1,0 +1,228 @@
+"""The process of the emergency stop: a port, descriptors and a memory of its own, which nothing else can use up.
+
+It knows sessions and tokens by their hashes, which it reads once a second, and reaches robots by the sockets and files
+that are for nothing else. It outlives a server that is killed, until another one begins.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import signal
+import socket
+import sys
+import threading
+import time
+from contextlib import suppress
+from urllib.parse import urlsplit
+
+from starlette.applications import Starlette
+from starlette.requests import ClientDisconnect, Request
+from starlette.responses import PlainTextResponse, Response
+from starlette.routing import Route
+
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.server.accounts.accounts import Accounts, Identity, hash_secret
+from btlang.server.accounts.certificate import Certificate
+from btlang.server.http.access import CSRF, SMALL, Access, AccessError, JsonResponse, read_object
+from btlang.server.http.connections import Connections
+from btlang.server.http.listener import web_server
+from btlang.server.live.robot_connection import LocalConnection
+from btlang.server.live.supervision import supervise
+from btlang.task.commands.client import check_name, data_folder, names_up
+from btlang.task.execution.emergency import shut_latch
+from btlang.task.messages import EmergencyStop, as_json
+from btlang.task.store.database import StoreError
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+    from typing import Any
+
+_READ = 1.0  # seconds between two looks at the sessions and tokens
+_LOOK_UP = 1.0  # seconds for one that isn't known yet
+_STOPPED = 0.8  # seconds in which a robot has to say that it has the stop
+_BODY = 3.0  # seconds for a body
+_RECORDING = 10.0  # seconds in which a robot is told who stopped it, and why
+_MOST_RECORDING = 16
+_ORPHAN = 0.25  # seconds between two looks whether another server has begun
+_LONGEST = 3600.0  # seconds for which it outlives its server
+_MOST_CONNECTIONS, _OF_ADDRESS = 64, 16
+
+
+class StopAccess(Access):
+    """The access to the emergency stop: everybody who is logged in."""
+
+    def __init__(self, accounts: Accounts, key: str, cookie: str) -> None:
+        super().__init__(accounts, key, cookie)
+        self._users: dict[str, Identity] = {}  # by the hashes of their secrets
+
+    def read(self) -> None:
+        """Read the sessions and tokens. Raises StoreError; what was known before stays known."""
+        self._users = {each.id: each for each in self.accounts.identities()}
+
+    async def _identity(self, secret: str) -> Identity | None:
+        found = self._users.get(hash_secret(secret))
+        if found is None and secret:  # it's younger than the last look
+            with suppress(TimeoutError, StoreError):
+                async with asyncio.timeout(_LOOK_UP):
+                    return await super()._identity(secret)
+        return found
+
+
+class StopApp:
+    """The application that stops robots: `POST /api/stop` with a `robot` and a `reason`.
+
+    A page of another port of the same host may ask, too: it sends its CSRF token in the body, as `csrf`, so that the
+    browser doesn't ask first.
+    """
+
+    def __init__(self, access: StopAccess, connections: Connections) -> None:
+        self._access, self._connections = access, connections
+        self._recording: set[asyncio.Task[None]] = set()
+        self.app = Starlette(
+            routes=[
+                Route("/api/stop", self._answer, methods=["POST"]),
+                Route("/live", lambda request: PlainTextResponse("live")),
+            ]
+        )
+
+    async def watch(self) -> None:
+        """Read who may stop robots, again and again."""
+        while True:
+            with suppress(StoreError):
+                await asyncio.to_thread(self._access.read)
+                for _, address in await asyncio.to_thread(self._access.accounts.addresses):
+                    self._connections.remember(address)
+            await asyncio.sleep(_READ)
+
+    async def _answer(self, request: Request) -> Response:
+        origin = request.headers.get("origin", "")
+        headers = {"connection": "close", "cache-control": "no-store"}
+        if origin and urlsplit(origin).hostname == request.url.hostname:
+            headers |= {
+                "access-control-allow-origin": origin, "access-control-allow-credentials": "true", "vary": "origin",
+            }  # fmt: skip
+        try:
+            text = await self._stop(request, origin)
+            return JsonResponse({"ok": True, "text": text, "data": {}, "code": ""}, headers=headers)
+        except AccessError as error:
+            return JsonResponse({"ok": False, "text": error.reason, "code": ""}, error.status, headers)
+        except StoreError:
+            return JsonResponse({"ok": False, "text": "The accounts can't be read.", "code": ""}, 503, headers)
+
+    async def _stop(self, request: Request, origin: str) -> str:
+        data = read_object(await _body(request))
+        given: Mapping[str, str] = {
+            **request.headers,
+            "host": urlsplit(origin).netloc if urlsplit(origin).hostname == request.url.hostname else "",
+            CSRF: str(data.get("csrf", "")) or request.headers.get(CSRF, ""),
+        }
+        identity = await self._access.identify(given, changes=True, scheme=request.url.scheme)
+        robot, reason = data.get("robot", ""), data.get("reason", "")
+        name = await self._name(str(robot))
+        try:
+            async with asyncio.timeout(_STOPPED):
+                await LocalConnection(name).stop()
+        except OSError:
+            await asyncio.to_thread(_shut, name, identity.user, str(reason))
+            raise AccessError(
+                503, f"The emergency stop may not have reached the robot '{name}': STOP IT WHERE IT STANDS."
+            ) from None
+        finally:
+            self._record(name, identity.user, str(reason))
+        return f"The robot '{name}' is stopped."
+
+    async def _name(self, robot: str) -> str:
+        try:
+            if robot:
+                known = check_name(robot)
+                if not os.path.isdir(data_folder(known)) and known not in await asyncio.to_thread(names_up):
+                    raise AccessError(404, f"There's no robot '{known}' on this computer.")
+                return known
+            up = await asyncio.to_thread(names_up)
+        except MissionError:
+            raise AccessError(404, "There's no such robot.") from None
+        if len(up) != 1:
+            raise AccessError(409, f"Say which robot: {', '.join(up)}." if up else "No robot is up.")
+        return up[0]
+
+    def _record(self, robot: str, user: str, reason: str) -> None:
+        """Tell the robot who stopped it and why, once it is stopped."""
+        if len(self._recording) < _MOST_RECORDING:
+            task = asyncio.create_task(_tell(robot, user, reason))
+            self._recording.add(task)
+            task.add_done_callback(self._recording.discard)
+
+
+async def _body(request: Request) -> bytes:
+    body = bytearray()
+    try:
+        async with asyncio.timeout(_BODY):
+            async for part in request.stream():
+                body += part
+                if len(body) > SMALL:
+                    raise AccessError(413, f"The body must have at most {SMALL:,} bytes.")
+    except TimeoutError:
+        raise AccessError(408, "The body takes too long.") from None
+    except ClientDisconnect:
+        raise AccessError(400, "The body isn't complete.") from None
+    return bytes(body)
+
+
+async def _tell(robot: str, user: str, reason: str) -> None:
+    with suppress(OSError, ValueError):
+        async with asyncio.timeout(_RECORDING):
+            await LocalConnection(robot).ask({**as_json(EmergencyStop(reason)), "as": user})
+
+
+def _shut(robot: str, user: str, reason: str) -> None:
+    """Stop a robot that doesn't answer by the file of its latch."""
+    with suppress(OSError):
+        shut_latch(data_folder(robot), user, reason)
+
+
+def _watch_parent(notice: str, end: Callable[[], object]) -> None:
+    """End once a server that was killed has a successor, which wants this port, too; but not never."""
+    before = _read_text(notice)
+    sys.stdin.read()
+    until = time.monotonic() + _LONGEST
+    while time.monotonic() < until and _read_text(notice) == before != "":
+        time.sleep(_ORPHAN)
+    end()
+
+
+def _read_text(path: str) -> str:
+    try:
+        with open(path, encoding="ascii") as file:
+            return file.read()
+    except OSError:
+        return ""
+
+
+async def _serve(settings: dict[str, Any]) -> None:
+    accounts = Accounts(settings["folder"])
+    connections = Connections(_MOST_CONNECTIONS, _MOST_CONNECTIONS - _OF_ADDRESS, _OF_ADDRESS)
+    app = StopApp(StopAccess(accounts, settings["key"], settings["cookie"]), connections)
+    certificate = None if settings["certificate"] is None else Certificate(*settings["certificate"])
+    server = web_server(app.app, certificate, connections, settings["proxies"])
+    watching = asyncio.create_task(supervise("read the accounts", app.watch))
+    end = lambda: os.kill(os.getpid(), signal.SIGTERM)  # noqa: E731 - a thread needs it
+    threading.Thread(target=_watch_parent, args=(settings["notice"], end), daemon=True).start()
+    serving = asyncio.create_task(server.serve([socket.socket(fileno=settings["descriptor"])]))
+    while not server.started and not serving.done():
+        await asyncio.sleep(0.01)
+    print("The emergency stop is up.", flush=True)
+    await serving
+    watching.cancel()
+
+
+def main() -> int:
+    """Serve until the server has ended."""
+    asyncio.run(_serve(json.loads(sys.stdin.readline())))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
