@@ -343,6 +343,10 @@ class Answer(Record):
         return {"ok": self.ok, "text": self.text, "data": dict(self.data), "code": self.code}
 
 
+MOST_REASON = 500
+"""The characters of a reason that are kept; every answer about the state of a robot has them."""
+
+
 def read_command(data: object) -> Command:
     """Read a command from its JSON. Raises MissionError (BT198) if it isn't one."""
     if not isinstance(data, dict):
@@ -359,6 +363,8 @@ def read_command(data: object) -> Command:
         if field not in kind.fields:
             raise wrong(kind.tag, f"it has no field '{field}'")
         given[field] = _check_field(kind, field, value)
+        if field == "reason":  # an emergency stop isn't refused because somebody has much to say
+            given[field] = given[field][:MOST_REASON]
     missing = [field for field in kind.fields if field not in given and field not in kind.field_defaults]
     if missing:
         raise wrong(kind.tag, f"the field '{missing[0]}' is missing")

@@ -200,8 +200,8 @@ def trusting() -> ssl.SSLContext:
 
 
 def child_of(process: int) -> int:
-    """The first process that a process started."""
-    return int(Path(f"/proc/{process}/task/{process}/children").read_text(encoding="ascii").split()[0])
+    """The latest process that a process started."""
+    return int(Path(f"/proc/{process}/task/{process}/children").read_text(encoding="ascii").split()[-1])
 
 
 def free_port() -> int:

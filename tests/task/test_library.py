@@ -107,7 +107,13 @@ def test_refused_texts(layer: TaskLayer) -> None:
     matches_golden("\n\n".join(told) + "\n", HERE / "refused_texts.out")
 
 
-@pytest.mark.parametrize("name", ["..", "🤖", "Ünï cöde", "-c", "library:a", "a" * 200, "'; DROP TABLE revision; --"])
+@pytest.mark.parametrize("name", [".", ".."])
+def test_a_name_that_no_address_can_have_is_refused(layer: TaskLayer, name: str) -> None:
+    answer = layer.handle({"command": "put", "name": name, "text": "wave"})
+    assert (answer.ok, answer.code) == (False, "BT198")
+
+
+@pytest.mark.parametrize("name", ["...", "🤖", "Ünï cöde", "-c", "library:a", "a" * 200, "'; DROP TABLE revision; --"])
 def test_a_name_is_nothing_but_a_name(layer: TaskLayer, name: str) -> None:
     for kind in LibraryKind:
         ask(layer, "put", name=name, kind=kind, text=TEXTS[kind])

@@ -216,7 +216,7 @@ def cookie_in(headers: Mapping[str, str], name: str) -> str:
 
 MOST_BYTES = 1_000_000
 """The limit of the body of a request."""
-SMALL = 16_384
+SMALL = 131_072
 """The bytes of a body that anybody may send."""
 _MOST_LARGE = 8  # bodies that are larger, of one user at a time
 _PATIENCE = 15.0  # seconds for it

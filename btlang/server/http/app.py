@@ -59,6 +59,7 @@ if TYPE_CHECKING:
 _MOST_FETCHING = 2  # recordings of robots elsewhere that are shown at a time: each is copied
 _LOOK = 1.0  # seconds between two looks at who may still be here
 _KNOWN_DEVICE = 365 * 86_400  # seconds for which a browser is known
+_NO_STORE = "The robot can't read or write its data: its disk may be full. The command wasn't done."
 UNREADABLE = "The server can't read or write its data: the disk may be full."
 _HEADERS = {
     b"content-security-policy": b"default-src 'none'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'",
@@ -146,10 +147,13 @@ class Api:
             await self.access.note(identity.user, address, command.tag, "refused")
             raise AccessError(403, f"Only {NEEDED[type(command)]}s may do this.")
         feed = self.feed(robot)
+        if feed.is_elsewhere and not isinstance(command, messages.EmergencyStop):
+            await self.joins.check()
+            feed = self.feed(robot)
         try:
             if isinstance(command, messages.EmergencyStop):
                 await feed.stop()  # at once; what follows says who, and why
-            return await feed.send(command, identity.user)
+            return _without_places(await feed.send(command, identity.user))
         except ConnectionError as error:
             raise AccessError(503, str(error)) from None
 
@@ -254,6 +258,7 @@ class Api:
 
     async def _robots(self, request: Request) -> Response:
         await self._who(request)
+        await self.joins.check()
         feeds = self.robots.feeds.values()
         listed = [
             {"name": each.name, "up": each.is_up, "seen": each.seen, "elsewhere": each.is_elsewhere} for each in feeds
@@ -410,6 +415,11 @@ class _Headers:
         head = [text for header in scope.get("headers", ()) for text in header]
         too_long = sum(map(len, head)) > MOST_HEAD  # the limit of h11 is for what comes in parts
         await (_too_long if too_long else self._app)(scope, receive, said)
+
+
+def _without_places(answer: Answer) -> Answer:
+    """Return an answer without the paths of a computer, which a message about a store has."""
+    return answer.replace(text=_NO_STORE) if answer.code == "BT195" else answer
 
 
 def _answer(answer: Answer) -> Response:

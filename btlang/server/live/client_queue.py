@@ -8,7 +8,7 @@ from collections import deque
 from collections.abc import Container
 from contextlib import suppress
 
-from btlang.server.live.robot_view import STATES, merge_statuses
+from btlang.server.live.robot_view import NEWEST, merge_statuses
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -75,7 +75,7 @@ class ClientQueue:
             return
         if kind == "statuses":
             self._merge(news)
-        elif kind in STATES:
+        elif kind in NEWEST:
             self._states[news.robot, kind] = news
         else:
             if kind in ("run", "away"):  # after the last statuses of the run before

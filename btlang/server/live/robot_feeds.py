@@ -54,6 +54,8 @@ class RobotFeed:
         self._paging = asyncio.Lock()  # each is a watcher more for the robot
         self._up = asyncio.Event()
         self._view = RobotView()
+        self._ages: tuple[float, dict[str, Any]] | None = None
+        """The newest message about the ages of readings, and when it came."""
 
     @property
     def is_up(self) -> bool:
@@ -113,6 +115,8 @@ class RobotFeed:
         """
         for message in self._view.messages():
             queue.put(RobotNews(self.name, message))
+        if self.is_up and self._ages is not None:
+            queue.put(RobotNews(self.name, _older(self._ages[1], time.monotonic() - self._ages[0])))
         self._queues.add(queue)
         if after is not None:
             self._catching_up[queue] = asyncio.create_task(self._catch_up(queue, after))
@@ -140,6 +144,7 @@ class RobotFeed:
         """Mark the robot as no longer up."""
         if self.is_up:
             self._up.clear()
+            self._ages = None
             self._publish({"type": "away"})
 
     async def _messages(self, after: int | None) -> AsyncGenerator[dict[str, Any]]:
@@ -193,7 +198,9 @@ class RobotFeed:
                 self.recordings = str(message.get("recordings", ""))
             self._publish({"type": "up", "change": message["change"]})
             self._up.set()
-        elif kind != "alive":
+        else:
+            if kind == "ages":
+                self._ages = time.monotonic(), message
             self._publish(message)
 
     def _publish(self, message: dict[str, Any]) -> None:
@@ -250,6 +257,11 @@ class RobotFeeds:
             for task in self._following.values():
                 task.cancel()
             raise
+
+
+def _older(ages: dict[str, Any], seconds: float) -> dict[str, Any]:
+    """Return a message about ages as it would be some seconds later, if nothing was read meanwhile."""
+    return {name: value + seconds if isinstance(value, int | float) else value for name, value in ages.items()}
 
 
 def metrics(feeds: Iterable[RobotFeed], clients: int) -> str:

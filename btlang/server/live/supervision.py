@@ -8,6 +8,7 @@ import time
 import traceback
 from collections import Counter
 from collections.abc import Awaitable, Callable
+from contextlib import suppress
 
 from btlang.text.output import show
 
@@ -30,5 +31,6 @@ async def supervise(name: str, work: Callable[[], Awaitable[object]]) -> None:
             if time.monotonic() - said >= _SAID:
                 said = time.monotonic()
                 problem = "".join(traceback.format_exception_only(error)).strip()
-                show(f"The server can't {name}, and tries again: {problem}", sys.stderr)
+                with suppress(OSError):  # nobody may read it any more
+                    show(f"The server can't {name}, and tries again: {problem}", sys.stderr)
         await asyncio.sleep(_AGAIN)

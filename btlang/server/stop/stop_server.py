@@ -1,7 +1,7 @@
 """The process of the emergency stop: a port, descriptors and a memory of its own, which nothing else can use up.
 
 It knows sessions and tokens by their hashes, which it reads once a second, and reaches robots by the sockets and files
-that are for nothing else. It outlives a server that is killed, until another one begins.
+that are for nothing else. It outlives a server that is killed for some seconds, in which another one may begin.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from starlette.routing import Route
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.server.accounts.accounts import Accounts, Identity, hash_secret
 from btlang.server.accounts.certificate import Certificate
-from btlang.server.http.access import CSRF, SMALL, Access, AccessError, JsonResponse, read_object
+from btlang.server.http.access import CSRF, Access, AccessError, JsonResponse, read_object
 from btlang.server.http.connections import Connections
 from btlang.server.http.listener import web_server
 from btlang.server.live.robot_connection import LocalConnection
@@ -43,11 +43,12 @@ if TYPE_CHECKING:
 _READ = 1.0  # seconds between two looks at the sessions and tokens
 _LOOK_UP = 1.0  # seconds for one that isn't known yet
 _STOPPED = 0.8  # seconds in which a robot has to say that it has the stop
+_MOST_BYTES = 16_384  # of a body
 _BODY = 3.0  # seconds for a body
 _RECORDING = 10.0  # seconds in which a robot is told who stopped it, and why
 _MOST_RECORDING = 16
 _ORPHAN = 0.25  # seconds between two looks whether another server has begun
-_LONGEST = 3600.0  # seconds for which it outlives its server
+_LONGEST = 10.0  # seconds for which it outlives a server that was killed
 _MOST_CONNECTIONS, _OF_ADDRESS = 64, 16
 
 
@@ -162,8 +163,8 @@ async def _body(request: Request) -> bytes:
         async with asyncio.timeout(_BODY):
             async for part in request.stream():
                 body += part
-                if len(body) > SMALL:
-                    raise AccessError(413, f"The body must have at most {SMALL:,} bytes.")
+                if len(body) > _MOST_BYTES:
+                    raise AccessError(413, f"The body must have at most {_MOST_BYTES:,} bytes.")
     except TimeoutError:
         raise AccessError(408, "The body takes too long.") from None
     except ClientDisconnect:
@@ -184,9 +185,12 @@ def _shut(robot: str, user: str, reason: str) -> None:
 
 
 def _watch_parent(notice: str, end: Callable[[], object]) -> None:
-    """End once a server that was killed has a successor, which wants this port, too; but not never."""
+    """End some seconds after the server was killed, or once there is another one, which wants this port, too."""
     before = _read_text(notice)
     sys.stdin.read()
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 1)  # nobody reads what it says any more
+    os.dup2(nowhere, 2)
     until = time.monotonic() + _LONGEST
     while time.monotonic() < until and _read_text(notice) == before != "":
         time.sleep(_ORPHAN)
@@ -220,6 +224,7 @@ async def _serve(settings: dict[str, Any]) -> None:
 
 def main() -> int:
     """Serve until the server has ended."""
+    os.dup2(1, 2)  # its server says what it says, and whoever reads that isn't kept waiting when that has ended
     asyncio.run(_serve(json.loads(sys.stdin.readline())))
     return 0
 

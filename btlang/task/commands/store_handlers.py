@@ -66,6 +66,8 @@ class LibraryHandler:
         if not name.strip() or "/" in name or not name.isprintable() or len(name) > _LONGEST_NAME:
             reason = f"a name of at most {_LONGEST_NAME} characters, without '/', that can be shown"
             raise wrong(command.tag, f"'name' must be {reason}")
+        if name in (".", ".."):  # browsers leave them out of addresses
+            raise wrong(command.tag, "'name' must not be '.' or '..'")
         self._check(kind, name, command.text)
         kept = self._store.put_text(name, command.text, person, self._now(), command.revision, kind)
         if kept is None:

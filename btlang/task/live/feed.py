@@ -70,7 +70,7 @@ class Allowance:
 
 RATES = 0.1, 100.0
 """The least and the most messages of one kind in a second."""
-_ALIVE = 5.0  # seconds after which a watcher of a robot on which nothing happens gets a word nevertheless
+_AGES = 1.0  # seconds between two messages about how old the readings are, also where nothing happens
 _GATHERED, _GATHERED_AT_MOST = 0.2, 0.01  # of a period, and seconds: what comes so soon after other news goes with it
 _SCANS = 0.5  # seconds between two
 _MOST_EVENTS, _MOST_RUNS, _MOST_CHANGES = 1000, 16, 1000
@@ -126,6 +126,7 @@ class Feed:
         self._planned: Sequence[Point] = ()
         self._way: list[list[float]] = []
         self._next_scan = 0.0
+        self._read: dict[str, float] = {}  # when the state and the scan were read, on the clock of `_ages`
         self._doing = Doing()
         store.listeners.append(self.wake)
 
@@ -168,6 +169,7 @@ class Feed:
         """Take in an event, in the thread of the run."""
         if isinstance(event, PeriodPassed):
             self._state = event.state
+            self._read["state"] = time.monotonic()
             if self._map is not None:
                 self._map.look(event.robot)
             if self._watchers:
@@ -176,6 +178,7 @@ class Feed:
             if self._watchers and event.wall >= self._next_scan:
                 self._next_scan = event.wall + _SCANS
                 self._scan, self._scanned_from = _scan(event), None if event.state is None else event.state.place
+                self._read["scan"] = time.monotonic()
                 self._parts = self._look_at_parts()
         elif isinstance(event, StatusesChanged):
             watched.take(event)
@@ -196,15 +199,24 @@ class Feed:
 
     def _messages(self, watcher: _Watcher, period: float) -> Iterator[dict[str, Any]]:
         allowance = Allowance(period)
+        due = 0.0
         while True:
             yield from self._new(watcher)
-            if not watcher.news.wait(_ALIVE):
-                yield {"type": "alive"}
+            if time.monotonic() >= due:
+                due = time.monotonic() + _AGES
+                yield self._ages()
+            if not watcher.news.wait(max(0.0, due - time.monotonic())):
                 continue
             # A period ends just before the next tick: so one message reports both, and not the tick a period later.
             time.sleep(max(min(period * _GATHERED, _GATHERED_AT_MOST), allowance.wait(time.monotonic())))
             allowance.use(time.monotonic())
             watcher.news.clear()
+
+    def _ages(self) -> dict[str, Any]:
+        """Return how many seconds ago the state and the scan were read, None for never, and when that was found."""
+        now = time.monotonic()
+        ages = {kind: round(now - self._read[kind], 2) if kind in self._read else None for kind in ("state", "scan")}
+        return {"type": "ages", "t": round(now, 3), **ages}
 
     def _new(self, watcher: _Watcher) -> Iterator[dict[str, Any]]:
         while found := self._store.changes(after=watcher.change, limit=_MOST_CHANGES):

@@ -12,6 +12,8 @@ export interface Answer {
 export interface Me {
   user: string;
   role: Role;
+  /** The port of the process of the emergency stop, 0 for none. */
+  stop: number;
   /** The address of the only screen of this server, [] where it has all. */
   screen: string[];
 }
@@ -60,6 +62,14 @@ async function answered(path: string, options: RequestInit = {}): Promise<Respon
   throw new RequestError(answer.status, data.text ?? answer.statusText, data);
 }
 
+/** Stops a robot through the process that is for nothing else. Throws RequestError. */
+export async function stopBeside(me: Me, robot: string): Promise<void> {
+  if (!me.stop) throw new RequestError(0, "there is no such process");
+  const place = `${location.protocol}//${location.hostname}:${me.stop}/api/stop`;
+  // text, so that the browser sends it without asking first
+  await answered(place, { method: "POST", credentials: "include", headers: { "content-type": "text/plain" }, body: JSON.stringify({ robot, csrf }) });
+}
+
 export const post = (path: string, body: unknown): Promise<any> => request("POST", path, body);
 
 /** Who is logged in, null for nobody. Throws RequestError if the server doesn't answer. */
@@ -89,5 +99,5 @@ export async function logOut(): Promise<void> {
 
 function known(data: any): Me {
   csrf = data.csrf ?? "";
-  return { user: data.user, role: data.role, screen: data.screen ?? [] };
+  return { user: data.user, role: data.role, screen: data.screen ?? [], stop: data.stop ?? 0 };
 }

@@ -77,6 +77,11 @@ export interface Device {
   silent: string;
 }
 
+/** The seconds after which a reading is shown as old. */
+const OLD = 2;
+const MINUTE = 60;
+const LOOK = 250; // milliseconds between two looks at the ages
+
 const MOST_ENTRIES = 500;
 const MOST_STEPS = 2000;
 
@@ -115,6 +120,9 @@ export class Robot {
   entries: Entry[] = [];
   /** Where it has been. */
   path: Point[] = [];
+  /** When its state and its scan were read, and when it was heard, in seconds on the clock of this page; null for never. */
+  private read = { state: null as number | null, scan: null as number | null, heard: null as number | null };
+  private delay = new Delay();
   private fresh = false; // its next statuses are those that it had when the page came, not changes
 
   constructor(readonly name: string) {
@@ -123,7 +131,11 @@ export class Robot {
 
   /** Takes in a message; null is the loss of the connection. */
   take(news: News | null): void {
-    if (news?.type === "up") Object.assign(this, unknown(), { up: true, away: false, fresh: true });
+    if (news?.type === "up") {
+      Object.assign(this, unknown(), { up: true, away: false, fresh: true });
+      this.read = { state: null, scan: null, heard: null };
+      this.delay = new Delay();
+    } else if (news?.type === "ages") this.note(news);
     else if (!news || news.type === "away") Object.assign(this, { up: false, away: news !== null, state: null });
     else if (news.type === "run") this.begin(news);
     else if (news.type === "statuses") this.change(news);
@@ -141,6 +153,33 @@ export class Robot {
       else if (news.type === "components") this.parts = { components: news["components"], devices: news["devices"] };
       else if (news.type === "doing") this.doing = { task: news["task"], goal: news["goal"], says: news["says"], heard: news["heard"] };
     }
+  }
+
+  /** How many seconds ago what is shown of it was read, rounded down; 0 for what is true now, null where nobody knows. */
+  get age(): number | null {
+    return this.since(this.read.state);
+  }
+
+  /** The same of what its scanner saw. */
+  get scanAge(): number | null {
+    return this.since(this.read.scan);
+  }
+
+  /** Whether what was said of it lately, such as that it is stopped, is true now. */
+  get isHeard(): boolean {
+    return this.since(this.read.heard) === 0;
+  }
+
+  private since(read: number | null): number | null {
+    if (read === null || this.read.heard === null) return null;
+    const age = now() - Math.min(read, this.read.heard);
+    return age > OLD ? Math.floor(age) : 0;
+  }
+
+  private note(news: News): void {
+    const late = this.delay.of(now() - news["t"]);
+    const at = (age: number | null): number | null => (age === null ? null : now() - late - age);
+    this.read = { state: at(news["state"]), scan: at(news["scan"]), heard: now() - late };
   }
 
   private begin(news: News): void {
@@ -181,18 +220,38 @@ export class Robot {
   }
 }
 
+const now = (): number => performance.now() / 1000;
+
+/** How late messages are, from the differences of two clocks: the least one of the last minutes is on time. */
+class Delay {
+  private least = Infinity;
+  private before = Infinity;
+  private until = now() + MINUTE;
+
+  of(difference: number): number {
+    if (now() > this.until) [this.before, this.least, this.until] = [this.least, Infinity, now() + MINUTE];
+    this.least = Math.min(this.least, difference);
+    return difference - Math.min(this.least, this.before);
+  }
+}
+
 /** The line of the log for a message about an event. */
 export function entryOf(news: News): Entry {
   return { task: news["task"], wall: news["event"].wall, event: whole(news["event"]) };
 }
 
-export type Kind = "up" | "away" | "run" | "statuses" | "robot" | "map" | "things" | "asking" | "scan" | "way" | "doing" | "joints" | "speech" | "components" | "event" | "change" | "offline";
+export type Kind = "up" | "away" | "run" | "statuses" | "robot" | "map" | "things" | "asking" | "scan" | "way" | "doing" | "joints" | "speech" | "components" | "event" | "change" | "ages" | "old" | "offline";
 export type Watcher = (robot: Robot, kind: Kind, news: News | null) => void;
 
 /** All robots by their names. Watchers are called after each message has been taken in. */
 export class Fleet {
   readonly robots = new Map<string, Robot>();
   private watchers = new Set<Watcher>();
+  private shown = new Map<string, string>();
+
+  constructor() {
+    setInterval(() => this.look(), LOOK);
+  }
 
   /** Until the function that it returns is called. */
   watch(watcher: Watcher): () => void {
@@ -213,6 +272,16 @@ export class Fleet {
 
   take(news: News): void {
     this.tell(this.get(news.robot), news.type as Kind, news);
+  }
+
+  /** Tells watchers of readings that have become older, as "old". */
+  private look(): void {
+    for (const robot of this.robots.values()) {
+      const ages = JSON.stringify([robot.age, robot.scanAge, robot.isHeard]);
+      if (ages === this.shown.get(robot.name)) continue;
+      this.shown.set(robot.name, ages);
+      for (const watcher of [...this.watchers]) watcher(robot, "old", null);
+    }
   }
 
   private tell(robot: Robot, kind: Kind, news: News | null): void {

@@ -29,6 +29,18 @@ function card(robot: Robot): HTMLElement {
 /** How a robot is, as a class and in words. */
 export function state(robot: Robot): [kind: "good" | "bad" | "quiet", text: string] {
   if (!robot.up) return ["quiet", t("robot.away")];
+  const [kind, text] = latest(robot);
+  return robot.age === 0 ? [kind, text] : [kind === "good" ? "quiet" : kind, `${text} · ${oldness(robot)}`];
+}
+
+/** How old what is known of a robot is, in words; "" where it is true now. */
+export function oldness(robot: Robot): string {
+  if (robot.age === null) return t("robot.unread");
+  if (robot.age === 0) return "";
+  return robot.age < 120 ? t("robot.old", { seconds: robot.age }) : t("robot.very_old", { minutes: Math.floor(robot.age / 60) });
+}
+
+function latest(robot: Robot): [kind: "good" | "bad" | "quiet", text: string] {
   const battery = robot.state?.battery;
   const charge = battery === null || battery === undefined ? "" : ` · ${t("robot.battery", { percent: Math.round(battery) })}`;
   if (robot.state?.stopped) return ["bad", t("robot.stopped") + charge];

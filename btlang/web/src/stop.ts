@@ -1,5 +1,5 @@
-// The emergency stop, on every screen: one touch or one key, over two ways at once. What it shows comes from the server.
-import { may, request, type Me } from "./api";
+// The emergency stop, on every screen: one touch or one key, over three ways at once. What it shows comes from the server.
+import { may, request, stopBeside, type Me } from "./api";
 import { fill, h } from "./dom";
 import type { Fleet, Robot } from "./fleet";
 import type { Link } from "./socket";
@@ -7,8 +7,10 @@ import { t } from "./texts";
 
 const CONFIRMED = 900; // milliseconds in which a stop has to be confirmed; people are warned within a second
 
-/** Of one robot since the button was pressed. */
-type Pressed = "sent" | "confirmed" | "lost";
+const MISSED = 20_000; // milliseconds for which it is said that a stop didn't reach a robot
+
+/** Of one robot since the button was pressed; "missed" where it was lost, and the robot says by now that it isn't stopped. */
+type Pressed = "sent" | "confirmed" | "lost" | "missed";
 
 /** `robots` are those that a press stops, [""] where the server has to know which. */
 export class EmergencyStop {
@@ -35,7 +37,8 @@ export class EmergencyStop {
     addEventListener("keydown", this.onKey, { capture: true });
     this.unwatch = fleet.watch((robot, kind) => {
       if (kind === "robot" && robot.state?.stopped && this.pressed.has(robot.name)) this.pressed.delete(robot.name);
-      if (["robot", "up", "away", "offline"].includes(kind)) this.show();
+      if ((kind === "ages" || kind === "old") && this.pressed.get(robot.name) === "lost" && robot.isHeard && robot.state) this.settle(robot);
+      if (["robot", "up", "away", "offline", "old"].includes(kind)) this.show();
     });
     this.show();
   }
@@ -55,13 +58,23 @@ export class EmergencyStop {
     const timer = setTimeout(() => this.pressed.get(robot) === "sent" && this.note(robot, "lost"), CONFIRMED);
     const bySocket = this.link.send(robot, "emergency_stop").then((answer) => answer.ok || Promise.reject(new Error(answer.text)));
     try {
-      await Promise.any([request("POST", "/api/stop", { robot }), bySocket]);
+      await Promise.any([request("POST", "/api/stop", { robot }), bySocket, stopBeside(this.me, robot)]);
       if (this.pressed.has(robot)) this.note(robot, "confirmed");
     } catch {
       if (this.pressed.has(robot)) this.note(robot, "lost");
     } finally {
       clearTimeout(timer);
     }
+  }
+
+  /** Says what became of a stop that nobody had confirmed, once the robot is heard again. */
+  private settle(robot: Robot): void {
+    if (robot.state?.stopped) this.pressed.delete(robot.name);
+    else {
+      this.note(robot.name, "missed");
+      setTimeout(() => this.pressed.get(robot.name) === "missed" && this.pressed.delete(robot.name) && this.show(), MISSED);
+    }
+    this.show();
   }
 
   private async release(robot: Robot): Promise<void> {
@@ -85,13 +98,14 @@ export class EmergencyStop {
     const by = (wanted: Pressed) => [...this.pressed].filter(([, each]) => each === wanted).map(([name]) => name || t("robot.the"));
     const text = [
       ...by("lost").map((robot) => t("stop.lost", { robot })),
+      ...by("missed").map((robot) => t("stop.missed", { robot })),
       ...by("sent").map((robot) => t("stop.sent", { robot })),
       ...by("confirmed").map((robot) => t("stop.confirmed", { robot })),
     ].join(" ");
     if (text !== this.said.textContent) fill(this.said, text);
-    this.said.classList.toggle("lost", by("lost").length > 0);
+    this.said.classList.toggle("lost", by("lost").length + by("missed").length > 0);
     const latched = [...this.fleet.robots.values()].filter((robot) => robot.state?.stopped);
-    const shown = JSON.stringify(latched.map((robot) => [robot.name, robot.state!.stopped]));
+    const shown = JSON.stringify(latched.map((robot) => [robot.name, robot.state!.stopped, robot.isHeard]));
     if (shown === this.shown) return; // else a button would vanish under a finger
     this.shown = shown;
     fill(this.latched, ...latched.map((robot) => this.latch(robot)));
@@ -101,7 +115,7 @@ export class EmergencyStop {
     return h(
       "div",
       { class: "latch" },
-      h("p", {}, h("strong", { dir: "auto" }, t("stop.latched", { robot: robot.name })), " ", h("span", { lang: "en", dir: "auto" }, robot.state!.stopped)),
+      h("p", {}, h("strong", { dir: "auto" }, t("stop.latched", { robot: robot.name })), " ", h("span", { lang: "en", dir: "auto" }, robot.state!.stopped), !robot.isHeard && ` (${t("robot.unheard")})`),
       may(this.me, "operator") && h("button", { type: "button", class: "release", onclick: () => void this.release(robot) }, t("stop.release")),
     );
   }

@@ -2,7 +2,7 @@
 import { may } from "../api";
 import { fill, h, oncePerFrame, set } from "../dom";
 import { entryOf, running, type Run } from "../fleet";
-import { state } from "../robots";
+import { oldness, state } from "../robots";
 import { called, command, Queue } from "../tasks/queue";
 import { submitForm } from "../tasks/submit";
 import { t, type Key } from "../texts";
@@ -47,6 +47,7 @@ class Watch implements View {
   private map = new MapView(() => this.robot);
   private log = new LogView();
   private visitor = h("button", { type: "button", class: "visitor", hidden: true, onclick: () => void this.act("visitor", {}) }, t("visitor"));
+  private place: HTMLElement;
   private body: Body;
   private offers: Offers;
   private question: Question;
@@ -70,6 +71,7 @@ class Watch implements View {
     this.failure = new Failure((path) => this.select(path));
     this.queue = new Queue(context, () => this.refresh());
     const operates = may(context.me, "operator");
+    this.place = h("div", { class: "card place" }, this.body.element, this.map.canvas, h("div", { class: "beside" }, this.voice.element, this.visitor), this.speech.element, this.question.element, this.talk.element);
     this.element = h(
       "section",
       { class: "watch" },
@@ -78,7 +80,7 @@ class Watch implements View {
       h(
         "div",
         { class: "side" },
-        h("div", { class: "card place" }, this.body.element, this.map.canvas, h("div", { class: "beside" }, this.voice.element, this.visitor), this.speech.element, this.question.element, this.talk.element),
+        this.place,
         operates && h("details", { class: "card" }, h("summary", {}, t("submit.title")), submitForm(context)),
         this.text,
         this.parts.element,
@@ -121,7 +123,9 @@ class Watch implements View {
     const [kind, words] = state(robot);
     this.pill.className = `pill ${kind}`;
     fill(this.pill, words);
-    fill(this.gone, robot.away && t("watch.gone"));
+    const old = robot.up ? oldness(robot) : "";
+    fill(this.gone, robot.away ? t("watch.gone") : old && t("watch.old", { old }));
+    this.place.classList.toggle("stale", !robot.up || old !== "");
     this.tree.element.classList.toggle("stale", robot.away);
     fill(this.title, task ? called(task) : robot.name);
     this.speech.show(robot);

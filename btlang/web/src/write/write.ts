@@ -123,7 +123,7 @@ class Desk {
       "div",
       { class: "controls" },
       this.mayWrite && this.save,
-      this.context.robot && h("button", { type: "button", title: "Ctrl+Enter", onclick: () => this.run() }, t("write.run")),
+      this.context.robot && may(this.context.me, "operator") && h("button", { type: "button", title: "Ctrl+Enter", onclick: () => this.run() }, t("write.run")),
       this.store instanceof LibraryStore && may(this.context.me, "operator") && h("button", { type: "button", onclick: () => this.schedule() }, t("write.schedule")),
       h("button", { type: "button", title: "Alt+Enter", onclick: () => void this.attempt() }, t("write.try")),
       testing,
@@ -332,6 +332,7 @@ class Desk {
 
   /** Gives the mission to the robot. */
   private run(): void {
+    if (!may(this.context.me, "operator")) return;
     void command(this.context, "submit", { text: this.editor.text }).then(
       () => (location.hash = address("robots", this.context.robot)),
       (error: Error) => this.fail(error.message),
