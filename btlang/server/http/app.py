@@ -11,7 +11,7 @@ from starlette.applications import Starlette
 from starlette.requests import Request
 from starlette.responses import FileResponse, PlainTextResponse, Response
 from starlette.routing import BaseRoute, Route, WebSocketRoute
-from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from starlette.types import ASGIApp
 from starlette.websockets import WebSocket
 
 from btlang.diagnostics.diagnostic import MissionError
@@ -30,7 +30,7 @@ from btlang.server.http.access import (
     json_object,
     text_in,
 )
-from btlang.server.http.listener import MOST_HEAD
+from btlang.server.http.headers import Headers
 from btlang.server.http.openapi import LIBRARY, VERSION, document
 from btlang.server.http.pages import page_routes
 from btlang.server.live.clients import ClientProtocol
@@ -59,17 +59,7 @@ if TYPE_CHECKING:
 _MOST_FETCHING = 2  # recordings of robots elsewhere that are shown at a time: each is copied
 _LOOK = 1.0  # seconds between two looks at who may still be here
 _KNOWN_DEVICE = 365 * 86_400  # seconds for which a browser is known
-_NO_STORE = "The robot can't read or write its data: its disk may be full. The command wasn't done."
 UNREADABLE = "The server can't read or write its data: the disk may be full."
-_HEADERS = {
-    b"content-security-policy": b"default-src 'none'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'",
-    b"x-frame-options": b"DENY",
-    b"x-content-type-options": b"nosniff",
-    b"referrer-policy": b"no-referrer",
-    b"cross-origin-resource-policy": b"same-origin",
-    b"cross-origin-opener-policy": b"same-origin",
-    b"cache-control": b"no-store",
-}
 
 
 class Api:
@@ -99,7 +89,7 @@ class Api:
 
     def app(self) -> ASGIApp:
         """Return the ASGI application."""
-        return _Headers(Starlette(routes=self.routes(), lifespan=self._life, exception_handlers={404: _not_found}))
+        return Headers(Starlette(routes=self.routes(), lifespan=self._life, exception_handlers={404: _not_found}))
 
     def routes(self) -> list[BaseRoute]:
         """Return all routes."""
@@ -153,7 +143,7 @@ class Api:
         try:
             if isinstance(command, messages.EmergencyStop):
                 await feed.stop()  # at once; what follows says who, and why
-            return _without_places(await feed.send(command, identity.user))
+            return await feed.send(command, identity.user)
         except ConnectionError as error:
             raise AccessError(503, str(error)) from None
 
@@ -395,47 +385,12 @@ class Api:
         return {**described, "csrf": self.access.csrf(identity)} if identity.is_session else described
 
 
-class _Headers:
-    """The middleware that adds headers to every answer, also to one that went wrong, and limits the head of a
-    request.
-    """
-
-    def __init__(self, app: ASGIApp) -> None:
-        self._app = app
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        async def said(message: Message) -> None:
-            if message["type"] == "http.response.start":
-                given = list(message.get("headers", ()))
-                known = {name for name, _ in given}
-                own = [(name, value) for name, value in _HEADERS.items() if name not in known]
-                message = {**message, "headers": [*given, *own]}
-            await send(message)
-
-        head = [text for header in scope.get("headers", ()) for text in header]
-        too_long = sum(map(len, head)) > MOST_HEAD  # the limit of h11 is for what comes in parts
-        await (_too_long if too_long else self._app)(scope, receive, said)
-
-
-def _without_places(answer: Answer) -> Answer:
-    """Return an answer without the paths of a computer, which a message about a store has."""
-    return answer.replace(text=_NO_STORE) if answer.code == "BT195" else answer
-
-
 def _answer(answer: Answer) -> Response:
     return JsonResponse(answer.as_json(), 200 if answer.ok else 409)
 
 
 def _word(word: str) -> Callable[[Request], Response]:
     return lambda request: PlainTextResponse(word)
-
-
-async def _too_long(scope: Scope, receive: Receive, send: Send) -> None:
-    if scope["type"] == "websocket":
-        await send({"type": "websocket.close"})
-    else:
-        text = "The head of this request is too long."
-        await JsonResponse({"ok": False, "text": text, "code": ""}, 431)(scope, receive, send)
 
 
 async def _no_socket(socket: WebSocket) -> None:

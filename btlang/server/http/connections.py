@@ -88,6 +88,7 @@ class Connection:
         """Forget it: it has ended."""
         self.met()
         self._connections.discard(self)
+        self._connections.ended += 1
 
 
 class Connections:
@@ -103,7 +104,7 @@ class Connections:
         most: int = 4000,
         strangers: int = 256,
         of_address: int = 64,
-        of_user: int = 256,
+        of_user: int = 128,
         proxies: Sequence[Network] = (),
     ) -> None:
         self.most, self.strangers, self.of_address, self.of_user = most, strangers, of_address, of_user
@@ -111,6 +112,8 @@ class Connections:
         self._strangers: dict[str, OrderedDict[Connection, None]] = {}  # by address, the oldest first
         self._users: dict[str, set[Connection]] = {}
         self._recent: OrderedDict[str, None] = OrderedDict()
+        self.ended = 0
+        """The number of those that have ended, which who gives memory back sets to 0."""
 
     def __len__(self) -> int:
         return sum(map(len, self._strangers.values())) + sum(map(len, self._users.values()))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import ctypes
+import gc
 import logging
 import os
 import resource
@@ -16,6 +17,7 @@ from contextlib import suppress
 from functools import partial
 from ipaddress import ip_network
 
+import h11
 import uvicorn
 from uvicorn.config import STARTUP_FAILURE
 from uvicorn.protocols.http.h11_impl import H11Protocol
@@ -37,11 +39,12 @@ if TYPE_CHECKING:
 
 MOST_HEAD = 16 * 1024
 """The bytes of the head of a request."""
+_REFUSED = 1.0  # seconds
 _MOST_FRAME = 256 * 1024  # bytes
 _BUFFER = 64 * 1024  # bytes that wait for a client until its sender waits, too
 _MOST_DESCRIPTORS = 8192
 _RESERVED = 256  # descriptors for robots, files and databases
-_MMAP_THRESHOLD = -3  # the parameter of glibc's mallopt
+_MANY, _TIDY = 50, 30  # connections that have ended, and tenths of a second, after which memory is given back
 
 
 class _Protocol(H11Protocol):
@@ -69,7 +72,8 @@ class _Protocol(H11Protocol):
             self._connection.met()
 
     def on_response_complete(self) -> None:
-        self._connection.expect(HEAD)
+        # who is answered before all was sent was refused, and may go on sending for ever
+        self._connection.expect(_REFUSED if self.conn.their_state is h11.SEND_BODY else HEAD)
         super().on_response_complete()
 
 
@@ -101,6 +105,13 @@ class WebServer(uvicorn.Server):
         ]
         self.servers = acceptors
         self.started = True
+
+    async def on_tick(self, counter: int) -> bool:
+        """See `uvicorn.Server`; called ten times a second."""
+        if self.connections.ended > _MANY and counter % _TIDY == 0:
+            self.connections.ended = 0
+            _return_memory()
+        return await super().on_tick(counter)
 
     def _protocol(self, connection: Connection) -> asyncio.Protocol:
         return _Protocol(connection, config=self.config, server_state=self.server_state, app_state=self.lifespan.state)
@@ -136,8 +147,9 @@ def web_server(
     # each write to a client that vanished while its questions are answered is a warning otherwise: a full log, or a
     # pipe that nobody reads, which holds up the end of the server
     logging.getLogger("asyncio").setLevel(logging.ERROR)
-    _return_memory()
-    return WebServer(config, connections or Connections(proxies=[ip_network(each) for each in proxies]))
+    if connections is None:
+        connections = Connections(proxies=[ip_network(each) for each in proxies])
+    return WebServer(config, connections)
 
 
 def most_connections() -> int:
@@ -164,9 +176,10 @@ async def _serve(server: WebServer, listener: socket.socket, ready: Callable[[],
 
 
 def _return_memory() -> None:
-    """Let glibc give large blocks back at once: by default it keeps more of them, the more often it gets some."""
-    with suppress(OSError, AttributeError):
-        ctypes.CDLL(None).mallopt(_MMAP_THRESHOLD, _BUFFER)
+    """Give the memory of connections that have ended back to the system: what asyncio has for TLS refers to itself."""
+    gc.collect()
+    with suppress(OSError, AttributeError):  # it isn't glibc
+        ctypes.CDLL(None).malloc_trim(0)
 
 
 def tls(certificate: Certificate) -> ssl.SSLContext:

@@ -29,6 +29,7 @@ _PATIENCE = 35.0  # seconds for an answer
 _STOPPED = 3.0  # seconds in which a robot has to say that it has the emergency stop
 _PAGE = 500  # changes that are read at once for a client who comes back
 _BROKEN = (OSError, ValueError, KeyError, TypeError, AttributeError)  # a robot may say anything
+_NO_STORE = "The robot can't read or write its data: its disk may be full. The command wasn't done."
 RATE = 20.0
 
 
@@ -77,7 +78,7 @@ class RobotFeed:
         try:
             async with asyncio.timeout(_PATIENCE):
                 answer = await self._connection.ask({**as_json(command), "as": person})
-                return Answer(answer["ok"], answer["text"], answer["data"], answer["code"])
+                return _without_places(Answer(answer["ok"], answer["text"], answer["data"], answer["code"]))
         except _BROKEN as error:
             text = f"The robot '{self.name}' isn't up, or doesn't answer. If it was up, it may have done it."
             raise ConnectionError(text) from error
@@ -257,6 +258,11 @@ class RobotFeeds:
             for task in self._following.values():
                 task.cancel()
             raise
+
+
+def _without_places(answer: Answer) -> Answer:
+    """Return an answer without the paths of a computer, which a message about a store has."""
+    return answer.replace(text=_NO_STORE) if answer.code == "BT195" else answer
 
 
 def _older(ages: dict[str, Any], seconds: float) -> dict[str, Any]:

@@ -34,6 +34,7 @@ from btlang.task.commands.client import check_name, data_folder, names_up
 from btlang.task.execution.emergency import shut_latch
 from btlang.task.messages import EmergencyStop, as_json
 from btlang.task.store.database import StoreError
+from btlang.task.store.records import is_whole
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -42,11 +43,10 @@ if TYPE_CHECKING:
 
 _READ = 1.0  # seconds between two looks at the sessions and tokens
 _LOOK_UP = 1.0  # seconds for one that isn't known yet
-_STOPPED = 0.8  # seconds in which a robot has to say that it has the stop
+_STOPPED = 0.6  # seconds in which a robot has to say that it has the stop
 _MOST_BYTES = 16_384  # of a body
 _BODY = 3.0  # seconds for a body
-_RECORDING = 10.0  # seconds in which a robot is told who stopped it, and why
-_MOST_RECORDING = 16
+_TOLD = 0.3  # seconds in which it is told who did that, and why: within a second somebody has an answer
 _ORPHAN = 0.25  # seconds between two looks whether another server has begun
 _LONGEST = 10.0  # seconds for which it outlives a server that was killed
 _MOST_CONNECTIONS, _OF_ADDRESS = 64, 16
@@ -65,10 +65,10 @@ class StopAccess(Access):
 
     async def _identity(self, secret: str) -> Identity | None:
         found = self._users.get(hash_secret(secret))
-        if found is None and secret:  # it's younger than the last look
+        if found is None and secret and is_whole(secret):  # it's younger than the last look, or signed
             with suppress(TimeoutError, StoreError):
                 async with asyncio.timeout(_LOOK_UP):
-                    return await super()._identity(secret)
+                    return await asyncio.to_thread(self._look_up, secret)
         return found
 
 
@@ -81,7 +81,6 @@ class StopApp:
 
     def __init__(self, access: StopAccess, connections: Connections) -> None:
         self._access, self._connections = access, connections
-        self._recording: set[asyncio.Task[None]] = set()
         self.app = Starlette(
             routes=[
                 Route("/api/stop", self._answer, methods=["POST"]),
@@ -131,8 +130,7 @@ class StopApp:
             raise AccessError(
                 503, f"The emergency stop may not have reached the robot '{name}': STOP IT WHERE IT STANDS."
             ) from None
-        finally:
-            self._record(name, identity.user, str(reason))
+        await _tell(name, identity.user, str(reason))
         return f"The robot '{name}' is stopped."
 
     async def _name(self, robot: str) -> str:
@@ -148,13 +146,6 @@ class StopApp:
         if len(up) != 1:
             raise AccessError(409, f"Say which robot: {', '.join(up)}." if up else "No robot is up.")
         return up[0]
-
-    def _record(self, robot: str, user: str, reason: str) -> None:
-        """Tell the robot who stopped it and why, once it is stopped."""
-        if len(self._recording) < _MOST_RECORDING:
-            task = asyncio.create_task(_tell(robot, user, reason))
-            self._recording.add(task)
-            task.add_done_callback(self._recording.discard)
 
 
 async def _body(request: Request) -> bytes:
@@ -173,8 +164,9 @@ async def _body(request: Request) -> bytes:
 
 
 async def _tell(robot: str, user: str, reason: str) -> None:
+    """Tell a robot that is stopped who did it, and why; not later, when somebody may have released it."""
     with suppress(OSError, ValueError):
-        async with asyncio.timeout(_RECORDING):
+        async with asyncio.timeout(_TOLD):
             await LocalConnection(robot).ask({**as_json(EmergencyStop(reason)), "as": user})
 
 
