@@ -24,7 +24,7 @@ export async function visit(base, act, options = {}, expected = REFUSED, draws =
     const faults = [];
     page.on("pageerror", (error) => faults.push(error.message));
     page.on("console", (message) => message.type() === "error" && !expected.test(message.text()) && faults.push(message.text()));
-    page.on("request", (request) => !request.url().startsWith(base) && !request.url().startsWith("data:") && faults.push(request.url()));
+    page.on("request", (request) => new URL(request.url()).hostname !== new URL(base).hostname && !request.url().startsWith("data:") && faults.push(request.url()));
     try {
       await act(page, context);
     } catch (error) {
