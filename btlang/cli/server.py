@@ -31,6 +31,7 @@ UP = "The emergency stop is up."
 """The first line of the process of the emergency stop."""
 _ADMINISTRATOR = "admin"
 _TAKEN = 1.5  # seconds for which the port of the emergency stop may still be that of a server before
+_FIRST_TO_GO = "300"  # where memory is short, the server goes before a robot, and before what stops that
 _NICE = 5  # robots on this computer come first
 
 
@@ -96,6 +97,8 @@ def serve(options: argparse.Namespace) -> int:
     try:
         stop.start()
         os.nice(_NICE)
+        with suppress(OSError), open("/proc/self/oom_score_adj", "w", encoding="ascii") as file:
+            file.write(_FIRST_TO_GO)
         if options.until_eof:
             threading.Thread(target=_end_at_eof, daemon=True).start()
         serve_listener(web_server(api.app(), certificate, connections, options.proxy), listener, ready)

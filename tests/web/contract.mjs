@@ -3,7 +3,7 @@ import { readFileSync } from "node:fs";
 import { pathToFileURL } from "node:url";
 
 const [folder, file] = process.argv.slice(2);
-const { lists, events } = JSON.parse(readFileSync(file, "utf8"));
+const { lists, events, steps } = JSON.parse(readFileSync(file, "utf8"));
 let language = "en";
 globalThis.localStorage = { getItem: () => language };
 const { Robot } = await import(pathToFileURL(`${folder}/fleet.js`));
@@ -23,4 +23,13 @@ const states = lists.map((messages) => {
 });
 const words = {};
 for (language of ["en", "de"]) words[language] = events.map((event) => inWords(whole(event)));
-console.log(JSON.stringify({ states, words }));
+// What the page says of the age of readings at some moments of its clock, each with what comes then, null for nothing.
+let clock = 0;
+performance.now = () => clock * 1000;
+const watched = new Robot("robot");
+const ages = steps.map(([moment, message]) => {
+  clock = moment;
+  if (message) watched.take({ robot: "robot", ...message });
+  return [watched.age, watched.scanAge, watched.isHeard];
+});
+console.log(JSON.stringify({ states, words, ages }));

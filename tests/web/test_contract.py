@@ -19,6 +19,27 @@ from tests.web.packages import WEB, installed, node
 
 LOGGED_KINDS = [kind for kind in LOGGED if kind.tag]
 TEXTS = {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in (WEB / "src" / "texts").glob("*.json")}
+UP = {"type": "up", "change": 1}
+
+
+def ages(t: float, state: float | None, scan: float | None = None) -> dict[str, Any]:
+    return {"type": "ages", "t": t, "state": state, "scan": scan}
+
+
+AGES: list[tuple[tuple[float, dict[str, Any] | None], list[Any]]] = [
+    ((10.0, UP), [None, None, False]),  # nobody knows yet
+    ((10.0, ages(500.0, 0.1, 0.5)), [0, 0, True]),
+    ((11.0, ages(501.0, 1.1, 0.4)), [0, 0, True]),
+    ((12.0, ages(502.0, 2.1, 0.3)), [2, 0, True]),  # its state isn't read any more
+    ((13.0, ages(503.0, 0.1, None)), [0, None, True]),
+    ((14.9, None), [0, None, True]),
+    ((15.5, None), [2, None, False]),  # nothing is heard any more
+    ((20.0, ages(504.0, 0.1, 0.1)), [6, 6, False]),  # this was six seconds on its way
+    ((20.1, ages(510.1, 0.1, 0.1)), [0, 0, True]),
+    ((20.2, UP), [None, None, False]),
+    ((20.2, ages(3.0, 0.0, 0.0)), [0, 0, True]),  # it began again, and so did its clock
+]
+"""Moments of the page's clock with what comes then; and how old the state and the scan are, and whether it is heard."""
 VALUES = {"string": "cup", "integer": 3, "number": 2.5, "boolean": True, "object": {"arm": 20.0}}
 
 
@@ -57,10 +78,17 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
         for messages in (case["messages"], view_of(case["messages"]).messages(), slowly(case["messages"]))
     ]
     events = [event for kind in LOGGED_KINDS for event in examples(kind)]
-    (folder / "cases.json").write_text(json.dumps({"lists": lists, "events": events}))
+    (folder / "cases.json").write_text(
+        json.dumps({"lists": lists, "events": events, "steps": [step for step, _ in AGES]})
+    )
     script = Path(__file__).with_name("contract.mjs")
     found: dict[str, Any] = json.loads(node(script, str(folder), str(folder / "cases.json"), folder=script.parent))
     return found
+
+
+def test_the_page_knows_how_old_readings_are(made: dict[str, Any]) -> None:
+    for at, (step, expected) in enumerate(AGES):
+        assert made["ages"][at] == expected, step
 
 
 def test_the_page_has_the_same_state(made: dict[str, Any]) -> None:

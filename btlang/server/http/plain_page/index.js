@@ -1,9 +1,11 @@
 // What all who are logged in need: which robots there are, what they do, and the emergency stop.
 const CONFIRMED = 1000; // milliseconds in which a robot has to say that it was stopped
+const OLD = 2; // seconds after which a reading is shown as old
 const OVER = ["completed", "failed", "canceled", "killed", "error", "skipped"];
 const alertText = document.querySelector("[role=alert]");
 const robots = new Map();
 let csrf = "";
+let stopPort = 0;
 
 const send = (path, data, signal) =>
   fetch(path, {
@@ -13,11 +15,21 @@ const send = (path, data, signal) =>
     signal,
   });
 
+const done = async (answer) => {
+  if (!(await answer).ok) throw new Error();
+};
+
 async function stop(robot) {
+  const signal = AbortSignal.timeout(CONFIRMED);
+  const ways = [done(send("/api/stop", { robot }, signal))];
+  if (stopPort) {
+    const place = `${location.protocol}//${location.hostname}:${stopPort}/api/stop`;
+    const headers = { "content-type": "text/plain" }; // so that the browser sends it without asking first
+    ways.push(done(fetch(place, { method: "POST", credentials: "include", headers, body: JSON.stringify({ robot, csrf }), signal })));
+  }
   try {
-    const answer = await send("/api/stop", { robot }, AbortSignal.timeout(CONFIRMED));
-    const { text } = await answer.json();
-    alertText.textContent = answer.ok ? `${robot} is stopped.` : text;
+    await Promise.any(ways);
+    alertText.textContent = `${robot} is stopped.`;
   } catch {
     alertText.textContent = `${robot} HAS NOT CONFIRMED THE STOP: stop it where it stands.`;
   }
@@ -37,7 +49,7 @@ function shown(name) {
     const list = document.querySelector("#robots");
     if (robots.size === 0) list.replaceChildren();
     list.append(section);
-    robots.set(name, { section, tasks: new Map() });
+    robots.set(name, { section, tasks: new Map(), state: "", read: -Infinity, least: Infinity });
   }
   return robots.get(name);
 }
@@ -45,16 +57,21 @@ function shown(name) {
 function take(message, socket) {
   if (message.type === "result" && message.id && message.ok) taken(message.id, message.data.tasks);
   if (message.robot === undefined) return;
-  const { section, tasks } = shown(message.robot);
-  const state = section.querySelector(".state");
+  const known = shown(message.robot);
+  const { section, tasks } = known;
   if (message.type === "up") {
-    state.textContent = "up";
+    Object.assign(known, { state: "up", read: -Infinity, least: Infinity });
     socket.send(JSON.stringify({ id: message.robot, command: "list", robot: message.robot }));
   }
-  if (message.type === "away") state.textContent = "away";
+  if (message.type === "away") known.state = "away";
+  if (message.type === "ages") {
+    const now = performance.now() / 1000;
+    known.least = Math.min(known.least, now - message.t); // what comes later than this was on its way for long
+    known.read = message.state === null ? -Infinity : known.least + message.t - message.state;
+  }
   if (message.type === "robot") {
     const battery = message.battery === null ? "" : `, battery ${Math.round(message.battery)}%`;
-    state.textContent = (message.hindrance || "ready") + battery;
+    known.state = (message.hindrance || "ready") + battery;
     section.querySelector(".release").hidden = !message.stopped;
   }
   if (message.type === "change") {
@@ -62,6 +79,14 @@ function take(message, socket) {
     else tasks.set(message.task, message.state);
     list(section, tasks);
   }
+  show(known);
+}
+
+function show({ section, state, read }) {
+  const age = performance.now() / 1000 - read;
+  const isOld = !["away", "no connection", ""].includes(state) && age > OLD;
+  const old = isOld ? (age === Infinity ? " (not read yet)" : ` (${Math.floor(age)} s old)`) : "";
+  if (section.querySelector(".state").textContent !== state + old) section.querySelector(".state").textContent = state + old;
 }
 
 function list(section, tasks) {
@@ -82,7 +107,7 @@ function follow() {
   socket.addEventListener("message", (event) => take(JSON.parse(event.data), socket));
   socket.addEventListener("close", (event) => {
     if (event.code === 4001) return location.assign("/login");
-    for (const { section } of robots.values()) section.querySelector(".state").textContent = "no connection";
+    for (const known of robots.values()) show(Object.assign(known, { state: "no connection" }));
     setTimeout(follow, 1000);
   });
 }
@@ -95,8 +120,10 @@ document.querySelector("#leave").addEventListener("click", async () => {
 const me = await fetch("/api/me");
 if (!me.ok) location.assign("/login");
 else {
-  const { user, role, csrf: token } = await me.json();
+  const { user, role, csrf: token, stop: port = 0 } = await me.json();
   csrf = token;
+  stopPort = port;
   document.querySelector("#who").textContent = `${user} (${role})`;
   follow();
+  setInterval(() => robots.forEach(show), 250);
 }

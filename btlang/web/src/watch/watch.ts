@@ -126,7 +126,7 @@ class Watch implements View {
     const old = robot.up ? oldness(robot) : "";
     fill(this.gone, robot.away ? t("watch.gone") : old && t("watch.old", { old }));
     this.place.classList.toggle("stale", !robot.up || old !== "");
-    this.tree.element.classList.toggle("stale", robot.away);
+    this.tree.element.classList.toggle("stale", robot.away || !robot.isHeard);
     fill(this.title, task ? called(task) : robot.name);
     this.speech.show(robot);
     this.body.show(robot, this.running.textContent ? [...this.running.children].map((each) => each.textContent).join(", ") : "");
