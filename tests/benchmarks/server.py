@@ -27,6 +27,7 @@ from typing import Any
 from btlang.api import Mission
 from btlang.run.bus import INLINE
 from btlang.run.events import Event, PeriodPassed
+from btlang.server.live.sockets import MOST_OF_USER
 from btlang.session import Run
 from btlang.task.layer import keep_ticks_in_time
 from tests.benchmarks.server_clients import figures
@@ -193,11 +194,15 @@ def told(bench: Bench, door: Door, options: argparse.Namespace, parts: ExitStack
     """All that is measured with a server."""
     server = door.process.pid
     door.user("add", "ann", "--role", "administrator")
-    token = door.user("token", "ann", "benchmark").split()[-1]
+    users = ["ann", *(f"user{number}" for number in range((options.clients + options.idle) // MOST_OF_USER + 1))]
+    for user in users[1:]:
+        door.user("add", user)
+    tokens = [door.user("token", user, "benchmark").split()[-1] for user in users]
 
     def clients(count: int, rate: float) -> Part:
         words = "--port", str(door.port), "--count", str(count), "--rate", str(rate)
-        part = Part("tests.benchmarks.server_clients", *words, BTLANG_TOKEN=token)
+        own = [tokens.pop() for _ in range(-(-count // MOST_OF_USER))]
+        part = Part("tests.benchmarks.server_clients", *words, BTLANG_TOKEN=" ".join(own))
         return parts.enter_context(closing(part))
 
     time.sleep(1.0)

@@ -105,8 +105,9 @@ def main() -> None:
     options = parser.parse_args()
     os.nice(10)
     tls, selector = trusting(), selectors.DefaultSelector()
-    for _ in range(options.count):
-        client = Client(options.port, os.environ["BTLANG_TOKEN"], options.rate, tls)
+    tokens = os.environ["BTLANG_TOKEN"].split()  # as each user may have so many sockets
+    for number in range(options.count):
+        client = Client(options.port, tokens[number % len(tokens)], options.rate, tls)
         selector.register(client.socket, selectors.EVENT_READ, client)
         client.read([])  # what came with the head is decrypted already
     selector.register(sys.stdin, selectors.EVENT_READ)

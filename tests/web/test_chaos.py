@@ -51,15 +51,16 @@ class Truth:
         return {*before[-1:], *(state for moment, state in self.known if since < moment <= until)}
 
     def _work(self) -> None:
-        paused = False
-        while not self._ended.wait(_PERIOD):
-            paused = not paused
+        paused, period = False, _PERIOD
+        while not self._ended.wait(period):
+            paused, period = not paused, _PERIOD
             try:
                 self.known.append((time.time(), "?"))  # until it has answered
                 answer = self._world.command("pause" if paused else "resume")
                 self.known.append((time.time(), "paused" if paused and answer["ok"] else "going"))
             except (OSError, ValueError):
                 self.known.append((time.time(), "away"))
+                period = 0.1  # to know when it is back
 
 
 class Page:

@@ -377,9 +377,7 @@ class Api:
         return await self.send(await self._who(request), robot, command, address_of(request))
 
     def _describe(self, identity: Identity) -> dict[str, Any]:
-        described: dict[str, Any] = {
-            "ok": True, "user": identity.user, "role": identity.role, "version": VERSION,
-        }  # fmt: skip
+        described: dict[str, Any] = {"ok": True, "user": identity.user, "role": identity.role, "version": VERSION}
         if self.stop_port:
             described["stop"] = self.stop_port
         return {**described, "csrf": self.access.csrf(identity)} if identity.is_session else described

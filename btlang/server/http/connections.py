@@ -25,6 +25,7 @@ HEAD = 10.0
 _UNREAD = 20.0  # seconds for which a client may leave unread what was sent to it
 _SITE = 64  # bits of an IPv6 address: whoever has one has all that begin like it
 _RECENT = 1000  # addresses that are known because somebody logged in there
+_KNOWN = 4  # times as many connections of such an address: all pages come back at once after a restart
 _AT_ONCE = 100  # connections that are taken before others get their turn
 _REST = 0.1  # seconds of rest where no descriptor is left
 
@@ -125,9 +126,10 @@ class Connections:
         connection.is_proxy = any(_contains(network, host) for network in self._proxies)
         own = self._strangers.get(address, ())
         count = sum(map(len, self._strangers.values()))
-        if len(own) >= self.of_address:
+        is_known = address in self._recent
+        if len(own) >= self.of_address * (_KNOWN if is_known else 1):
             next(iter(own)).end()
-        elif count >= self.strangers * (2 if address in self._recent else 1) or len(self) >= self.most:
+        elif count >= self.strangers * (2 if is_known else 1) or len(self) >= self.most:
             if not self.drop_stranger() and not connection.is_proxy:
                 return None
         if connection.is_proxy:
