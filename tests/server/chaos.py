@@ -8,6 +8,7 @@ import os
 import resource
 import signal
 import socket
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -19,8 +20,29 @@ from tests.server.doors import Door, Program, trusting
 from tests.task.layers import LONG
 
 NAME = "robot"
+_CLOCKED = """
+import sys, time
+from contextlib import suppress
+now, file = time.time, sys.argv.pop(1)
+def clock():
+    with suppress(OSError, ValueError), open(file) as ahead:
+        return now() + float(ahead.read())
+    return now()
+time.time = clock
+from btlang.cli import main
+sys.exit(main(sys.argv[1:]))
+"""
 FILES = 1024
 """The descriptors that the server may have."""
+
+
+class ClockedDoor(Door):
+    """A server whose clock is as many seconds ahead as a file says."""
+
+    def start(self, beginning: str = "The server is up") -> None:
+        words = ["serve", "--port", str(self.port)]
+        self._command = [sys.executable, "-c", _CLOCKED, str(self.folder / "ahead"), *words]
+        super().start(beginning)
 
 
 class World:
@@ -32,7 +54,7 @@ class World:
         environment = {**os.environ, "XDG_DATA_HOME": str(folder), "XDG_RUNTIME_DIR": str(folder)}
         self.robot = Program(environment, "robot", "up", "--name", NAME, *options)
         self.robot.start(f"The robot '{NAME}' is up")
-        self.door = Door(folder)
+        self.door = ClockedDoor(folder)
         self.limit()
         for name, role in (("ann", "administrator"), ("vic", "viewer")):
             self.door.user("add", name, "--role", role)
@@ -115,6 +137,17 @@ def full_disk(world: World) -> Iterator[None]:
 
 
 @contextmanager
+def wrong_clock(world: World) -> Iterator[None]:
+    """A clock that jumps a day ahead, and back again."""
+    ahead = world.folder / "ahead"
+    ahead.write_text("86400", encoding="ascii")
+    try:
+        yield
+    finally:
+        ahead.unlink()
+
+
+@contextmanager
 def half_bodies(world: World) -> Iterator[None]:
     """Large bodies that don't end, from somebody who is logged in."""
     head = (
@@ -194,7 +227,7 @@ def hung_robot(world: World) -> Iterator[None]:
 
 Fault = Callable[[World], Any]
 HARMLESS: tuple[Fault, ...] = (
-    no_descriptors, half_handshakes, full_disk, half_bodies, never_read, hung_server, killed_server,
+    no_descriptors, half_handshakes, full_disk, wrong_clock, half_bodies, never_read, hung_server, killed_server,
 )  # fmt: skip
 """The faults that leave the robot as it is: it is stopped within a second."""
 FAULTS: tuple[Fault, ...] = (*HARMLESS, killed_robot, hung_robot)

@@ -14,7 +14,7 @@ from starlette.requests import Request
 from btlang.server.accounts.accounts import Accounts, Identity, UserRole
 from btlang.server.accounts.passwords import FREE, Throttle, hash_password
 from btlang.server.http import access as module
-from btlang.server.http.access import COOKIE, CSRF, Access, AccessError, address_of, is_same_site
+from btlang.server.http.access import COOKIE, CSRF, Access, AccessError, address_of, host_of, is_same_site
 from btlang.task.store.database import store_error
 from tests.server.doors import PASSWORD
 
@@ -226,6 +226,9 @@ def test_what_changes_something_comes_from_the_page(guard: Guard) -> None:
         assert (error.status, error.reason) == (403, "This request doesn't come from the page of this server."), bad
         assert guard.identify(changes=False, **{**good, **bad}) == identity
     assert not is_same_site({"origin": "null", "host": ""})
+    for odd in ("", "host", "http://[host", "http://", "://host"):
+        assert not is_same_site({"origin": odd, "host": "host"}, "https")
+    assert [host_of(each) for each in ("a:1", "https://a:1", "[::1]:1", "[x", "")] == ["a", "a", "::1", "", ""]
     page = {"origin": "http://host", "host": "host"}
     assert [is_same_site(page, scheme) for scheme in ("http", "ws", "https", "wss")] == [True, True, False, False]
 

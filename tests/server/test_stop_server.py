@@ -69,8 +69,9 @@ def test_nobody_else_stops_it(stop: Stop, robot: TaskLayer) -> None:
         stop.ask({"robot": "robot", "csrf": "AAAA"}, cookie=own, origin=f"https://127.0.0.1:{stop.door.port}"),
         stop.by_page(origin="https://evil.example", robot="robot"),
         stop.by_page(origin=f"http://127.0.0.1:{stop.door.port}", robot="robot"),
+        stop.by_page(origin="https://[::1", robot="robot"),
     ]
-    assert [status for status, *_ in refused] == [401, 401, 403, 403, 403, 403]
+    assert [status for status, *_ in refused] == [401, 401, 403, 403, 403, 403, 403]
     assert "access-control-allow-origin" not in refused[4][2]
     assert not robot.emergency.is_latched
 

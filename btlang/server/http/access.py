@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 COOKIE = "__Host-btlang"
 """The name of the cookie. Its prefix makes browsers take it from this host over TLS alone, and send it nowhere else."""
 CSRF = "x-csrf-token"
+UNREADABLE = "The server can't read or write its data: the disk may be full."
+"""The text in place of that of a StoreError, which has paths."""
 _KNOWN = 10.0  # seconds for which somebody who was looked up is known
 _MOST_KNOWN = 2000
 _MANY = 50  # wrong passwords of strangers for one account, from all addresses together, that cost nothing
@@ -188,9 +190,17 @@ def is_same_site(headers: Mapping[str, str], scheme: str = "http") -> bool:
     origin = headers.get("origin")
     if origin is None:
         return True
-    page = urlsplit(origin)
-    is_safe = page.scheme == "https" or scheme not in ("https", "wss")
-    return origin != "null" and page.netloc == headers.get("host") and is_safe
+    kind, _, place = origin.partition("://")
+    is_safe = kind == "https" or scheme not in ("https", "wss")
+    return bool(place) and place == headers.get("host") and is_safe
+
+
+def host_of(place: str) -> str:
+    """Return the host in an origin or in the head of a request, "" for none."""
+    try:
+        return urlsplit(place if "://" in place else f"//{place}").hostname or ""
+    except ValueError:
+        return ""
 
 
 def admit(connection: HTTPConnection, user: str) -> None:

@@ -21,6 +21,7 @@ from btlang.server.fleet.fleet import Fleet
 from btlang.server.fleet.joining import Joins
 from btlang.server.http.access import (
     COOKIE,
+    UNREADABLE,
     Access,
     AccessError,
     JsonResponse,
@@ -59,7 +60,6 @@ if TYPE_CHECKING:
 _MOST_FETCHING = 2  # recordings of robots elsewhere that are shown at a time: each is copied
 _LOOK = 1.0  # seconds between two looks at who may still be here
 _KNOWN_DEVICE = 365 * 86_400  # seconds for which a browser is known
-UNREADABLE = "The server can't read or write its data: the disk may be full."
 
 
 class Api:
@@ -203,7 +203,7 @@ class Api:
     async def _who(self, request: Request, *, stops: bool = False) -> Identity:
         """Return who asks, as it is at this moment; one who `stops` a robot waits for no disk."""
         changes = request.method not in ("GET", "HEAD")
-        identity = await self.access.identify(request.headers, changes=changes, scheme=request.url.scheme)
+        identity = await self.access.identify(request.headers, changes=changes, scheme=request.scope["scheme"])
         if not stops:
             identity = await self.access.still(identity)
         admit(request, identity.user)

@@ -96,10 +96,11 @@ ROUTES: dict[tuple[str, str], tuple[str, dict[str, Any] | None]] = {
     ("GET", "/metrics"): ("Figures for Prometheus.", None),
     ("GET", "/live"): ("Whether the server is alive; without log-in.", None),
     ("GET", "/ready"): ("Whether it takes requests; without log-in.", None),
+    ("GET", "/favicon.ico"): ("The icon of the page, as SVG; without log-in.", None),
     ("GET", "/openapi.json"): ("This document; without log-in.", None),
 }
 _RECORDED = ("/api/recordings", "/api/films", "/api/trees", "/api/comparisons")
-_OPEN = ("/api/login", "/live", "/ready", "/openapi.json")
+_OPEN = ("/api/login", "/live", "/ready", "/favicon.ico", "/openapi.json")
 
 
 @cache

@@ -14,7 +14,7 @@ from starlette.routing import BaseRoute, Mount, Route
 from starlette.staticfiles import StaticFiles
 from starlette.types import Scope
 
-from btlang.server.http.access import Access, AccessError
+from btlang.server.http.access import Access, AccessError, host_of
 
 PLAIN = Path(__file__).parent / "plain_page"
 BUILT = Path(__file__).parents[2] / "web" / "dist"
@@ -68,10 +68,10 @@ class _HashedFiles(StaticFiles):
 
 def _stop_source(request: Request, port: int) -> str:
     """Return the source for the policy of a page that may reach the emergency stop."""
-    host = request.url.hostname or ""
+    host = host_of(request.headers.get("host", ""))
     if not port or not _HOST.fullmatch(host):
         return ""
-    return f" {request.url.scheme}://{f'[{host}]' if ':' in host else host}:{port}"
+    return f" {request.scope['scheme']}://{f'[{host}]' if ':' in host else host}:{port}"
 
 
 def _html(path: Path, stop: str) -> Response:

@@ -9,13 +9,14 @@ from collections.abc import Awaitable, Callable
 
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.server.accounts.accounts import Identity
-from btlang.server.http.access import AccessError, read_object, text_in
+from btlang.server.http.access import UNREADABLE, AccessError, read_object, text_in
 from btlang.server.live.client_queue import TOPICS
 from btlang.server.live.robot_feeds import RobotFeed, RobotFeeds
 from btlang.server.live.sockets import ConnectedClient
 from btlang.support.record import Record
 from btlang.task.live.feed import Allowance
 from btlang.task.messages import Answer, Command, read_command
+from btlang.task.store.database import StoreError
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -157,6 +158,8 @@ class ClientProtocol:
             result = await self._result(client, data)
         except AccessError as error:
             result = {"ok": False, "text": error.reason, "status": error.status, "code": ""}
+        except StoreError:
+            result = {"ok": False, "text": UNREADABLE, "status": 503, "code": ""}
         except MissionError as error:
             result = {"ok": False, "text": str(error), "code": error.diagnostics[0].code}
         client.queue.say(json.dumps({"id": number, "type": "result", **result}, default=str))

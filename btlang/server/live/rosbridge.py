@@ -16,9 +16,10 @@ from starlette.websockets import WebSocketDisconnect
 
 from btlang.ros.bridge.replies import failures, status
 from btlang.server.accounts.accounts import Identity, UserRole
-from btlang.server.http.access import Access, AccessError, read_object
+from btlang.server.http.access import UNREADABLE, Access, AccessError, read_object
 from btlang.server.live.sockets import LOST, ConnectedClient
 from btlang.support.record import Record
+from btlang.task.store.database import StoreError
 from btlang.text.formatting import one_line
 
 TYPE_CHECKING = False
@@ -180,8 +181,11 @@ class Rosbridge:
             if data.get("op") == "auth":  # a page with a cookie may send that, too
                 return [status(f"You're logged in as {client.identity.user}.", level="info")]
             _check_form(data)
+            client.identity = await self._access.still(client.identity)
         except AccessError as error:
             return [status(error.reason)]
+        except StoreError:
+            return [status(UNREADABLE)]
         reason = self._refusal(client, data)
         if reason:
             name = str(data.get(OPERATIONS[data["op"]].name))

@@ -113,7 +113,7 @@ class Sockets:
 
     async def serve(self, subprotocol: Subprotocol, socket: WebSocket) -> None:
         """Serve one socket, until it ends."""
-        if not is_same_site(socket.headers, socket.url.scheme):  # a page of another site, with our cookie
+        if not is_same_site(socket.headers, socket.scope["scheme"]):  # a page of another site, with our cookie
             await socket.close(FORBIDDEN)
             return
         await socket.accept()

@@ -15,7 +15,6 @@ import sys
 import threading
 import time
 from contextlib import suppress
-from urllib.parse import urlsplit
 
 from starlette.applications import Starlette
 from starlette.requests import ClientDisconnect, Request
@@ -25,7 +24,7 @@ from starlette.routing import Route
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.server.accounts.accounts import Accounts, Identity, hash_secret
 from btlang.server.accounts.certificate import Certificate
-from btlang.server.http.access import CSRF, Access, AccessError, JsonResponse, read_object
+from btlang.server.http.access import CSRF, Access, AccessError, JsonResponse, host_of, read_object
 from btlang.server.http.connections import Connections
 from btlang.server.http.listener import web_server
 from btlang.server.live.robot_connection import LocalConnection
@@ -100,7 +99,7 @@ class StopApp:
     async def _answer(self, request: Request) -> Response:
         origin = request.headers.get("origin", "")
         headers = {"connection": "close", "cache-control": "no-store"}
-        if origin and urlsplit(origin).hostname == request.url.hostname:
+        if _is_of_this_host(request, origin):
             headers |= {
                 "access-control-allow-origin": origin, "access-control-allow-credentials": "true", "vary": "origin",
             }  # fmt: skip
@@ -116,10 +115,10 @@ class StopApp:
         data = read_object(await _body(request))
         given: Mapping[str, str] = {
             **request.headers,
-            "host": urlsplit(origin).netloc if urlsplit(origin).hostname == request.url.hostname else "",
+            "host": origin.partition("://")[2] if _is_of_this_host(request, origin) else "",
             CSRF: str(data.get("csrf", "")) or request.headers.get(CSRF, ""),
         }
-        identity = await self._access.identify(given, changes=True, scheme=request.url.scheme)
+        identity = await self._access.identify(given, changes=True, scheme=request.scope["scheme"])
         robot, reason = data.get("robot", ""), data.get("reason", "")
         name = await self._name(str(robot))
         try:
@@ -146,6 +145,12 @@ class StopApp:
         if len(up) != 1:
             raise AccessError(409, f"Say which robot: {', '.join(up)}." if up else "No robot is up.")
         return up[0]
+
+
+def _is_of_this_host(request: Request, origin: str) -> bool:
+    """Return whether a page is of the same host, at whatever port."""
+    host = host_of(request.headers.get("host", ""))
+    return host != "" and host_of(origin) == host
 
 
 async def _body(request: Request) -> bytes:
