@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from btlang.server.accounts.accounts import Accounts
     from btlang.server.accounts.certificate import Certificate
 
-UP = "The emergency stop is up."
-"""The first line of the process of the emergency stop."""
 _ADMINISTRATOR = "admin"
 _TAKEN = 1.5  # seconds for which the port of the emergency stop may still be that of a server before
 _FIRST_TO_GO = "300"  # where memory is short, the server goes before a robot, and before what stops that
@@ -81,6 +79,9 @@ def serve(options: argparse.Namespace) -> int:
         connections.remember(address)
 
     def ready() -> None:
+        if stop.start():
+            api.stop_port = 0
+            show("The process of the emergency stop can't start: robots are stopped by the server alone.", sys.stderr)
         show(f"The server is up: {scheme}://{_format_host(options.host)}:{port}")
         if certificate is not None:
             show(f"Fingerprint (SHA-256): {certificate.fingerprint}")
@@ -95,7 +96,6 @@ def serve(options: argparse.Namespace) -> int:
         [stop_listener.fileno()],
     )  # fmt: skip
     try:
-        stop.start()
         os.nice(_NICE)
         with suppress(OSError), open("/proc/self/oom_score_adj", "w", encoding="ascii") as file:
             file.write(_FIRST_TO_GO)
@@ -112,6 +112,8 @@ def serve(options: argparse.Namespace) -> int:
 
 
 def _report_stop_server(line: str) -> None:
+    from btlang.server.stop.stop_server import UP
+
     if line != UP:
         show(line, sys.stderr)
 

@@ -34,12 +34,15 @@ from btlang.task.execution.emergency import shut_latch
 from btlang.task.messages import EmergencyStop, as_json
 from btlang.task.store.database import StoreError
 from btlang.task.store.records import is_whole
+from btlang.text.output import show
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
     from typing import Any
 
+UP = "The emergency stop is up."
+"""Its first line."""
 _READ = 1.0  # seconds between two looks at the sessions and tokens
 _LOOK_UP = 1.0  # seconds for one that isn't known yet
 _STOPPED = 0.6  # seconds in which a robot has to say that it has the stop
@@ -214,7 +217,7 @@ async def _serve(settings: dict[str, Any]) -> None:
     serving = asyncio.create_task(server.serve([socket.socket(fileno=settings["descriptor"])]))
     while not server.started and not serving.done():
         await asyncio.sleep(0.01)
-    print("The emergency stop is up.", flush=True)
+    show(UP)
     await serving
     watching.cancel()
 

@@ -73,7 +73,8 @@ class Companion:
             self._process.wait(_PATIENCE)
         except subprocess.TimeoutExpired:
             self._process.kill()
-        self._thread.join(_PATIENCE)
+        if self._thread.ident is not None:
+            self._thread.join(_PATIENCE)
 
     def _begin(self) -> subprocess.Popen[str]:
         process = subprocess.Popen(
