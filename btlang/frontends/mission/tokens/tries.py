@@ -201,22 +201,17 @@ class Tries(SentenceReader):
         is_counted = noun in self._vocabulary.asking["rounds"] or not {noun, noun.removesuffix("s")}.isdisjoint(said)
         paces = [token for token in looped if token.kind in ("every", "count")]
         commands = [token for token in looped if token.kind not in ("every", "count", "repeat")]
-        commands = commands[commands[0].kind == "comma" :]
+        commands = commands[commands[:1] != [] and commands[0].kind == "comma" :]
         is_endless = len(paces) < 2 and all(token.kind == "every" or token.value == "-1" for token in paces)
-        if not (is_counted and is_endless and (self._is_end(end) or text.words[end] == ",")):
+        if not (commands and is_counted and is_endless and (self._is_end(end) or text.words[end] == ",")):
             return 0
         here, start, stop = looped[0].start, text.starts[at], text.ends[match.last]
         number = Token("count", start, stop, self._calls.token(match, at).value)
         if paces and paces[0].kind == "every":
             made = [paces[0], Token("comma", here, here), *commands, Token("comma", start, start), number]
         else:
-            made = [
-                Token("repeat", here, here),
-                Token("open", here, here),
-                *commands,
-                Token("close", start, start),
-                number,
-            ]
+            front = Token("repeat", here, here), Token("open", here, here)
+            made = [*front, *commands, Token("close", start, start), number]
         tokens[first:] = [*made, *([] if self._is_end(end) else [Token("semi", stop, stop)])]
         return end if self._is_end(end) else end + 1
 
