@@ -153,6 +153,8 @@ def test_numbers_that_are_said(sentence: str, tree: str) -> None:
         ("go to the lab and the hall twice and wave in each", "BT151"),
         ('ask Bob and Alice "Tea?". If they do not answer, wave', "BT144"),
         ('ask Bob "Tea?". If he says yes, nod. If he doesn\'t answer, wait 5 min and ask again', "BT152"),
+        ("look for the book and in the lab and the hall", "BT028"),
+        ('ask Bob "Tea?". If he says no, ask him again, up to 3 times, otherwise wave', "BT151"),
         ("say so", "BT159"),
         ('ask Alice and Bob "Tea?", then say the answer', "BT144"),
         ('go to Alice and Bob and ask each of them "Tea?". Then tell me what they said', "BT144"),

@@ -193,7 +193,7 @@ class Calls:
         if any(added[name] != each.get(name) for each in before for name in added.keys() - names):
             return False if all(text[:1] not in _ODD for text in added.values()) else None
         name = places[0].name if len(places) == 1 else ""
-        if not name or any(each[name][:1] in _ODD for each in (*before, added)):
+        if not name or any(each.get(name, "")[:1] in _ODD for each in (*before, added)):
             return None
         more = (tuple({**added, name: text}.items()) for text in places[0].texts)
         reference = self._reference(PLACE)

@@ -233,7 +233,7 @@ class Tries(SentenceReader):
         delay = self._phrase(match.last)
         delay = delay if delay is not None and delay.meaning.role == "delay" else None
         number, last = self._attempts(match.replace(last=delay.last) if delay is not None else match)
-        follows = self._phrase(last + 1) if text.words[last] == END_OF_STATEMENT else None
+        follows = self._phrase(last + 1) if text.words[last] in (END_OF_STATEMENT, ",") else None
         is_limited = last > (delay or match).last and number.isdecimal() and int(number) > 1
         if not is_limited or (follows is not None and follows.meaning.role in ("otherwise", FAILS)):
             return 0
