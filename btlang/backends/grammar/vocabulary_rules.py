@@ -26,12 +26,13 @@ from btlang.vocabulary.entry import Entry, SlotSpec
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.node_words import said_id
 from btlang.vocabulary.pattern import Form, Slot, forms, variants
-from btlang.vocabulary.value_type import TEXT, Unit, ValueType, with_unit
+from btlang.vocabulary.value_type import PLACE, TEXT, ZONE, Unit, ValueType, with_unit
 
 _FIGURE = '([1-9] [0-9]? | "0." [1-9])'
 _WHOLE = "[1-9] [0-9]?"
 _TEXT = '"`" [A-Za-z] [A-Za-z0-9 ,.!?]* "`"'
 _CLOCK = '(("1" [0-9] | "2" [0-3]) ":" [0-5] [0-9])'
+_REGIONS = (PLACE, ZONE)
 _SMALL = 0.01  # of the unit of ports
 _GIVEN = "{%s}"  # a value of the mission in the place of one that is written out
 
@@ -221,7 +222,10 @@ class _VocabularyRules:
         behind = {other[len(form)] for other in known if other[: len(form)] == form != other}
         if not behind.isdisjoint(self._vocabulary.roles["with"]):  # `greet Bob with "hello"`
             return NOTHING
-        return self._with_ports(self._say(form, leaf), leaf, _slots_of(form))
+        said = set(_slots_of(form))
+        if not {leaf.kinds.get(slot) for slot in said}.isdisjoint(_REGIONS):  # one name may be both
+            said |= {slot.name for slot in leaf.entry.slots if slot.type in _REGIONS}
+        return self._with_ports(self._say(form, leaf), leaf, said)
 
     def _exact(self, leaf: _Leaf) -> Part:
         """Return the id of a command with the ports of one way to say it."""
