@@ -155,6 +155,7 @@ def test_numbers_that_are_said(sentence: str, tree: str) -> None:
         ('ask Bob "Tea?". If he says yes, nod. If he doesn\'t answer, wait 5 min and ask again', "BT152"),
         ("look for the book and in the lab and the hall", "BT028"),
         ('ask Bob "Tea?". If he says no, ask him again, up to 3 times, otherwise wave', "BT151"),
+        ("do frobnicate the gizmo", "BT010"),
         ("say so", "BT159"),
         ('ask Alice and Bob "Tea?", then say the answer', "BT144"),
         ('go to Alice and Bob and ask each of them "Tea?". Then tell me what they said', "BT144"),
