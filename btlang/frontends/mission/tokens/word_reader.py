@@ -408,7 +408,7 @@ class WordReader:
             return 0
         call, end = read
         said = next((at for at in range(head.last, end) if text.words[at] in self._details), end)
-        if text.words[head.last][0] != '"' and any(at in text.articles for at in range(head.last, said)):
+        if text.words[head.last][0] != '"' and any(at in text.articles for at in range(head.last + 1, said)):
             return 0  # `do frobnicate the gizmo` is no id
         named = longest(names, text, head.last, self._context) if names and head.meaning.role == "do" else None
         if named is not None and named.last >= end and not head.meaning.node:
