@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from btlang.cli.values import (
     between,
+    latitude_longitude,
     namespace,
     picture,
     port,
+    pose,
     real_speed,
     robot_on,
     server_address,
@@ -127,6 +129,14 @@ SPEED = Option("--speed", type=speed, default="real", help="real, max, or a fact
 ROBOT_SPEED = Option("--speed", type=speed, default="real", metavar="SPEED", help="real, max, or a factor of real time")
 REAL_SPEED = Option("--speed", type=real_speed, default="real", help="real, or a factor of real time")
 RATE = Option("--rate", type=between(*RATES), default=20.0, metavar="HZ", help="ticks per second (default: 20)")
+START = Option(
+    "--start", type=pose, metavar="X,Y[,FACING]",
+    help="where the robot starts (default: the first way point, or where a map has room)",
+)  # fmt: skip
+ORIGIN = Option(
+    "--origin", type=latitude_longitude, metavar="LAT,LON",
+    help="latitude and longitude of the origin, for way points in degrees",
+)  # fmt: skip
 SIMULATE = Option(
     "--simulate", action="append", nargs="?", const=ALL, default=[], metavar="DEVICE",
     help="simulate all devices of the robot file, or only those of this name or kind",

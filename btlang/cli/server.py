@@ -66,11 +66,12 @@ def serve(options: argparse.Namespace) -> int:
     port = listener.getsockname()[1]
     _write_listener(certificate, port)
     scheme = "http" if certificate is None else "https"
-    api = Api(accounts, load_key(server_folder()), ros=options.ros)
+    key = load_key(server_folder())
+    api = Api(accounts, key, ros=options.ros)
     stop_listener = _open_stop_listener(options, port)
     api.stop_port = stop_listener.getsockname()[1]
     settings = {
-        "folder": server_folder(), "key": load_key(server_folder()), "cookie": api.access.cookie,
+        "folder": server_folder(), "key": key, "cookie": api.access.cookie,
         "certificate": None if certificate is None else list(certificate.as_dict().values()),
         "descriptor": stop_listener.fileno(), "proxies": options.proxy, "notice": listener_path(),
     }  # fmt: skip

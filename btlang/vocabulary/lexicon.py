@@ -46,6 +46,7 @@ NODE_ROLES = ("do", "test")
 
 _CONDITIONAL = ("if", "unless", "whenever", "as_soon_as", "once", "while", "until", "check", "provided")
 """Roles of words behind which a condition stands."""
+_JOINING = ("and", "then", "or", "but")
 
 _REPLIES = (("if_yes", True), ("if_no", False))
 
@@ -150,10 +151,8 @@ class Lexicon:
         """The verbs of a journey: `go from the lab to the hall`."""
         self.purpose = tree_of((phrase, True) for phrase in language["purpose"])
         """Words between a command and what it is for: `go through the hall to get to the lab`."""
-        self.before_conditions = frozenset(
-            phrase.split()[0] for role in _CONDITIONAL for phrase in self.roles.get(role, ())
-        )
-        """The first words of what stands before a condition."""
+        self.before_conditions, self.joining = self._first_words(_CONDITIONAL), self._first_words(_JOINING)
+        """The first words of what stands before a condition, and of what joins commands."""
         self.continuing = frozenset(
             str(form[0]) for role in GOES_ON for phrase in self.roles.get(role, ()) for form in self._forms(phrase)
         )
@@ -291,6 +290,9 @@ class Lexicon:
         for role in NO_PHRASES:
             words.update(word for phrase in self.roles.get(role, ()) for word in phrase.split())
         return frozenset(word for word in words if word.isalpha())
+
+    def _first_words(self, roles: Iterable[str]) -> frozenset[str]:
+        return frozenset(phrase.split()[0] for role in roles for phrase in self.roles.get(role, ()))
 
     def _types_of(self, files: Iterable[KeywordFile], english: Lexicon | None) -> dict[str, ValueType]:
         """The types by name; a file may redeclare one, but not with another kind. Its least number stays."""

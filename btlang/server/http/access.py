@@ -253,28 +253,46 @@ async def json_object(request: Request, user: str = "") -> dict[str, Any]:
         raise AccessError(415, "The body must not be compressed.")
     if request.headers.get("content-type", "").partition(";")[0].strip().casefold() != "application/json":
         raise AccessError(415, "The body must be application/json.")  # which no form of another site can send
-    body, most, is_large = bytearray(), MOST_BYTES if user else SMALL, False
+    is_large = False
+
+    def hold(size: int) -> None:
+        nonlocal is_large
+        if size > SMALL and not is_large:
+            if _large[user] >= _MOST_LARGE:
+                raise AccessError(429, "You send too much at once.", 1.0)
+            _large[user] += 1
+            is_large = True
+
     try:
-        async with asyncio.timeout(_PATIENCE):
-            async for part in request.stream():
-                body += part
-                if len(body) > most:
-                    raise AccessError(413, f"The body must have at most {most:,} bytes.")
-                if len(body) > SMALL and not is_large:
-                    if _large[user] >= _MOST_LARGE:
-                        raise AccessError(429, "You send too much at once.", 1.0)
-                    _large[user] += 1
-                    is_large = True
-    except TimeoutError:
-        raise AccessError(408, "The body takes too long.") from None
-    except ClientDisconnect:
-        raise AccessError(400, "The body isn't complete.") from None
+        body = await read_body(request, MOST_BYTES if user else SMALL, _PATIENCE, hold)
     finally:
         if is_large:
             _large[user] -= 1
             if not _large[user]:
                 del _large[user]
-    return read_object(bytes(body))
+    return read_object(body)
+
+
+async def read_body(
+    request: Request, most: int, patience: float, hold: Callable[[int], object] = lambda size: None
+) -> bytes:
+    """Return the body, of at most so many bytes, which has to be there within some seconds.
+
+    `hold` is called with the size so far, and may refuse it. Raises AccessError (400, 408, 413).
+    """
+    body = bytearray()
+    try:
+        async with asyncio.timeout(patience):
+            async for part in request.stream():
+                body += part
+                if len(body) > most:
+                    raise AccessError(413, f"The body must have at most {most:,} bytes.")
+                hold(len(body))
+    except TimeoutError:
+        raise AccessError(408, "The body takes too long.") from None
+    except ClientDisconnect:
+        raise AccessError(400, "The body isn't complete.") from None
+    return bytes(body)
 
 
 def read_object(text: bytes | str) -> dict[str, Any]:

@@ -17,14 +17,14 @@ import time
 from contextlib import suppress
 
 from starlette.applications import Starlette
-from starlette.requests import ClientDisconnect, Request
+from starlette.requests import Request
 from starlette.responses import PlainTextResponse, Response
 from starlette.routing import Route
 
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.server.accounts.accounts import Accounts, Identity, hash_secret
 from btlang.server.accounts.certificate import Certificate
-from btlang.server.http.access import CSRF, Access, AccessError, JsonResponse, host_of, read_object
+from btlang.server.http.access import CSRF, Access, AccessError, JsonResponse, host_of, read_body, read_object
 from btlang.server.http.connections import Connections
 from btlang.server.http.listener import web_server
 from btlang.server.live.robot_connection import LocalConnection
@@ -115,7 +115,7 @@ class StopApp:
             return JsonResponse({"ok": False, "text": "The accounts can't be read.", "code": ""}, 503, headers)
 
     async def _stop(self, request: Request, origin: str) -> str:
-        data = read_object(await _body(request))
+        data = read_object(await read_body(request, _MOST_BYTES, _BODY))
         given: Mapping[str, str] = {
             **request.headers,
             "host": origin.partition("://")[2] if _is_of_this_host(request, origin) else "",
@@ -154,21 +154,6 @@ def _is_of_this_host(request: Request, origin: str) -> bool:
     """Return whether a page is of the same host, at whatever port."""
     host = host_of(request.headers.get("host", ""))
     return host != "" and host_of(origin) == host
-
-
-async def _body(request: Request) -> bytes:
-    body = bytearray()
-    try:
-        async with asyncio.timeout(_BODY):
-            async for part in request.stream():
-                body += part
-                if len(body) > _MOST_BYTES:
-                    raise AccessError(413, f"The body must have at most {_MOST_BYTES:,} bytes.")
-    except TimeoutError:
-        raise AccessError(408, "The body takes too long.") from None
-    except ClientDisconnect:
-        raise AccessError(400, "The body isn't complete.") from None
-    return bytes(body)
 
 
 async def _tell(robot: str, user: str, reason: str) -> None:

@@ -107,17 +107,16 @@ class Lexer:
 
 def _drop_words_of_turns(text: Words, vocabulary: Lexicon) -> None:
     """Take out what says nothing beside a list, with its commas: `the lab, the hall and the dock, in that order`."""
-    words, roles = text.words, vocabulary.roles
+    words = text.words
     if text.distinct.isdisjoint(vocabulary.in_turn):
         return  # as nearly always
-    joining = {phrase.split()[0] for role in ("and", "then", "or", "but") for phrase in roles[role]}
     at = 0
     while at < len(words):
         found = find(vocabulary.in_turn, words, at) if words[at] in vocabulary.in_turn else None
         begins = at == 0 or words[at - 1] in (END_OF_STATEMENT, END_OF_TEXT, ":")
         if found is not None and (not begins or words[found[1]] == ","):
             first = at - (words[at - 1] == "," and not begins)
-            is_inserted = words[found[1]] == "," and words[found[1] + 1] not in joining
+            is_inserted = words[found[1]] == "," and words[found[1] + 1] not in vocabulary.joining
             text.drop(first, found[1] + (is_inserted and (begins or first < at)))
             at = first
         at += 1

@@ -157,10 +157,15 @@ def with_stays(tokens: list[Token], source: Source, standing: Container[str]) ->
     constraint = constraint_of(tokens[commands[-1]])
     if last.kind == "nothing" and last.role == STAYS:
         last.kind = "wait_forever"
-    elif last.role == STAYS or source.text[last.start : last.end].split(" ")[0].lower() in standing:
+    elif last.role == STAYS or first_word(last, source) in standing:
         tokens[end:end] = [Token("then", last.end, last.end), Token("wait_forever", last.end, last.end)]
     elif constraint is not None and constraint.kind == "keep in" and end == commands[-1] + 1:
         tokens[end:end] = [Token("semi", last.end, last.end), Token("wait_forever", last.end, last.end)]
+
+
+def first_word(token: Token, source: Source) -> str:
+    """The word with which a command begins, in small letters."""
+    return source.text[token.start : token.end].split(" ")[0].lower()
 
 
 def _is_sequence(before: Sequence[Token]) -> bool:

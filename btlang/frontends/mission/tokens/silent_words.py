@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from btlang.frontends.mission.token import JOINTS, LINES, Called, Token, constraint_of
-from btlang.frontends.mission.tokens.settling import STAYS
+from btlang.frontends.mission.tokens.settling import STAYS, first_word
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match
@@ -108,18 +108,14 @@ def without_meaning(
         goes_on = role in ("then", "and") or (bool(role) and not is_behind)
         return match.last if start.kind == "but" or is_last or goes_on else 0
     purpose = find(vocabulary.purpose, text.words, at) if before.kind == "command" else None
-    if purpose is None or purpose[1] in text.articles or _verb(text, before) in vocabulary.asking["causing"]:
+    causing = vocabulary.asking["causing"]
+    if purpose is None or purpose[1] in text.articles or first_word(before, text.source) in causing:
         return 0  # `wait for Bob to pick up the cup`: he does that
     if longest(vocabulary.trie, text, purpose[1], context) is not None:
         kind = "and" if constraint_of(before) is not None else "then"
         tokens.append(Token(kind, text.starts[at], text.ends[purpose[1] - 1]))
         return purpose[1]
     return 0
-
-
-def _verb(text: Words, command: Token) -> str:
-    """The word with which a command begins."""
-    return text.source.text[command.start : command.end].split(" ")[0].lower()
 
 
 def _goes(match: Match | None) -> bool:

@@ -156,9 +156,9 @@ class UnknownWords:
             return False
         if not vocabulary.quantifiers.isdisjoint(words[at:end]):
             return False
-        joints = {phrase.split()[0] for role in ("and", "then", "or", "but") for phrase in vocabulary.roles[role]}
         command = longest(vocabulary.trie, self._text, at, self._context)
-        if not joints.isdisjoint(words[at:end]) or (command is not None and command.meaning.role == "command"):
+        joins = not vocabulary.joining.isdisjoint(words[at:end])
+        if joins or (command is not None and command.meaning.role == "command"):
             return False
         return all(find(vocabulary.obliging, words, i) is None for i in range(at, end))
 
