@@ -122,13 +122,13 @@ def _wait(item: ast.Wait, _done: list[Lowered], scope: LoweringScope) -> Lowered
     return Lowered(run_before(scripts, new_node("Sleep", (), item.span, msec=time)))
 
 
-def _wait_until(item: ast.WaitUntil, done: list[Lowered], scope: LoweringScope) -> Lowered:
-    scripts: list[Node] = []
-    asked = done[0].node
-    if item.held:
-        scripts, time = _timed(item.held, scope)
-        asked = new_node("ReactiveSequence", (asked, _timer(time)), item.span)
-    return Lowered(run_before(scripts, new_node("RetryUntilSuccessful", [asked], item.span, num_attempts="-1")))
+def _held(item: ast.Held, done: list[Lowered], scope: LoweringScope) -> Lowered:
+    scripts, time = _timed(item.seconds, scope)
+    return Lowered(run_before(scripts, new_node("ReactiveSequence", (done[0].node, _timer(time)), item.span)))
+
+
+def _wait_until(item: ast.WaitUntil, done: list[Lowered], _scope: LoweringScope) -> Lowered:
+    return Lowered(new_node("RetryUntilSuccessful", [done[0].node], item.span, num_attempts="-1"))
 
 
 def _wait_time(item: ast.WaitTime, _done: list[Lowered], _scope: LoweringScope) -> Lowered:
@@ -149,6 +149,7 @@ TIMED: dict[type[ast.Ast], Callable[[Any, list[Lowered], LoweringScope], Lowered
     ast.Apart: _apart,
     ast.Delay: _delay,
     ast.Wait: _wait,
+    ast.Held: _held,
     ast.WaitUntil: _wait_until,
     ast.WaitTime: _wait_time,
     ast.UntilTime: _until_time,

@@ -204,9 +204,12 @@ def _wait(node: ast.Wait, _parts: list[Doc], printer: Printer) -> Doc:
     return _leaf(printer.duration("wait", node.seconds).text)
 
 
+def _held(node: ast.Held, parts: list[Doc], printer: Printer) -> Doc:
+    return Doc((printer.condition(parts[0]).fragments, printer.duration("for", node.seconds)), FORM)
+
+
 def _wait_until(node: ast.WaitUntil, parts: list[Doc], printer: Printer) -> Doc:
-    held = (printer.duration("for", node.held),) if node.held else ()
-    return Doc((printer.word("wait_until"), printer.condition(parts[0]).fragments, *held), FORM)
+    return Doc((printer.word("wait_until"), printer.condition(parts[0]).fragments), FORM)
 
 
 def _wait_time(node: ast.WaitTime, _parts: list[Doc], printer: Printer) -> Doc:
@@ -359,6 +362,7 @@ PRINTERS: dict[type[ast.Ast], Callable[[Any, list[Doc], Printer], Doc]] = {
     ast.Delay: _timed("delay"),
     ast.Constrained: _constrained,
     ast.Wait: _wait,
+    ast.Held: _held,
     ast.WaitUntil: _wait_until,
     ast.WaitTime: _wait_time,
     ast.UntilTime: _until_time,

@@ -41,7 +41,7 @@ def with_answers(mission: ast.Program) -> tuple[ast.Program, list[Diagnostic]]:
     def body(root: ast.Ast) -> ast.Ast:
         if not _asks(root):
             return root
-        return fold(root, ast.parts, lambda node, done: _gather(ast.with_parts(node, done), problems))
+        return fold(root, ast.parts, lambda node, done: _gather(_ask_until(ast.with_parts(node, done)), problems))
 
     def program(part: ast.Program) -> ast.Program:
         return ast.with_bodies(part, body, program)
@@ -57,6 +57,24 @@ def _asks(node: ast.Ast, ids: Container[str] = ABOUT_ANSWERS) -> bool:
 def _depends(node: ast.Ast) -> bool:
     """Whether a command is done if the answer is this or that."""
     return isinstance(node, ast.If) and _asks(node.condition)
+
+
+def _ask_until(node: ast.Ast) -> ast.Ast:
+    """Ask again after another answer, or after none: `ask Bob "Ready?" every minute until he says yes`."""
+    if not (isinstance(node, ast.While) and node.negated and node.otherwise is None and _asks(node.condition)):
+        return node
+    round_, pause = node.body, ""
+    if isinstance(round_, ast.Every) and not round_.rounds:
+        asked, pause = round_.body, round_.seconds
+    else:
+        asked = round_.body if isinstance(round_, ast.Repeat) and round_.rounds == "-1" else round_
+    if not (isinstance(asked, ast.Phrase) and asked.entry.id == ASK):
+        return node
+    if _is_reply(node):
+        asked = ast.Chain("sequence", (asked, ast.Check(node.condition, node.condition.span)), True, node.span)
+    elif not (isinstance(node.condition, ast.Not) and _asks(node.condition, (UNANSWERED,))):  # `until he answers`
+        return node
+    return ast.Retry("-1", asked, pause, node.span)
 
 
 def _gather(node: ast.Ast, problems: list[Diagnostic]) -> ast.Ast:
@@ -107,8 +125,28 @@ def _reply(items: list[ast.Ast], asking: int | None, item: ast.Ast) -> None:
     """Add a command to those behind a question, if there is one."""
     if asking is not None and isinstance(item, ast.If) and _asks(item.condition, (UNANSWERED,)):
         items[asking:] = _with_silence(items[asking:], item)
-    else:
-        items.append(item)
+        return
+    if asking is not None and isinstance(item, ast.If) and item.otherwise is not None and _is_reply(item):
+        chained = item
+        while len(items) > asking + 1 and _excludes(items[-1], chained):
+            before = items.pop()
+            chained = before.replace(otherwise=item, span=Span(item.span.source, before.span.start, item.span.end))
+            item = chained
+    items.append(item)
+
+
+def _excludes(before: ast.Ast, item: ast.If) -> bool:
+    """Whether an answer is another one than that of the command before: `otherwise` behind both is neither of them."""
+    if not isinstance(before, ast.If) or before.otherwise is not None or not _is_reply(before):
+        return False
+    return not _questions(before.body) and before.condition != item.condition
+
+
+def _is_reply(node: ast.If | ast.While) -> bool:
+    """Whether the condition of a form is one answer, or that there is none."""
+    asked = node.condition
+    is_denied = isinstance(node, ast.If) and node.negated  # of a loop it is `until`
+    return not is_denied and isinstance(asked, ast.Phrase) and asked.entry.id in ABOUT_ANSWERS
 
 
 def _with_silence(items: Sequence[ast.Ast], item: ast.If) -> list[ast.Ast]:

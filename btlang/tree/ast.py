@@ -3,7 +3,7 @@
 Commands: Phrase, Name, Chain, If, IfWorks, While, Provided, StopWhen, Repeat, Retry, Try, Within, For, UpTo, Every,
 UntilTime, Apart, Delay, Constrained, Wait, WaitUntil, WaitTime, WaitForever, Check, Nothing, Fail, Assign, Remember,
 ForEach, Exact; Whenever in a sequence.
-Conditions: Phrase, Name, Compared, Chain ("all", "any"), AtLeast, Not, Exact. `parts` are fields with subtrees.
+Conditions: Phrase, Name, Compared, Chain ("all", "any"), AtLeast, Not, Held, Exact. `parts` are fields with subtrees.
 Amounts and values are port texts in base units (seconds); they may refer to values of the mission: `{level}`, in a
 text also `it is {level} percent` (see btlang/vocabulary/references.py).
 """
@@ -264,11 +264,17 @@ class Wait(Ast):
     span: Span
 
 
-class WaitUntil(Ast):
-    """A wait for a condition; `held` are the seconds for which it has to hold, "" for none."""
+class Held(Ast):
+    """A condition that has to hold for some time, without a break."""
 
     condition: Ast
-    held: str
+    seconds: str
+    span: Span
+    parts = ("condition",)
+
+
+class WaitUntil(Ast):
+    condition: Ast
     span: Span
     parts = ("condition",)
 
@@ -492,10 +498,9 @@ def _of_arguments(node: Phrase | Name | Compared | Remember) -> list[str]:
 
 _TEXTS: dict[type[Ast], Callable[[Any], Iterable[str]]] = {
     **dict.fromkeys((Phrase, Name, Compared, Remember), _of_arguments),
-    **dict.fromkeys((Within, For, UpTo, Delay, Wait), lambda node: (node.seconds,)),
+    **dict.fromkeys((Within, For, UpTo, Delay, Wait, Held), lambda node: (node.seconds,)),
     **dict.fromkeys((Every, Apart), lambda node: (node.seconds, node.rounds)),
     Constrained: lambda node: node.zones,
-    WaitUntil: lambda node: (node.held,),
     **dict.fromkeys((WaitTime, UntilTime), lambda node: (node.time,)),
     Assign: lambda node: (node.text,),
     ForEach: lambda node: node.values,

@@ -27,7 +27,10 @@ ONE_FAILS = "if_one_fails"
 def with_rounds(mission: ast.Program, vocabulary: Lexicon) -> ast.Program:
     """Return the mission with a loop for each set that a command of it speaks of."""
     nodes = [node for body in _own_bodies(mission) for node in ast.parents_first(body)]
-    if not any(_set_of(node) or (isinstance(node, ast.Chain) and node.operator == "fallback") for node in nodes):
+    tries = (
+        isinstance(node, ast.Retry) or (isinstance(node, ast.Chain) and node.operator == "fallback") for node in nodes
+    )
+    if not any(map(_set_of, nodes)) and not any(tries):
         return mission
     if mission.facts:
         vocabulary = vocabulary.with_places(tuple(fact.name for fact in ast.all_facts(mission)))
@@ -96,16 +99,23 @@ def _add_loops(root: ast.Ast, vocabulary: Lexicon) -> ast.Ast:
 
 
 def _with_each_tried(node: ast.Ast, done: Sequence[ast.Ast], vocabulary: Lexicon) -> ast.Ast:
-    """Put `If one is missing, B` into the round before it: B for each thing for which that fails."""
+    """Put `If one is missing, B` into the round before it: B, or a new attempt, for each thing for which that fails."""
     made = ast.with_parts(node, done)
-    if not isinstance(made, ast.Chain) or made.operator != "fallback":
-        return made
-    tried, *others = made.items
-    gap = split(Source(tried.span.source.text[tried.span.end : others[0].span.start]), vocabulary.orthography)
+    if isinstance(made, ast.Retry):
+        if _asks_about_one(made.body, made.span.end, vocabulary):
+            return _in_each(made.body, lambda part: ast.Retry(made.attempts, part, made.pause, made.span)) or made
+    elif isinstance(made, ast.Chain) and made.operator == "fallback":
+        tried, *others = made.items
+        if _asks_about_one(tried, others[0].span.start, vocabulary):
+            return _in_each(tried, lambda part: ast.Chain("fallback", (part, *others), True, made.span)) or made
+    return made
+
+
+def _asks_about_one(tried: ast.Ast, end: int, vocabulary: Lexicon) -> bool:
+    """Whether the words behind a command, up to a place, say what is done for each thing for which it fails."""
+    gap = split(Source(tried.span.source.text[tried.span.end : end]), vocabulary.orthography)
     found = (longest(vocabulary.trie, gap, at, vocabulary.context, lists=False) for at in range(len(gap.words)))
-    if all(match is None or match.meaning.role != ONE_FAILS for match in found):
-        return made
-    return _in_each(tried, lambda part: ast.Chain("fallback", (part, *others), True, made.span)) or made
+    return any(match is not None and match.meaning.role == ONE_FAILS for match in found)
 
 
 def _says_one_verb(chain: ast.Chain) -> bool:
@@ -119,7 +129,8 @@ def _in_each(node: ast.Ast, change: Callable[[ast.Ast], ast.Ast]) -> ast.Ast | N
     if isinstance(node, ast.ForEach):
         return node.replace(body=change(node.body))  # type: ignore[no-any-return]
     if isinstance(node, ast.Chain) and (ast.is_list(node) or _says_one_verb(node)):
-        return node.replace(items=tuple(map(change, node.items)))  # type: ignore[no-any-return]
+        items = tuple(map(change, node.items))
+        return node.replace(items=items, span=items[0].span)  # type: ignore[no-any-return]
     parts = ast.parts(node)
     changed = [_in_each(part, change) for part in parts]
     if all(part is None for part in changed):

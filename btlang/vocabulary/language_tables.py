@@ -45,7 +45,7 @@ ASKING = (
     "if_yes", "if_no", "told_of", "standing", "able", "unable", "reaching", "finishing", "waiting", "apiece",
     "between_joint",    "standing_verbs", "events", "duties", "reasons", "performing", "naming", "named_as", "in_turn",
     "rounds", "obliging", "failing", "so", "being", "causing", "asking_for", "plea_for", "helping", "plea_for_help",
-    "speaking", "spoken_of", "still", "motionless", "who", "somebody",
+    "speaking", "spoken_of", "still", "motionless", "who", "somebody", "answering",
 )  # fmt: skip
 """What the table `asking` of a language may have; without it there are no questions, and no remarks."""
 
@@ -83,7 +83,7 @@ _NO_SLOT = (
 )  # fmt: skip
 ROLES = {
     **dict.fromkeys(_NO_SLOT, ""),
-    **dict.fromkeys(("every", "delay", "for", "up_to", "apart", "within", "wait", "wait_up_to"), "duration"),
+    **dict.fromkeys(("every", "delay", "for", "held", "up_to", "apart", "within", "wait", "wait_up_to"), "duration"),
     **dict.fromkeys(("without_entering", "without_leaving"), "zone"),
     **dict.fromkeys(("count", "tries", "at_most", "up_to_times", "stop_after", "rounds_of"), "count"),
     **dict.fromkeys(("more", "at_least_of"), "count"),
@@ -196,6 +196,7 @@ TABLES: dict[str, tuple[Callable[[object], bool], str]] = {
     "nodes": (_is_text, "the words of a node"),
     "contractions": (_is_contracted, "a word, or two"),
     "direct": (_patterns, "a list of patterns"),
+    "perfect": (_is_text, "another verb"),
     "ordinals": (_ordinal, "a whole number, below 0 from the last one on"),
     "counts": (_rounds, "a whole number from 1 on, or -1 for endless"),
     "numbers": (_number, "a number"),
@@ -270,7 +271,7 @@ _LANGUAGE: dict[str, Any] = {
     "prepositions": {}, "synonyms": {}, "particles": [], "fillers": [], "speaker": [], "subjects": [], "purpose": [],
     "roles": {}, "contractions": {}, "about": {}, "comparisons": {}, "ordinals": {}, "counts": {}, "negations": {},
     "doing": {},
-    "third_person": {}, "direct": {},
+    "third_person": {}, "direct": {}, "perfect": {},
     "negative_subjects": {}, "plurals": {}, "asking": {}, "plural_endings": {}, "nouns": {}, "everyone": {},
     "pronouns": {}, "nodes": {}, "meanings": {}, "numbers": {}, "multipliers": {}, "fractions": {}, "times": {},
     "parts_of_day": {}, "clock": {},

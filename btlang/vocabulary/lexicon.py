@@ -144,6 +144,7 @@ class Lexicon:
             for name in ("duties", "obliging", "reasons", "able", "unable", "reaching", "finishing")
         )
         """What no sentence has that only tells something, and what begins a reason, and what couldn't be done."""
+        self.answering = tree_of((phrase, True) for phrase in self.asking["answering"])
         self.replies = tree_of((words, is_yes) for name, is_yes in _REPLIES for words in self.asking[name])
         """Words behind a question, each with whether it is for a yes: `if so`."""
         verb = "".join(self.asking["journey"][:1])
@@ -162,6 +163,8 @@ class Lexicon:
         """The endings of the form that a verb has behind `while` or `before`, each with those of the verb itself."""
         self.third_person: dict[str, list[str]] = language["third_person"]
         """The same for the form behind a subject: `the robot waves`."""
+        self.perfect: dict[str, str] = language["perfect"]
+        """How a condition says that it has held for some time, and what it says: `has been`, `is`."""
         self.nodes: dict[str, str] = language["nodes"]
         """The words of nodes that have some, by their ids."""
         self.meanings: dict[str, str] = language["meanings"]

@@ -62,6 +62,7 @@ class Values(Measures):
         self._plural_endings = language["plural_endings"]
         self._spoken: dict[tuple[str, str], str] = {}
         self._exceptions = tree_of((phrase, True) for phrase in language["roles"].get("except", ()))
+        self._without = {phrase.split()[0] for phrase in language["roles"].get("without_entering", ())}
         self._openers: dict[str, frozenset[str]] | None
         self._choice_starts: frozenset[str] | None
         self._group_starts: frozenset[str] | None
@@ -350,7 +351,7 @@ class Values(Measures):
     def exception(self, text: Words, at: int) -> int:
         """Where a word such as `except` ends, 0 if there is none."""
         found = find(self._exceptions, text.words, at)
-        return found[1] if found is not None else 0
+        return 0 if found is None or text.words[found[1]] in self._without else found[1]
 
     def takes_word(self, kind: str, word: str) -> bool:
         """Whether the one word is a value of the type."""

@@ -6,7 +6,8 @@
 //
 // Each time the condition becomes true (true at the start counts too) the work is halted, the reaction is ticked until it
 // completes, and then the work goes on. The node ends with the status of the work, or fails where the reaction fails. The
-// condition must have been false before it counts again, which it never does with the port once="true".
+// condition must have been false before it counts again, which it never does with the port once="true"; one that is
+// RUNNING is neither true nor false.
 //
 // BehaviorTree.CPP cannot suspend a node: work that was halted starts anew. Where it must keep its place, make it a
 // SequenceWithMemory. A node of the work whose effect must last during the reaction is a Suspendable: KeepOut and KeepIn
@@ -68,7 +69,7 @@ private:
     }
     if(asked != BT::NodeStatus::SUCCESS)
     {
-      armed_ = armed_ || !fired_;
+      armed_ = armed_ || (!fired_ && asked != BT::NodeStatus::RUNNING);
     }
     else if(armed_ && !reacting_)
     {

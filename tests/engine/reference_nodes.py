@@ -164,7 +164,7 @@ class MoreNodes(ReferenceNode):
         if asked != RUNNING:
             condition.reset()
         if asked != SUCCESS:
-            self.armed = self.armed or (not self.fired and self.mission.unknowns == before)
+            self.armed = self.armed or (not self.fired and asked != RUNNING and self.mission.unknowns == before)
         elif self.armed and not self.reacting:
             self.armed, self.reacting = False, True
             self.fired = self.node.port("once") in ("true", "1")

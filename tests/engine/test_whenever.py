@@ -56,6 +56,17 @@ def test_the_outer_rule_wins_and_interrupts_the_inner_reaction() -> None:
     assert world.log == ["D", "C", "B.start", "D", "B.halt", "A.start", "C", "B.start"]
 
 
+def test_a_condition_that_holds_for_some_time_triggers_once_until_it_is_false() -> None:
+    world = World()
+    held = n("ReactiveSequence", world.fn("C", "ss" + "s" * 4 + "fss"), n("Sleep", msec=1000))
+    engine = world.engine(n("Whenever", held, world.fn("B", "s"), world.cls("W", "r")))
+    for _ in range(9):
+        world.ticks(engine, 1)
+        world.clock.advance(1)
+    # true from tick 1 on, so it holds at tick 2; false at tick 7, true again from tick 8 on, so it holds at tick 9
+    assert [entry for entry in world.log if entry in ("B", "W.start")] == ["W.start", "B", "W.start", "B", "W.start"]
+
+
 def test_statuses_are_reported() -> None:
     world = World()
     engine = world.engine(n("Whenever", world.fn("C", "fs"), world.cls("B", "s"), world.cls("W", "r")), watched=True)

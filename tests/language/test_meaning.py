@@ -37,6 +37,7 @@ def in_one_line(mission: btlang.Mission) -> str:
         *rows("attempts.txt"),
         *rows("replies.txt"),
         *rows("times.txt"),
+        *rows("waits.txt"),
     ],
     ids=lambda text: text,
 )
@@ -62,6 +63,11 @@ def test_numbers_that_are_said(sentence: str, tree: str) -> None:
     ("sentence", "code"),
     [
         ("go to the lab or avoid the hall", "BT155"),
+        ("if nobody is near for 5 min, wave", "BT150"),
+        ("wave for more than 10 s", "BT150"),
+        ("wait in the hall, then go to the lab", "BT012"),
+        ("wait in the hall. If nobody comes, go to the lab", "BT012"),
+        ("wait. Then wave", "BT012"),
         ("go to the lab, charge first", "BT151"),
         ("careful is avoid the kitchen while Bob is there\ncareful", "BT152"),
         ("go to the lab, but stay out of the kitchen if Bob is in the kitchen", "BT151"),

@@ -105,6 +105,7 @@ conditions: Trees = st.recursive(
 _seconds = st.sampled_from(["5", "0.2", "90", "{pause}"])
 _times = st.sampled_from(["00:00", "18:30", "{lunch}"])
 _pause = st.sampled_from(["", "5", "{pause}"])
+_lasting = st.one_of(conditions, st.builds(ast.Held, conditions, _seconds, _span))
 _rounds = st.sampled_from(["-1", "1", "2", "3", "{rounds}"])
 _leaves: Trees = st.one_of(
     st.sampled_from(COMMANDS).map(phrase),
@@ -114,7 +115,7 @@ _leaves: Trees = st.one_of(
     st.builds(ast.Nothing, _span),
     st.one_of(st.builds(ast.Wait, _seconds, _span), st.builds(ast.WaitTime, _times, _span)),
     st.builds(ast.Check, conditions, _span),
-    st.builds(ast.WaitUntil, conditions, _pause, _span),
+    st.builds(ast.WaitUntil, _lasting, _span),
 )
 
 
@@ -178,7 +179,7 @@ def _about(inner: Trees) -> Trees:
     )
 
 
-_rules = st.builds(ast.Whenever, conditions, commands, st.booleans(), _span)
+_rules = st.builds(ast.Whenever, _lasting, commands, st.booleans(), _span)
 ruled: Trees = st.recursive(
     st.builds(_rule_block, st.lists(_rules, min_size=1, max_size=2), st.lists(commands, min_size=1, max_size=2)),
     _about,

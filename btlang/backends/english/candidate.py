@@ -28,7 +28,8 @@ class Candidate(Record):
     """A way to say a node: `command` in one statement, `body` as all that stands in a block, where rules have their
     place.
 
-    `condition` says it as a condition, None where it cannot be one; `is_condition` where it is meant as one.
+    `condition` says it as a condition, None where it cannot be one; `is_condition` where it is meant as one. `held` is
+    the condition that has to hold for some time, for forms that wait.
     With `in_lines` what is said needs lines of its own (see btlang/printer/mission.py), so that only forms with blocks
     can hold it.
     """
@@ -40,6 +41,12 @@ class Candidate(Record):
     is_condition: bool = False
     in_lines: bool = False
     children: tuple[Candidate, ...] = ()
+    held: ast.Ast | None = None
+
+    @property
+    def awaited(self) -> ast.Ast | None:
+        """What it is said as behind words that wait for a condition."""
+        return self.condition if self.condition is not None else self.held
 
     @property
     def part(self) -> ast.Ast:

@@ -131,18 +131,29 @@ def _provided(_node: Node, children: tuple[Candidate, ...], _checked: Checked) -
         yield ast.Provided(children[0].condition, children[1].command, NOWHERE)
 
 
+def propose_held(node: Node, children: tuple[Candidate, ...], checked: Checked) -> Iterator[ast.Ast]:
+    """Propose a condition that has to hold for some time."""
+    if node.id == "ReactiveSequence" and len(children) == 2:
+        condition, timer = children
+        if condition.condition is not None and timer.node.id == "Sleep":
+            for seconds in _seconds(timer.node.port("msec"), checked):
+                yield ast.Held(condition.condition, seconds, NOWHERE)
+
+
 def _whenever(node: Node, children: tuple[Candidate, ...], _checked: Checked) -> Iterator[ast.Ast]:
     """Propose the rule, with what it stands over as further lines of its block."""
-    if len(children) != 3 or children[0].condition is None:
+    condition = children[0].awaited if len(children) == 3 else None
+    if condition is None:
         return
-    rule = ast.Whenever(children[0].condition, children[1].part, node.port("once") == "true", NOWHERE)
-    rest = children[2]
+    _, reaction, rest = children
+    rule = ast.Whenever(condition, reaction.part, node.port("once") == "true", NOWHERE)
     if rest.node.id == "KeepRunningUntilFailure":
-        yield ast.Chain("sequence", (rule,), True, NOWHERE)
+        items: tuple[ast.Ast, ...] = ()
     elif isinstance(rest.body, ast.Chain) and rest.body.operator == "sequence":
-        yield ast.Chain("sequence", (rule, *rest.body.items), True, NOWHERE)
+        items = rest.body.items
     else:
-        yield ast.Chain("sequence", (rule, rest.command), True, NOWHERE)
+        items = (rest.command,)
+    yield ast.Chain("sequence", (rule, *items), True, NOWHERE)
 
 
 def _repeat(node: Node, children: tuple[Candidate, ...], checked: Checked) -> Iterator[ast.Ast]:
@@ -167,12 +178,9 @@ def _retry(node: Node, children: tuple[Candidate, ...], checked: Checked) -> Ite
     attempts = node.port("num_attempts")
     child = children[0]
     if attempts == _ENDLESS and child.is_condition and child.condition is not None:
-        yield ast.WaitUntil(child.condition, "", NOWHERE)
-    elif attempts == _ENDLESS and child.node.id == "ReactiveSequence" and len(child.children) == 2:
-        condition, timer = child.children
-        if condition.condition is not None and timer.node.id == "Sleep":
-            times = _seconds(timer.node.port("msec"), checked)
-            yield from (ast.WaitUntil(condition.condition, seconds, NOWHERE) for seconds in times)
+        yield ast.WaitUntil(child.condition, NOWHERE)
+    elif attempts == _ENDLESS and child.held is not None:
+        yield ast.WaitUntil(child.held, NOWHERE)
     number = _rounds(attempts, checked)
     if number is None:
         return

@@ -17,7 +17,7 @@ from btlang.backends.english.candidate import (
 )
 from btlang.backends.english.code import Computed, Loop, read_computed
 from btlang.backends.english.comments import Comments
-from btlang.backends.english.inverse_rules import INVERSE_RULES
+from btlang.backends.english.inverse_rules import INVERSE_RULES, propose_held
 from btlang.backends.english.names import SpokenNames
 from btlang.backends.english.type_inference import KnownTypes
 from btlang.passes.scope import Lowered, LoweringScope
@@ -124,6 +124,7 @@ class Lifter:
         if made is not None:
             ways.insert(0, (made, parts[-1].children))
         condition = self._condition(node, ways)
+        held = self._held(node, ways) if condition is None else None
         exact = self._exact(node, parts, condition)
         is_condition = condition is not None and self._is_condition(made.node if made is not None else node, parts)
         natural, inner = self._natural_form(node, ways, condition if is_condition else None)
@@ -132,10 +133,10 @@ class Lifter:
         in_lines = any(part.in_lines for part in inner) or is_rule or (natural is None and bool(parts))
         self._note([node] if inner is parts else [node, *node.children], natural or exact, condition)
         if natural is None:
-            return Candidate(node, exact, exact, condition, is_condition, in_lines, parts)
+            return Candidate(node, exact, exact, condition, is_condition, in_lines, parts, held)
         is_chain = isinstance(natural, ast.Chain) and natural.operator == "sequence"
         command = exact if in_lines and is_chain else natural  # no line can hold lines that are a sequence
-        return Candidate(node, command, natural, condition, is_condition, in_lines, parts)
+        return Candidate(node, command, natural, condition, is_condition, in_lines, parts, held)
 
     def _note(self, nodes: Iterable[Node], said: ast.Ast, condition: ast.Ast | None = None) -> None:
         """Keep the comments of nodes that are said as one; those of a sequence stand before its first line."""
@@ -225,6 +226,14 @@ class Lifter:
                     if self._checked.says(made, node):
                         return made
         return self._exact_condition(node) if not node.children else None
+
+    def _held(self, node: Node, ways: list[tuple[Computed, tuple[Candidate, ...]]]) -> ast.Ast | None:
+        for way, inner in ways if self._natural and not node.name else ():
+            self._checked.texts = way.texts
+            for made in propose_held(way.node, inner, self._checked):
+                if self._checked.says(made, node):
+                    return made
+        return None
 
     def _condition_forms(self, node: Node, children: tuple[Candidate, ...]) -> Iterator[ast.Ast]:
         inner = [child.condition for child in children if child.condition is not None]

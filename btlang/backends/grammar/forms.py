@@ -43,7 +43,7 @@ CONDITIONS = {
     "condition-list": '(<any_of> | <all_of> | <none_of> | <at_least_of 2>) " " phrase ", " phrase " " <and> " " phrase',
     "waiting": "wait-for-condition | wait-lasting | wait-up-to",
     "wait-for-condition": '(<wait_until> | <wait_for>) " " part',
-    "wait-lasting": '<wait_until> " (" part ") " <for>',
+    "wait-lasting": '<wait_until> " (" part ") " (<for> | <held>)',
     "wait-up-to": '<wait_up_to> " " part',
     "checking": '<check> " " part',
 }
@@ -111,7 +111,7 @@ BEHIND = {
 """A command that is repeated takes time, and one that may be stopped half-way doesn't mind."""
 
 STATEMENTS = {
-    "rule": '(<whenever> | <first_time>) " " condition ", " unit',
+    "rule": '(<whenever> | <first_time>) " " (condition | part " " (<for> | <held>)) ", " unit',
     "going-on": "if-that-fails | if-that-works | in-any-case | do-that | meanwhile-next | finally",
     "if-that-fails": 'able ". " (<if_fails> | <otherwise>) ", " unit',
     "if-that-works": 'unit ". " (<if_works> | <if_it_works>) ", " unit (". " <otherwise> ", " unit)?',

@@ -235,7 +235,7 @@ class Whenever(Node):
         if status == SKIPPED:
             halt(condition)
         if status != SUCCESS:
-            self.armed = self.armed or (not self.fired and status is not UNKNOWN)
+            self.armed = self.armed or not (self.fired or status == RUNNING or status is UNKNOWN)
         elif self.armed and not self.reacting:
             self.armed, self.fired, self.reacting = False, self.once, True
             if self.running:

@@ -28,9 +28,8 @@ def whenever(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
 
     When it becomes true (true at the start counts too), the work is suspended, and the reaction is ticked until it
     completes. If it fails, the whole fails; else the work goes on. The condition must have been false before it counts
-    again, which it never does with the port once="true"; one that is not known is neither. The whole ends with the
-    status of the work. A condition that is RUNNING counts as false; one that is an action suspends what runs before it
-    starts (see control.py).
+    again, which it never does with the port once="true"; one that is not known, or RUNNING, is neither. The whole ends
+    with the status of the work. A condition that is an action suspends what runs before it starts (see control.py).
     """
     ticks, halts = split_children(children)
     state = instance.state
@@ -46,7 +45,7 @@ def whenever(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
         child, running = running, 0
         halts[child](True)
 
-    def holds() -> bool:
+    def ask() -> int:
         if running:
             interrupts.append(suspend)
         status = ticks[0]()
@@ -54,7 +53,7 @@ def whenever(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
             interrupts.pop()
         if status == SKIPPED:
             halts[0](False)
-        return status == SUCCESS
+        return status
 
     def end() -> None:
         nonlocal armed, fired, reacting, running
@@ -64,8 +63,9 @@ def whenever(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
     def tick() -> int:
         nonlocal armed, fired, reacting, running
         fault, unknowns = state.fault, state.unknowns
-        if not holds():
-            armed = armed or (not fired and state.unknowns == unknowns)
+        asked = ask()
+        if asked != SUCCESS:
+            armed = armed or (not fired and asked != RUNNING and state.unknowns == unknowns)
         elif armed and not reacting:
             armed, reacting, fired = False, True, once()
             if running:

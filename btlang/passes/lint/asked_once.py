@@ -27,7 +27,8 @@ if TYPE_CHECKING:
 _SENTENCE_END = re.compile(r"[.;!?\n]")
 _QUOTED_ENDS = ('."', '!"', '?"')
 ON_THE_WAY = ("SomeoneInTheWay", "SomethingInTheWay")
-_WHILE_DRIVING = ("Bumped", "WallInFront", "ObstacleWithin")
+_BUMPED = "Bumped"
+_WHILE_DRIVING = (_BUMPED, "WallInFront", "ObstacleWithin")
 _CLOSED = "DoorClosed"
 _FREE, _BATTERY, _LOW = "PathClear", "Battery", "BatteryLow"
 
@@ -70,7 +71,8 @@ def _sentence_before(items: Sequence[ast.Ast], at: int) -> Sequence[ast.Ast]:
 def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> Iterator[Diagnostic]:
     """Report a condition that decides about the journey before it, or watches what happens on it."""
     asked = node.condition.condition if isinstance(node.condition, ast.Not) else node.condition
-    timed = before[-1] if before and node.body.span.start > node.condition.span.start else None
+    is_front = node.body.span.start > node.condition.span.start
+    timed = before[-1] if before and is_front else None
     while isinstance(timed, ast.UntilTime | ast.For) and isinstance(timed.body, ast.Every):
         timed = timed.body
     words = node.span.source.text[node.span.start : node.condition.span.end]
@@ -87,12 +89,16 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
         yield diagnostic("BT068", node.span, words=words, advice=advice).replace(readings=((whole, each),))
         return
     is_timed = isinstance(timed, ast.UntilTime | ast.For | ast.WaitTime)
-    phrases = (each for item in before for each in ast.parents_first(item))
+    phrases = [each for item in before for each in ast.parents_first(item) if isinstance(each, ast.Phrase)]
+    entries = [each.entry for each in phrases]  # `turn left until bumped` has asked
     journeys = [] if is_timed else [each for each in phrases if _drives(each)]
     if not (is_timed or journeys):
         return
     last = before[-1].span.text
-    is_driving = isinstance(asked, ast.Phrase) and _is_about_driving(asked, node, journeys)
+    is_driving = isinstance(asked, ast.Phrase) and (
+        _is_about_driving(asked, node, journeys)
+        or (is_front and asked.entry.id == _BUMPED and asked.entry not in entries)
+    )
     if is_timed or is_driving:
         each = f"{vocabulary.word('whenever')} {node.span.text[len(words.split(maxsplit=1)[0]) :].lstrip()}"
         advice = f"'{last}' is over by then. To do it {'meanwhile' if is_timed else 'on the way'}, write: {each}"
@@ -199,6 +205,9 @@ def _warn(node: ast.If, before: ast.Ast | None, vocabulary: Lexicon) -> Iterator
                 readings=((node.span, each),)
             )
         return
+    asked = node.condition.condition if isinstance(node.condition, ast.Not) else node.condition
+    if isinstance(asked, ast.Phrase) and asked.entry.id in ABOUT_ANSWERS:
+        return  # `when she has answered`: the question is over by then
     word = next(iter(source.text[node.span.start : condition.start].split(maxsplit=1)), "")  # none before a question
     if word.lower() in vocabulary.asked_once or _is_event(node.condition, vocabulary):
         rest = source.text[node.span.start + len(word) : node.span.end].lstrip()

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 
 _LINE_END = re.compile(r"[\n;]|[.!?](?!\w)")
+_STOP = re.compile(r"[.!?](?!\w)")
 _WORD = re.compile(r"\w")
 _QUOTED = re.compile(r'"[^"\n]*"')
 MIXED, POSTFIX, LIST, NEGATED, AFTER = "mixed", "postfix", "list", "negated", "after"
@@ -155,7 +156,10 @@ def find_in_chain(
 def _names_its_command(item: ast.Ast) -> bool:
     """Whether `B` in `A and find the cup. If you can't find it, B` is about one of the commands before the stop."""
     source, parts = item.span.source.text, sorted(ast.parts(item), key=lambda part: part.span.start)
-    return len(parts) > 1 and "." in source[parts[0].span.end : parts[1].span.start]
+    if len(parts) < 2:
+        return False
+    before = _QUOTED.sub("", source[parts[0].span.start : parts[1].span.start])  # `... . If not within 5 s, B`
+    return _STOP.search(before) is not None
 
 
 def _behind_after(

@@ -92,7 +92,7 @@ def _next_day(wait: ast.WaitTime, ended: str, is_first: bool, vocabulary: Lexico
     times = wait.time.split(";")
     earlier = (time for time in times if is_first and _is_over(time, ended))
     over = ended if ended in times else next(earlier, "")
-    words = vocabulary.word("whenever"), *vocabulary.asking["time_is"], vocabulary.asking["hours"][0], over
+    words = vocabulary.word("whenever"), *vocabulary.asking["time_is"], *vocabulary.asking["hours"][:1], over
     advice = "Leave it out." if over == ended else f"To do it meanwhile, write: {' '.join(words)}, ..."
     if over:
         end = "that time" if over == ended else ended

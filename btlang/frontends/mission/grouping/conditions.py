@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from btlang.frontends.mission.grouping.bodies import begin_otherwise, separator
 from btlang.frontends.mission.grouping.lists import after_item
-from btlang.frontends.mission.grouping.problems import waits_for_how_long
+from btlang.frontends.mission.grouping.problems import not_known_yet, waits_for_how_long
 from btlang.frontends.mission.grouping.scan import ENDS, Scan
 from btlang.frontends.mission.grouping.stack import StackEntry
-from btlang.frontends.mission.token import CORRELATIVES, QUANTIFIERS, Token
+from btlang.frontends.mission.token import CORRELATIVES, HOLDING, QUANTIFIERS, Token
 
 STARTS_OPERAND = frozenset((
     "command", "condition", "unknown", "wait", "wait_time", "wait_forever", "nothing", "fail", "not", "open", "repeat",
@@ -23,6 +23,7 @@ AMOUNTS = frozenset((
 """What may stand behind a command, with a condition or without."""
 
 _IN_CONDITION = frozenset(("condition", "not", "nor", "open", "close", "again", *QUANTIFIERS, *CORRELATIVES))
+_LASTING = frozenset(("wait_until", "whenever", "first_time", "as_soon_as"))  # forms that wait for a condition
 _CHOOSING = frozenset(("if", "unless", "while", "until"))  # forms that may have an `otherwise`
 
 
@@ -93,6 +94,17 @@ def closes_statement(scan: Scan, at: int) -> bool:
 
 
 def end_condition(scan: Scan, entry: StackEntry, token: Token) -> None:
+    if token.kind in HOLDING and entry.opener is not None:
+        if entry.opener.role == "wait_for" and token.kind == "for":
+            waits_for_how_long(scan, entry.opener, token)
+            return
+        if entry.opener.role in _LASTING:
+            scan.emit("COND_HELD", token)
+            scan.next(token, False)
+            token = scan.raw[scan.at]
+        elif entry.after == "body":
+            not_known_yet(scan, entry.opener, token)
+            return
     if entry.after == "body":
         scan.emit("DO", token)
         body = StackEntry("body", entry.opener, scan.stack[-1])
@@ -110,12 +122,6 @@ def end_condition(scan: Scan, entry: StackEntry, token: Token) -> None:
     elif entry.after == "postfix" and scan.at_otherwise() and entry.opener and entry.opener.role in ("if", "unless"):
         begin_otherwise(scan)
     elif entry.after != "definition":
-        if token.kind == "for" and entry.opener is not None and entry.opener.role in ("wait_until", "wait_for"):
-            if entry.opener.role == "wait_for":
-                waits_for_how_long(scan, entry.opener, token)
-                return
-            entry.opener.role, entry.opener.value = "hold", token.value
-            scan.next(token, False)
         scan.emit_end()
 
 

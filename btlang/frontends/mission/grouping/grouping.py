@@ -89,6 +89,7 @@ _OPERATOR: dict[str, Callable[[Scan, Token], None]] = {
     **dict.fromkeys(RULES, operators.rule_after),
     "in_parallel": operators.at_the_same_time,
     "nor": lists.stray,
+    "held": problems.not_a_condition,
     "never": problems.without,
     **dict.fromkeys(("newline", "semi", "dedent", "end"), operators.end_statement),
     "repeat": operators.repeat_after,

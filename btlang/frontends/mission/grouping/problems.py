@@ -63,6 +63,24 @@ def side_by_side(scan: Scan, token: Token) -> None:
     scan.fail("BT021", scan.span(before, token), word_before(scan, token, "then"), word=scan.words(token))
 
 
+def not_a_condition(scan: Scan, token: Token) -> None:
+    """`wave for more than 10 s`."""
+    seconds = scan.words(token).split()
+    at = next((at for at, word in enumerate(seconds) if word[:1].isdigit()), 1)
+    example = f"... {scan.word('for')} {' '.join(seconds[at:])}"
+    scan.fail(
+        "BT150", scan.span(token), words=scan.words(token), reason="only a condition holds so long", example=example
+    )
+
+
+def not_known_yet(scan: Scan, opener: Token, amount: Token) -> None:
+    """`if nobody is near for 5 min, A`: nobody has watched."""
+    condition = scan.source.text[opener.end : scan.last_end].strip()
+    example = f"{scan.word('whenever')} {condition} {scan.words(amount)}, ..."
+    reason = "how long it has been so isn't known here"
+    scan.fail("BT150", scan.span(amount), words=scan.words(amount), reason=reason, example=example)
+
+
 def waits_for_how_long(scan: Scan, opener: Token, amount: Token) -> None:
     """`wait for C for 10 s`."""
     text, span = scan.source.text, scan.span(opener, amount)

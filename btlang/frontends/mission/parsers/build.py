@@ -32,6 +32,7 @@ from btlang.tree.ast import (
     Fail,
     For,
     ForEach,
+    Held,
     If,
     IfWorks,
     Name,
@@ -226,13 +227,17 @@ class Builder:
         asked = Check(days[0] if len(days) == 1 else Chain("any", days, True, end), end)
         return Retry("-1", Chain("sequence", (WaitTime(said.times, span), asked), True, span), "", span)
 
+    def held(self, condition: Ast, token: Token) -> Ast:
+        """COND_HELD."""
+        return Held(condition, _amount(token), self.span(condition.span.start, token.end))
+
     def form(self, kind: str, condition: Ast, body: Ast, otherwise: Ast | None, start: int, end: int) -> Ast:
         """A form with a condition, before or after a command; of `if_works` the condition is a command."""
         span = Span(self.source, start, end)
         if kind in ("whenever", "first_time"):
             return Whenever(condition, body, kind == "first_time", span)
         if kind == "as_soon_as":
-            return self.chain("sequence", (WaitUntil(condition, "", condition.span), body), start, end)
+            return self.chain("sequence", (WaitUntil(condition, condition.span), body), start, end)
         if kind == "if_works":
             return IfWorks(condition, body, otherwise, span)
         if kind == "stop_when":
@@ -248,7 +253,7 @@ class Builder:
         span = Span(self.source, opener.start, end)
         if opener.role == "check":
             return Check(condition, span)
-        waiting = WaitUntil(condition, _amount(opener) if opener.role == "hold" else "", span)
+        waiting = WaitUntil(condition, span)
         return UpTo(_amount(opener), waiting, span) if opener.role == "wait_up_to" else waiting
 
 

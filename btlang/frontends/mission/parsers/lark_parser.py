@@ -95,6 +95,9 @@ class _ToAst:
     def postfix(self, children: list[Any]) -> Ast:
         return self.build.postfix(children[0], children[1])
 
+    def held(self, children: list[Any]) -> Ast:
+        return self.build.held(children[0], children[1])
+
     def negation(self, children: list[Any]) -> Ast:
         return self.build.negation(children[0], children[1])
 

@@ -91,6 +91,9 @@ def parse(tokens: Sequence[Token], build: Builder) -> Ast:
             level.operators.append(token)
         elif kind == "POSTFIX":
             level.operands.append(build.postfix(level.take(), token))
+        elif kind == "COND_HELD":
+            level.reduce(0)
+            level.operands.append(build.held(level.take(), token))
         elif kind in _OPENERS:
             inner = _Level(build, token)
             if kind == "IF_WORKS":

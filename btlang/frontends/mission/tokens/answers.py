@@ -19,7 +19,7 @@ _PERSON_SAYS, _SOMEBODY_SAYS = "PersonSays", "SomebodySays"
 _LIMITS = frozenset(("within", "up_to"))
 _BEFORE_NAME = 3  # words: `and if Bob`
 _BEFORE_REPLY = BEFORE_CONDITIONS | {"semi", "newline", "stop", "comma", "and", "then", "or"}
-_OF_REPLY = frozenset(("if", "unless", "not", "condition", "or", "and", "comma", "then"))
+_OF_REPLY = frozenset(("if", "unless", "until", "not", "condition", "or", "and", "comma", "then"))
 _STOPS = frozenset(("semi", "newline"))
 
 
@@ -182,6 +182,22 @@ class Answers(AddressedTexts):
             return heard
         return Called(entry, ((entry.slots[0].name, values[TEXT]),))
 
+    def answered(self, at: int) -> int:
+        """`ask Bob "Ready?" until he answers`: whatever he says. Returns where to go on, 0 for other words."""
+        text, entry = self._text, self._vocabulary.entry(UNANSWERED)
+        who = self._context.read(PERSON, text, at) if self._may_ask and entry is not None else None
+        subjects = {*self._vocabulary.values.role_words.speaker, *self._vocabulary.negative_subjects}
+        behind = who[1] if who is not None else at + 1 if text.words[at] in subjects else 0
+        found = find(self._vocabulary.answering, text.words, behind) if behind else None
+        if found is None or entry is None or not (self._is_end(found[1]) or text.words[found[1]] == ","):
+            return 0
+        start, end = text.starts[at], text.ends[found[1] - 1]
+        self._tokens.append(Token("not", start, start))
+        asked = Token("condition", start, end, Called(entry, ()))
+        self.said(asked, at)
+        self._tokens.append(asked)
+        return found[1]
+
     def _silent(self, token: Token, words: str) -> None:
         """Makes `she says nothing` and `she doesn't say anything` the condition that nobody has answered."""
         entry, asking = self._vocabulary.entry(UNANSWERED), self._vocabulary.asking
@@ -200,7 +216,8 @@ class Answers(AddressedTexts):
     @cached_property
     def _may_ask(self) -> bool:
         """Whether anybody may be asked in the text."""
-        return not asking_verbs(self._vocabulary).isdisjoint(self._text.distinct)
+        verbs = tuple(asking_verbs(self._vocabulary))
+        return any(word.startswith(verbs) for word in self._text.distinct)
 
     def _asked_person(self) -> str:
         """Who is asked by the question that a condition may be about whose form has begun; "" if nobody alone is."""

@@ -10,7 +10,9 @@ from collections.abc import Container
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import (
+    CORRELATIVES,
     JOINTS,
+    QUANTIFIERS,
     STATEMENT_ENDS,
     Called,
     Listed,
@@ -19,11 +21,11 @@ from btlang.frontends.mission.token import (
     run_start,
     statement_start,
 )
-from btlang.frontends.mission.tokens.going_on import BRANCHES, GoingOn
-from btlang.frontends.mission.tokens.sentence_reader import hears, may_fail, searches
+from btlang.frontends.mission.tokens.going_on import BRANCHES
+from btlang.frontends.mission.tokens.limits import Limits
+from btlang.frontends.mission.tokens.sentence_reader import may_fail, searches
 from btlang.frontends.mission.tokens.settling import (
     FAILS,
-    MEASURES,
     WORKS,
     asked_about,
     is_about,
@@ -31,7 +33,7 @@ from btlang.frontends.mission.tokens.settling import (
     names_of,
     settle,
 )
-from btlang.frontends.mission.tokens.silent_words import begins
+from btlang.frontends.mission.tokens.silent_words import BEGINS, begins
 from btlang.frontends.mission.tokens.tries import LIMIT
 from btlang.text.source import Span
 from btlang.tree.rounds import ONE_FAILS
@@ -46,9 +48,10 @@ if TYPE_CHECKING:
 _ASKING = frozenset(("if", "as_soon_as", "once"))
 _HOLDS, _WHERE = "Holding", ("PersonIsAt", "ObjectIsAt")
 _DONE = ("command", "name")
+_IN_CONDITIONS = frozenset(("condition", "not", "and", "or", "open", "close", *CORRELATIVES, *QUANTIFIERS))
 
 
-class Outcomes(GoingOn):
+class Outcomes(Limits):
     """Those of one text, behind the tokens that it has so far."""
 
     def connect(self, match: Match, role: str, at: int) -> int:
@@ -65,6 +68,8 @@ class Outcomes(GoingOn):
         if role == ONE_FAILS and not self._in_round():
             words = self._text.span(at, match.last - (self._text.words[match.last - 1] == ","))
             self._calls.problems.append(diagnostic("BT067", words, words=words.text))
+        if role == "delay":
+            self._ask_later()
         if role in (WORKS, "otherwise") and find(self._vocabulary.replies, self._text.words, at) is not None:
             self._ask_alone()
         if role in (FAILS, ONE_FAILS, "if_unanswered", "otherwise"):
@@ -83,26 +88,21 @@ class Outcomes(GoingOn):
             return self.unanswered(match.last)
         return self._limit_before(match.last, role) if said in (WORKS, FAILS) else match.last
 
+    def _ask_later(self) -> None:
+        """`if nobody is near five minutes later, A`: it waits, and asks then."""
+        tokens = self._tokens
+        form = run_start(tokens, len(tokens) - 1, _IN_CONDITIONS) - 1
+        is_first = form == 0 or (form > 0 and tokens[form - 1].kind in (*BEGINS, *JOINTS))
+        if is_first and tokens[form].kind in ("if", "unless"):
+            delay = tokens.pop()
+            tokens[form:form] = [delay, Token("comma", delay.end, delay.end)]
+
     def _doubt_count(self, count: Token, match: Match, at: int) -> None:
         """BT151 for `turn left up to 8 times until C`: at most so often, or so often again and again."""
         number = self._text.source.text[count.start : count.end]
         span = Span(self._text.source, count.start, self._text.ends[match.last - 1])
         one, other = f"... {number}", f"... {self._text.span(at, match.last).text} ..."
         self._calls.problems.append(diagnostic("BT151", span, words=span.text, one=one, other=other))
-
-    def _limit_before(self, end: int, role: str) -> int:
-        """`if you find him within 60 s, A`, `if that doesn't work after two attempts, A`: of the command before."""
-        tokens, form = self._tokens, len(self._tokens) - 1
-        at = asked_about(tokens, form, lambda _: True)
-        if at is None or any(token.kind not in (*JOINTS, "stop") for token in tokens[at + 1 : form]):
-            return end
-        limit = self._phrase(end)
-        if role == FAILS and limit is not None and limit.meaning.role == "tries":
-            count = self._calls.token(limit, end)
-            tokens.insert(at + 1, Token("count", count.start, count.end, count.value))
-            tokens.insert(at, Token("retry", tokens[at].start, tokens[at].start))
-            return limit.last
-        return self._limit(tokens[at], end) if role == FAILS or searches(tokens[at]) else end
 
     def settle(self, end: int) -> int:
         """What the condition asks that ends at a word is left out where the command before it has settled it.
@@ -120,6 +120,9 @@ class Outcomes(GoingOn):
             at = asked_about(tokens, form, lambda token: self._is_settled(token, asked))
             is_free = BRANCHES.isdisjoint(self._statement(form - 1)[1])
             may_ask = at is None or not is_free or self._may_ask_again(at, form, end)
+            if at is None and is_free and self._is_event(asked):
+                at, may_ask = self._wait_before(form, asked, end), False
+                form = len(tokens) - 3
             if at is not None and not may_ask and settle(tokens[:form], at):
                 return self._settle(at, form, asked.end, end)
         command = self._before(form)
@@ -132,19 +135,6 @@ class Outcomes(GoingOn):
         if has_found or any(_achieves(tokens[at], asked) for at in range(command, first - 1, -1)):
             self._join(command, form, asked.end, denied)
         return end
-
-    def _may_ask_again(self, at: int, form: int, end: int) -> bool:
-        """Whether a condition behind `wait up to 5 min until C` asks what is so then."""
-        tokens = self._tokens
-        last = run_start(tokens, form, STATEMENT_ENDS)
-        limits = [token.kind for token in (tokens[at - 1], *tokens[at + 1 : last])]
-        waits = tokens[at].kind == "condition" and (limits == ["wait_up_to"] or limits[1:] in (["for"], ["up_to"]))
-        return waits and self._time_behind(end) is None
-
-    def _time_behind(self, end: int) -> Match | None:
-        """The time that stands at a word."""
-        limit = self._phrase(end)
-        return limit if limit is not None and limit.meaning.role in ("within", "delay") else None
 
     def _is_settled(self, token: Token, asked: Token) -> bool:
         """Whether a command, or what is waited for, is what a condition asks."""
@@ -171,24 +161,6 @@ class Outcomes(GoingOn):
             self._unclear(Span(self._text.source, start, stop))
         tokens.append(Token("otherwise" if role == "otherwise" else "or", start, stop, FAILS))
         return self._limit(command, end)
-
-    def _limit(self, command: Token, end: int) -> int:
-        """`if he doesn't come within 5 min`: how long a command may take is said behind the words that ask about it."""
-        limit = self._time_behind(end)
-        if limit is None:
-            return end
-        at = self._tokens.index(command) + 1
-        if self._tokens[at].kind in MEASURES:
-            return end
-        said = self._calls.token(limit, end)
-        self._tokens.insert(at, Token("within", said.start, said.end, said.value))
-        return limit.last
-
-    def unanswered(self, end: int) -> int:
-        """`if she doesn't answer within 20 s`: how long the question waits."""
-        asked = (token for token in reversed(self._tokens) if token.kind == "command" and hears(token))
-        question = next(asked, None)
-        return self._limit(question, end) if question is not None else end
 
     def read(self, at: int) -> int:
         """Words that go on with what has happened to the command before them. Returns where to go on, 0 for others."""

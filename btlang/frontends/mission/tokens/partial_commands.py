@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from functools import cached_property
 
 from btlang.frontends.mission.token import (
+    HOLDING,
     LINES,
     Called,
     Listed,
@@ -155,7 +156,7 @@ class PartialCommands:
 
     def add_condition(self, at: int) -> int:
         """A condition that isn't said as its phrases are. Returns where to go on, 0 where there is none."""
-        return self._add_quantity(at) or self._add_contracted(at)
+        return self._add_quantity(at) or self._add_contracted(at) or self._add_lasting(at)
 
     def _add_quantity(self, at: int) -> int:
         """`charge until it is at least 80%`: the latest quantity is compared, or the only one with that unit."""
@@ -205,12 +206,32 @@ class PartialCommands:
             other = {place - at: words[place].removesuffix(ending), place - at + 1: be[0]}
             match = match_of(self._text, places, other, self._tries, self._context)
             if match is not None and match.meaning.role in ("condition", "negated") and match.last > place - at + 2:
-                found = relocated(match, places)
-                if match.meaning.role != "condition":
-                    self._tokens.append(Token("not", self._text.starts[at], self._text.starts[at]))
-                self.append(found, at)
-                return found.last
+                return self._condition(relocated(match, places), at)
         return 0
+
+    def _add_lasting(self, at: int) -> int:
+        """`whenever nobody has been near for 5 min`: a condition that has held for some time."""
+        forms = ((form.split(), verb) for form, verb in self._vocabulary.perfect.items())
+        for form, verb in forms:
+            for place in range(at, min(at + _LONGEST_VERB, len(self._text.words))):
+                if self._text.words[place : place + len(form)] != form:
+                    continue
+                places = [*range(at, place + 1), *rest_of(self._text, place + len(form))]
+                match = match_of(self._text, places, {place - at: verb}, self._tries, self._context)
+                if match is None or match.meaning.role not in ("condition", "negated"):
+                    continue
+                found = relocated(match, places)
+                behind = longest(self._vocabulary.trie, self._text, found.last, self._context)
+                if behind is not None and behind.meaning.role in HOLDING:
+                    return self._condition(found, at)
+        return 0
+
+    def _condition(self, found: Match, at: int) -> int:
+        """Add a condition, or its denial. Returns where to go on."""
+        if found.meaning.role != "condition":
+            self._tokens.append(Token("not", self._text.starts[at], self._text.starts[at]))
+        self.append(found, at)
+        return found.last
 
     def add_left_out(self, at: int, least: int = 0) -> int:
         """A command whose first words are those of the one before it, and which ends at a word `least` or behind it."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import (
     JOINTS,
@@ -239,15 +241,28 @@ class Places(SentenceReader):
         first = max((i + 1 for i in range(first, last) if tokens[i].kind in _HEADS), default=first)
         if any(token.kind not in _PLAIN for token in tokens[first:last]):
             return False
-        if not self._calls.make_round(tokens[last - 1], goal):
+        tour = self._tour(tokens[first:last])
+        if not self._calls.make_round(tour, goal):
             return False
-        at = tokens[last - 1].end
+        at, legs = tour.end, last - 1 - first
         tokens[behind:end] = [Token("and", at, at)]
+        tokens[first:last] = [tour]
+        last -= legs
         if pace is not None and is_paced and pace.kind == "count":
             del tokens[last]
             here = tokens[first].start
             tokens[first:first] = [Token("repeat", here, here), pace, Token("colon", here, here)]
         return True
+
+    @staticmethod
+    def _tour(tokens: Sequence[Token]) -> Token:
+        """`go to A, then to B and C` as one journey, where there is nothing else: else the last one."""
+        last, legs = tokens[-1], [token.value for token in tokens if token.kind not in ("then", "and", "comma")]
+        calls = [value for value in legs if drives(value) and not (isinstance(value, Listed) and value.joiner == "or")]
+        if len(calls) < max(len(legs), 2) or len({call.entry.id for call in calls}) > 1:
+            return last
+        arguments = tuple(each for call in calls for each in arguments_of(call))
+        return Token("command", tokens[0].start, last.end, Listed(calls[0].entry, arguments, "and"))
 
     def _repeats(self, journey: Match, last: int) -> bool:
         """`go to A and B three times. In each room, wave`: whether the rooms are those of a loop, three times each."""

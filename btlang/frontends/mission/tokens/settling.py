@@ -5,8 +5,9 @@ The condition is about the search alone, so that A isn't done where the key was 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Sequence
+from collections.abc import Callable, Container, Iterator, Sequence
 
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.token import (
     JOINTS,
     RULES,
@@ -21,8 +22,9 @@ from btlang.frontends.mission.token import (
     statement_start,
     texts_of,
 )
-from btlang.text.source import Source
+from btlang.text.source import Source, Span
 from btlang.vocabulary.entry import Entry
+from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import ALL, choice_of
 
 FAILS, WORKS = "if_fails", "if_works"
@@ -161,6 +163,25 @@ def with_stays(tokens: list[Token], source: Source, standing: Container[str]) ->
         tokens[end:end] = [Token("then", last.end, last.end), Token("wait_forever", last.end, last.end)]
     elif constraint is not None and constraint.kind == "keep in" and end == commands[-1] + 1:
         tokens[end:end] = [Token("semi", last.end, last.end), Token("wait_forever", last.end, last.end)]
+
+
+def find_brief_stays(tokens: Sequence[Token], vocabulary: Lexicon, source: Source) -> Iterator[Diagnostic]:
+    """Report `wait at the door, then go to the lab`: without saying how long, it would leave at once; and `wait`."""
+    waiting = vocabulary.asking["waiting"]
+    for at, token in enumerate(tokens):
+        if token.role == STAYS and first_word(token, source) in waiting:
+            wait, behind = Span(source, token.start, token.end), at + 1
+            while behind < len(tokens) and tokens[behind].kind in JOINTS | STATEMENT_ENDS:
+                behind += 1
+            leaves = behind < len(tokens) and tokens[behind].kind == "command" and drives(tokens[behind].value)
+            if leaves or (token.kind == "nothing" and wait.text.lower() in waiting):
+                yield lasting(wait, vocabulary)
+
+
+def lasting(wait: Span, vocabulary: Lexicon) -> Diagnostic:
+    """BT012 for a wait that doesn't say how long."""
+    example = f"{wait.text} {vocabulary.word('for')} {vocabulary.types['duration'].example}"
+    return diagnostic("BT012", wait, words=wait.text, wanted="a duration", example=example)
 
 
 def first_word(token: Token, source: Source) -> str:

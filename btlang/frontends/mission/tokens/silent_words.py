@@ -66,6 +66,9 @@ def without_meaning(
     if staying is not None and text.words[staying[1]] in (*_STAYS_BEFORE, *vocabulary.roles["and"]):
         tokens.append(Token("nothing", text.starts[at], text.ends[staying[1] - 1], role=STAYS))
         return staying[1]
+    if text.words[at] in vocabulary.asking["waiting"] and text.words[at + 1] in (END_OF_STATEMENT, END_OF_TEXT):
+        tokens.append(Token("nothing", text.starts[at], text.ends[at], role=STAYS))  # what follows says how long
+        return at + 1
     going = find(vocabulary.going, text.words, at)
     if going is not None and going[1] not in text.articles:
         follows = longest(vocabulary.trie, text, going[1], context)

@@ -243,8 +243,9 @@ class WordReader:
     def _other(self, match: Match | None, role: str, at: int, last: int) -> int:
         """Words that are no phrase, or one that doesn't stand alone: they say something here, or are unknown."""
         tokens, text = self._tokens, self._text
+        asks = tokens[-1:] != [] and tokens[-1].kind in _ASKING
         end = (
-            (self._partial.add_condition(at) if tokens and tokens[-1].kind in _ASKING else 0)
+            (self._partial.add_condition(at) or self._requests.answered(at) if asks else 0)
             or without_meaning(tokens, text, match, role, at, self._vocabulary, self._context)
             or self._order.no_phrase(at)
             or self._partial.performed(at)

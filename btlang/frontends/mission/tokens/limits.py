@@ -1,0 +1,96 @@
+"""How long may pass until a command is asked about: `wait at the door. If nobody comes within 5 min, A`."""
+
+from __future__ import annotations
+
+from btlang.frontends.mission.token import JOINTS, STATEMENT_ENDS, Token, run_start
+from btlang.frontends.mission.tokens.going_on import GoingOn
+from btlang.frontends.mission.tokens.sentence_reader import hears, searches
+from btlang.frontends.mission.tokens.settling import FAILS, MEASURES, STAYS, asked_about, lasting
+from btlang.text.source import Span
+from btlang.vocabulary.match import Match
+
+_LIMITS = ("within", "delay", "for", "held")
+"""What may say how long a command may take, behind words that ask how it went."""
+
+
+class Limits(GoingOn):
+    """Those of one text."""
+
+    def _limit_before(self, end: int, role: str) -> int:
+        """`if you find him within 60 s, A`, `if that doesn't work after two attempts, A`: of the command before."""
+        tokens, form = self._tokens, len(self._tokens) - 1
+        at = asked_about(tokens, form, lambda _: True)
+        if at is None or any(token.kind not in (*JOINTS, "stop") for token in tokens[at + 1 : form]):
+            return end
+        limit = self._phrase(end)
+        if role == FAILS and limit is not None and limit.meaning.role == "tries":
+            count = self._calls.token(limit, end)
+            tokens.insert(at + 1, Token("count", count.start, count.end, count.value))
+            tokens.insert(at, Token("retry", tokens[at].start, tokens[at].start))
+            return limit.last
+        return self._limit(tokens[at], end) if role == FAILS or searches(tokens[at]) else end
+
+    def _may_ask_again(self, at: int, form: int, end: int) -> bool:
+        """Whether a condition behind `wait up to 5 min until C` asks what is so then."""
+        tokens = self._tokens
+        last = run_start(tokens, form, STATEMENT_ENDS)
+        limits = [token.kind for token in (tokens[at - 1], *tokens[at + 1 : last])]
+        waits = tokens[at].kind == "condition" and (limits == ["wait_up_to"] or limits[1:] in (["for"], ["up_to"]))
+        return waits and self._time_behind(end) is None
+
+    def _is_event(self, asked: Token) -> bool:
+        """Whether a condition says that something happens: `somebody comes`."""
+        words = self._text.source.text[asked.start : asked.end].lower().split()
+        return not set(self._vocabulary.asking["events"]).isdisjoint(words)
+
+    def _wait_before(self, form: int, asked: Token, end: int) -> int | None:
+        """`wait at the door. If nobody comes within 5 min, A`, `wait 5 min. If nobody comes, A`: it waits for that.
+
+        The place of what is waited for then, None where no command before the form waits.
+        """
+        tokens = self._tokens
+        last = run_start(tokens, form, STATEMENT_ENDS) - 1
+        if tokens[last].kind == "close" and tokens[last - 1].kind == "wait":  # `wait 5 min at the door`
+            begin = next(at for at in reversed(range(last)) if tokens[at].kind == "open")
+            del tokens[last], tokens[begin]
+            last -= 2
+        wait, here = tokens[last], tokens[last].end
+        if wait.kind == "wait":
+            wait.kind = "wait_up_to"
+        elif wait.role != STAYS:
+            return None
+        elif self._time_behind(end) is None:
+            self._calls.problems.append(lasting(Span(self._text.source, wait.start, wait.end), self._vocabulary))
+            return None
+        else:
+            goes = [] if wait.kind == "nothing" else [wait, Token("then", here, here)]  # `wait there`
+            tokens[last : last + 1] = [*goes, Token("wait_until", here, here)]
+            last += len(goes)
+        tokens.insert(last + 1, Token("condition", here, here, asked.value))
+        return last + 1
+
+    def _time_behind(self, end: int) -> Match | None:
+        """The time that stands at a word: `within 5 min`; the `in` of `comes in five minutes` may be one of it."""
+        for at in (end, end - 1):
+            limit = self._phrase(at)
+            if limit is not None and limit.meaning.role in _LIMITS and limit.last > end:
+                return limit
+        return None
+
+    def _limit(self, command: Token, end: int) -> int:
+        """`if he doesn't come within 5 min`: how long a command may take is said behind the words that ask about it."""
+        limit = self._time_behind(end)
+        if limit is None:
+            return end
+        at = self._tokens.index(command) + 1
+        if self._tokens[at].kind in MEASURES:
+            return end
+        said = self._calls.token(limit, end)
+        self._tokens.insert(at, Token("within", said.start, said.end, said.value))
+        return limit.last
+
+    def unanswered(self, end: int) -> int:
+        """`if she doesn't answer within 20 s`: how long the question waits."""
+        asked = (token for token in reversed(self._tokens) if token.kind == "command" and hears(token))
+        question = next(asked, None)
+        return self._limit(question, end) if question is not None else end
