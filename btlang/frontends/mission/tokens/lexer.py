@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import partial
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
@@ -17,6 +17,7 @@ from btlang.text.source import Source, Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, split
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import Known, ReadingContext
+from btlang.vocabulary.value_type import PLACE, TEXT, ZONE
 from btlang.vocabulary.word_tree import find
 
 
@@ -43,6 +44,7 @@ class Lexer:
         self.problems += [diagnostic("BT003", span, characters=span.text[:20]) for span in self.text.unreadable]
         _drop_words_of_turns(self.text, vocabulary)
         _drop_still(self.text, vocabulary)
+        self.problems += _drop_untold_sizes(self.text, vocabulary)
         self.names = Names(self.text, vocabulary, load, known)
         self.problems += self.names.problems
         self.vocabulary = self.names.vocabulary
@@ -132,3 +134,27 @@ def _drop_still(text: Words, vocabulary: Lexicon) -> None:
             first = max((i + 1 for i in range(first, at) if words[i] == ","), default=first)
             if any(word in vocabulary.before_conditions for word in words[first:at]):
                 text.drop(at, at + 1)
+
+
+def _drop_untold_sizes(text: Words, vocabulary: Lexicon) -> Iterator[Diagnostic]:
+    """Take out a size before the name of a place where nothing is known of sizes: `the large red room` is that room."""
+    sizes, places = vocabulary.values.names_tree("size"), vocabulary.values.names_tree(PLACE)
+    if text.distinct.isdisjoint(sizes) or vocabulary.values.likenesses.is_told(PLACE, "size"):
+        return
+    found = [(at, find(sizes, text.words, at)) for at in range(len(text.words)) if text.words[at] in sizes]
+    ends = [(at, size[1]) for at, size in found if size is not None and find(places, text.words, at) is None]
+    named = {text.words[end] for at, end in ends if text.earlier(at)[1] == at}  # `the large kitchen is at (3, 4)`
+    before = {phrase[0] for phrases in vocabulary.values.role_words.introducing.values() for phrase in phrases}
+    entries = [entry for same in vocabulary.entries.values() for entry in same]
+    types = [(entry, {slot.type for slot in entry.slots}) for entry in entries]
+    goes = [entry for entry, own in types if own & {PLACE, ZONE} and TEXT not in own]
+    verbs = tuple(phrase.split()[0] for entry in goes for phrase in entry.phrases)
+    for at, end in reversed(ends):
+        if (
+            find(places, text.words, end)
+            and text.words[end] not in named
+            and (text.words[at - 1] in before or text.words[at - 1].startswith(verbs))
+        ):
+            span = text.span(at, end)
+            text.drop(at, end)
+            yield diagnostic("BT158", span, words=span.text)

@@ -40,7 +40,7 @@ from btlang.vocabulary.value_type import OBJECT
 
 BEFORE_DOING = frozenset(("before", "after", "while", "until", "never", "followed_by", "meanwhile"))
 """The kinds of tokens behind which a command may have the form of its verb: `after waving`."""
-JOINTS = frozenset(("then", "and", "or", "comma", "otherwise"))
+JOINTS = frozenset(("then", "and", "or", "comma", "otherwise", "before", "after"))
 """Behind these a command may leave out words of the one before it."""
 _COMMANDS = frozenset(("command", "name"))
 _EITHER_END = (["for", "or"], ["up_to", "or"])  # `for 10 s or 2 m` says two ends of one command, not two commands
