@@ -209,6 +209,8 @@ _ALL = (
     Code("BT173", "'{words}' has only rules, so it goes on for ever here, and other commands don't run meanwhile.",
          "To let it watch beside them, write: {fixed}", "warning", "only rules"),
     Code("BT174", "'{joint}' means '{then}' here: '{first}' and '{second}' both need the {resource}.", "", "note", "shared part"),
+    Code("BT175", "When a round fails, this ends, and what belongs to it.",
+         "To go on with the next round, put '{word}' before what may fail, for example: {fixed}", "note", "rounds end"),
     Code("BT176", "'{words}' only permits something, so it is left out.", "", "note", "permission"),
     Code("BT177", "'{words}' is left out: I don't know whose things are meant.",
          'The world file can say whose a thing is: owner = "Alice", or owner = "me"', "note", "owner"),

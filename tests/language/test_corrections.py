@@ -139,7 +139,7 @@ keep away from the stairs
 never leave the house
 walk slowly along the corridor
 stop humming
-guide the visitor home
+guide the visitor upstairs
 escort the guests outside
 check whether anyone needs help
 if nothing moves, nod

@@ -91,6 +91,7 @@ class _Corrections:
         self._naming = {self._at(self._text.starts[words[0]]) for words in names}
         self._strange = [word for words in names for word in words if self._text.words[word] not in known]
         self._known = known | {self._text.words[word] for words in names for word in words}
+        self._meant = self._known - self._vocabulary.orthography.titles  # these would say nothing: `the dr ball`
         self._written = Counter(self._text.words) if self._strange else Counter()
         self._sentences = _Sentences(self._text)
         self._beside: dict[tuple[int, int], list[Diagnostic]] = {}
@@ -282,7 +283,7 @@ class _Corrections:
         if written not in self._respelt:
             self._budget -= _LEAST_COST
             can_be = self._budget > 0 and len(written) <= _LONGEST
-            self._respelt[written] = respellings(written, self._known, _MOST_SPELLINGS) if can_be else []
+            self._respelt[written] = respellings(written, self._meant, _MOST_SPELLINGS) if can_be else []
         return self._respelt[written]
 
     def _meaning(self, change: Change, trial: _Trial, problem: int) -> object:

@@ -1,9 +1,10 @@
-"""Lints on commands that mean something else than most people expect (BT163, BT169, BT170, BT050).
+"""Lints on commands that mean something else than most people expect (BT163, BT169, BT170, BT175, BT050).
 
 - `turn around three times` are half turns, as most people mean whole turns;
 - `turn around and drive back 1 m`: backwards, or the way back that the robot faces then;
 - `A until 5 pm. At 5 pm, B`, and `... At 4 pm, B`, wait for the next day;
-- `go to the lab until someone is near` starts again, though the command comes to an end by itself.
+- `go to the lab until someone is near` starts again, though the command comes to an end by itself;
+- `every 10 min, go to the lab` ends when a round fails.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
 from btlang.passes.lint.other_readings import Readings
 from btlang.passes.lint.two_readings import make_printer, make_warning
+from btlang.text.source import Span
 from btlang.text.time_of_day import seconds_of
 from btlang.tree import ast
 from btlang.vocabulary.lexicon import Lexicon
@@ -147,3 +149,51 @@ def _starts_again_warning(node: ast.While, vocabulary: Lexicon) -> Iterator[Diag
     once = f"{command.text} {vocabulary.word('stop_when' if node.negated else 'provided')} {condition}"
     problem = diagnostic("BT170", node.span, words=command.text, again=again, once=once)
     yield problem.replace(readings=((node.span, again), (node.span, once)))
+
+
+def find_ended_rounds(compilation: Compilation) -> Iterator[Diagnostic]:
+    """Report the first endless loop at a pace, or at times of day, that a failure of a round would end."""
+    for body in ast.bodies(compilation.mission):
+        for node in compilation.syntax(body):
+            if isinstance(node, ast.Every | ast.Repeat) and _goes_on(node) and _may_fail(node.body):
+                yield _note_end(node, compilation.vocabulary)
+                return
+
+
+def _note_end(node: ast.Every | ast.Repeat, vocabulary: Lexicon) -> Diagnostic:
+    """Make BT175 with the same words, and those for a try before the commands of each round."""
+    word = next((words for words in vocabulary.roles["try"] if " " in words), vocabulary.word("try"))
+    body = node.body
+    items = body.items if isinstance(body, ast.Chain) else (body,)
+    done = [item for item in items if not isinstance(item, ast.WaitTime)]
+    phrases = (each for item in done for each in ast.parents_first(item) if isinstance(each, ast.Phrase))
+    first = min(each.span.start for each in phrases if each.entry.sort == "action")
+    inner, text = Span(node.span.source, first, body.span.end), node.span.source.text
+    pace = text[node.span.start : inner.start] + text[inner.end : node.span.end]
+    fixed = f"{pace.strip(' ,:')}, {word} {inner.text[:1].lower()}{inner.text[1:]}"
+    if "\n" in node.span.text:
+        return diagnostic("BT175", node.span, word=word, fixed=f"{word} ...")
+    note = diagnostic("BT175", node.span, word=word, fixed=fixed)
+    return note.replace(readings=((node.span, fixed),))  # type: ignore[no-any-return]
+
+
+def _goes_on(node: ast.Every | ast.Repeat) -> bool:
+    """Whether a loop is made for more rounds than anybody waits for: `every 10 min, A`, `every day at noon, A`."""
+    if isinstance(node, ast.Every):
+        return node.rounds in ("", _ENDLESS)
+    inner = node.body.items[0] if isinstance(node.body, ast.Chain) else node.body
+    return node.rounds == _ENDLESS and isinstance(inner, ast.WaitTime)
+
+
+def _may_fail(node: ast.Ast) -> bool:
+    """Whether a command has a task that may fail, without anything that is done then."""
+    if isinstance(node, ast.Phrase):
+        return node.entry.sort == "action" and not node.entry.accompaniment
+    if isinstance(node, ast.Try):
+        return node.otherwise is not None and _may_fail(node.otherwise)
+    if isinstance(node, ast.Chain) and node.operator == "fallback":
+        return _may_fail(node.items[-1])
+    if isinstance(node, ast.Retry) and node.attempts == _ENDLESS:
+        return False
+    parts = ast.parts(node)
+    return any(map(_may_fail, parts[1:] if isinstance(node, ast.IfWorks) else parts))

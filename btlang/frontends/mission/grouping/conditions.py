@@ -102,7 +102,7 @@ def end_condition(scan: Scan, entry: StackEntry, token: Token) -> None:
             scan.emit("COND_HELD", token)
             scan.next(token, False)
             token = scan.raw[scan.at]
-        elif entry.after == "body":
+        elif entry.after == "body" or token.kind == "held":
             not_known_yet(scan, entry.opener, token)
             return
     if entry.after == "body":

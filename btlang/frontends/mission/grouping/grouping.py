@@ -61,6 +61,7 @@ _OPERAND: dict[str, Callable[[Scan, Token], None]] = {
         ("repeat", "try", "if_possible", "retry", "every", "delay", "at", "every_day", "until_time", "each"),
         operands.loop,
     ),
+    **dict.fromkeys(("for", "up_to"), operands.front_amount),
     **dict.fromkeys(("whenever", "first_time"), operands.rule),
     "not": operands.negation,
     "never": problems.prohibition,

@@ -132,6 +132,11 @@ def loop(scan: Scan, token: Token) -> None:
     separator(scan)
 
 
+def front_amount(scan: Scan, token: Token) -> None:
+    """`for 10 min, A`: as behind the command."""
+    (loop if scan.raw[scan.at + 1].kind == "comma" else no_operand)(scan, token)
+
+
 def fronted(scan: Scan, token: Token) -> None:
     """`before going home, A`, `after you wave, A`, `while singing, A`, `if grasping the cup fails, A`."""
     if is_refused(scan, token):

@@ -129,7 +129,7 @@ def _drop_still(text: Words, vocabulary: Lexicon) -> None:
     """Take out `still` and `already` before what a condition says: `if he still says no`; but not `if he is still`."""
     words, still, motionless = text.words, vocabulary.asking["still"], vocabulary.asking["motionless"]
     for at in reversed(range(1, len(words))) if not text.distinct.isdisjoint(still) else ():
-        if words[at] in still and words[at - 1] not in motionless and words[at + 1].isalpha():
+        if words[at] in still and words[at - 1] not in motionless and words[at + 1][0].isalpha():
             _, first, _ = text.earlier(at)
             first = max((i + 1 for i in range(first, at) if words[i] == ","), default=first)
             if any(word in vocabulary.before_conditions for word in words[first:at]):

@@ -165,7 +165,7 @@ class Outcomes(Limits):
     def read(self, at: int) -> int:
         """Words that go on with what has happened to the command before them. Returns where to go on, 0 for others."""
         if self._tokens and self._tokens[-1].kind == "if":
-            return self._unable(at) or self._name_fails(at)
+            return self._unable(at) or self._name_fails(at) or self._is_so(at)
         word, words = self._text.words[at], self._vocabulary
         if word in words.able and (able := find(words.able, self._text.words, at)):
             return self._able(at, able[1])
@@ -265,6 +265,17 @@ class Outcomes(Limits):
         self._try(match, front[1], Token("or", start, self._text.ends[front[1] - 1], FAILS))
         return self._behind_comma(match.last)
 
+    def _is_so(self, at: int) -> int:
+        """`check if the door is open, and close it if it is`."""
+        text, vocabulary = self._text, self._vocabulary
+        is_end = text.words[at + 1] in vocabulary.asking["asking_be"] and self._is_end(at + 2)
+        if not is_end or find(vocabulary.values.pronoun_words, text.words, at) is None:
+            return 0
+        form = self._tokens.pop()
+        self._tokens.append(Token(WORKS, form.start, text.ends[at + 1]))
+        self.trailing(at + 2)
+        return at + 2
+
     def _name_fails(self, at: int) -> int:
         """`if delivery fails, A`: does what has this name, unless it just has, and A if it fails."""
         name = self._partial.named(at)
@@ -300,8 +311,9 @@ class Outcomes(Limits):
             return
         words = Span(self._text.source, form.start, form.end)
         form.kind = WORKS if role == "if_possible" else form.kind
-        if first < command and said.kind in _DONE:
-            if not may_fail(said):
+        asks = said.kind == "condition" and first > 1 and tokens[first - 2].kind == "check"
+        if first < command and (said.kind in _DONE or asks):
+            if not (asks or may_fail(said)):
                 self._unclear(words)
             at = tokens[command].start
             tokens[first:] = [Token("stop", at, at), form, tokens[command]]

@@ -6,14 +6,11 @@ Both are read as the words that they stand for would be, in a text put together 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import cached_property
 
 from btlang.frontends.mission.token import (
-    HOLDING,
     LINES,
     Called,
     Listed,
-    Remembered,
     Token,
     arguments_of,
     constraint_of,
@@ -31,7 +28,7 @@ from btlang.frontends.mission.tokens.word_matches import (
     words_of,
 )
 from btlang.text.words import Words
-from btlang.vocabulary.entry import RECIPIENT, Entry
+from btlang.vocabulary.entry import RECIPIENT
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import ReadingContext
@@ -44,7 +41,8 @@ JOINTS = frozenset(("then", "and", "or", "comma", "otherwise", "before", "after"
 """Behind these a command may leave out words of the one before it."""
 _COMMANDS = frozenset(("command", "name"))
 _EITHER_END = (["for", "or"], ["up_to", "or"])  # `for 10 s or 2 m` says two ends of one command, not two commands
-_LONGEST_VERB = 4  # words
+LONGEST_VERB = 4
+"""Words from the first one of a command or condition up to its verb."""
 
 
 class PartialCommands:
@@ -140,6 +138,17 @@ class PartialCommands:
         token.role = "third"
         return self._place(match, at, token)
 
+    def add_pause(self, at: int) -> int:
+        """`go to the lab and the hall, stopping for a minute in each`: it waits there."""
+        tokens = self._tokens
+        if len(tokens) < 2 or tokens[-1].kind != "comma" or tokens[-2].kind != "command":
+            return 0
+        match = doing(self._text, at, self._vocabulary.doing, self._tries, self._context)
+        if match is None or match.meaning.role != "wait":
+            return 0
+        tokens[-1].kind = "and"
+        return self._place(match, at, self._token_of(match, at))
+
     def add_forbidden(self, at: int, end: int) -> int:
         """Such a constraint. Returns where to go on, 0 where there is none."""
         match = self.forbidden(at, end)
@@ -153,85 +162,6 @@ class PartialCommands:
         match = self.with_front(at, end, (self._vocabulary.word("never"),))
         entry = match.meaning.entry if match is not None else None
         return match if entry is not None and entry.constrains else None
-
-    def add_condition(self, at: int) -> int:
-        """A condition that isn't said as its phrases are. Returns where to go on, 0 where there is none."""
-        return self._add_quantity(at) or self._add_contracted(at) or self._add_lasting(at)
-
-    def _add_quantity(self, at: int) -> int:
-        """`charge until it is at least 80%`: the latest quantity is compared, or the only one with that unit."""
-        if OBJECT not in self._vocabulary.values.pronouns.get(self._text.words[at], ()):
-            return 0
-        spoken = (token.value for token in reversed(self._tokens) if isinstance(token.value, Called | Remembered))
-        latest = next((entry for value in spoken if (entry := self._measured_by(value.entry)) is not None), None)
-        if latest is None and OBJECT in self._context.latest:
-            return 0  # `pick up the cup. If it is below 50%, A`
-        found: dict[str, tuple[Match, Sequence[int]]] = {}
-        for entry in [latest] if latest is not None else self._measuring:
-            words = entry.quantity[0].split()
-            places = [*[at] * len(words), *rest_of(self._text, at + 1)]
-            match = match_of(self._text, places, dict(enumerate(words)), self._tries, self._context)
-            if match is not None and match.meaning.entry is not None and match.last > len(words):
-                is_about = latest is not None or match.meaning.entry.quantity == entry.quantity
-                if match.meaning.role == "condition" and is_about:
-                    found[entry.id] = match, places
-        if len(found) != 1:
-            return 0
-        match = relocated(*next(iter(found.values())))
-        self.append(match, at)
-        return match.last
-
-    def _measured_by(self, entry: Entry) -> Entry | None:
-        """The quantity that a command or condition is about: `the battery is low`."""
-        if entry.measures:
-            return entry
-        said = entry.phrases[0].split() if entry.sort == "condition" and entry.phrases else []
-        begun = (each for each in self._measuring if (words := each.quantity[0].split()) == said[: len(words)])
-        return next(begun, None)
-
-    @cached_property
-    def _measuring(self) -> list[Entry]:
-        """The quantities with a unit."""
-        vocabulary = self._vocabulary
-        entries = (entry for same in vocabulary.entries.values() for entry in same if entry.measures)
-        return [entry for entry in entries if vocabulary.types[entry.measures].kind == "quantity"]
-
-    def _add_contracted(self, at: int) -> int:
-        """`if the battery's low`: a condition with a verb that is only an ending of the word before it."""
-        words, ending = self._text.words, self._vocabulary.values.adjectives.ending
-        be = self._vocabulary.asking["asking_be"][:1]
-        verbs = range(at, min(at + _LONGEST_VERB, len(words)) if be and ending else at)
-        for place in (place for place in verbs if words[place].endswith(ending)):
-            places = [*range(at, place + 1), *rest_of(self._text, place)]
-            other = {place - at: words[place].removesuffix(ending), place - at + 1: be[0]}
-            match = match_of(self._text, places, other, self._tries, self._context)
-            if match is not None and match.meaning.role in ("condition", "negated") and match.last > place - at + 2:
-                return self._condition(relocated(match, places), at)
-        return 0
-
-    def _add_lasting(self, at: int) -> int:
-        """`whenever nobody has been near for 5 min`: a condition that has held for some time."""
-        forms = ((form.split(), verb) for form, verb in self._vocabulary.perfect.items())
-        for form, verb in forms:
-            for place in range(at, min(at + _LONGEST_VERB, len(self._text.words))):
-                if self._text.words[place : place + len(form)] != form:
-                    continue
-                places = [*range(at, place + 1), *rest_of(self._text, place + len(form))]
-                match = match_of(self._text, places, {place - at: verb}, self._tries, self._context)
-                if match is None or match.meaning.role not in ("condition", "negated"):
-                    continue
-                found = relocated(match, places)
-                behind = longest(self._vocabulary.trie, self._text, found.last, self._context)
-                if behind is not None and behind.meaning.role in HOLDING:
-                    return self._condition(found, at)
-        return 0
-
-    def _condition(self, found: Match, at: int) -> int:
-        """Add a condition, or its denial. Returns where to go on."""
-        if found.meaning.role != "condition":
-            self._tokens.append(Token("not", self._text.starts[at], self._text.starts[at]))
-        self.append(found, at)
-        return found.last
 
     def add_left_out(self, at: int, least: int = 0) -> int:
         """A command whose first words are those of the one before it, and which ends at a word `least` or behind it."""
@@ -308,7 +238,7 @@ class PartialCommands:
 
     def add_sharing(self, at: int, match: Match | None) -> int:
         """A command whose theme is said behind the next one, which means the same thing: `find and bring the cup`."""
-        text, verbs = self._text, range(at + 1, min(at + _LONGEST_VERB, len(self._text.words)))
+        text, verbs = self._text, range(at + 1, min(at + LONGEST_VERB, len(self._text.words)))
         if match is not None and (match.meaning.role != "command" or match.values):
             return 0
         last = match.last if match is not None else next((i for i in verbs if text.words[i] in self._and), 0)

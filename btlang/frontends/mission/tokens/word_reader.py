@@ -18,7 +18,8 @@ from btlang.frontends.mission.tokens.condition_words import check_negation, with
 from btlang.frontends.mission.tokens.journey_words import COMES
 from btlang.frontends.mission.tokens.order_words import BEFORE_ASIDE, OrderWords
 from btlang.frontends.mission.tokens.outcomes import Outcomes
-from btlang.frontends.mission.tokens.partial_commands import PartialCommands, may_be_doing
+from btlang.frontends.mission.tokens.partial_commands import may_be_doing
+from btlang.frontends.mission.tokens.partial_conditions import PartialConditions
 from btlang.frontends.mission.tokens.places import Places
 from btlang.frontends.mission.tokens.remarks import Remarks
 from btlang.frontends.mission.tokens.requests import Requests
@@ -75,7 +76,7 @@ class WordReader:
         self._meanings_of = CONNECTIVES.keys() if names.meanings else ()
         self._found = {} if has_values else names.phrases.fixed
         self._calls = Calls(text, vocabulary, context, problems)
-        self._partial = PartialCommands(text, vocabulary, self._named, context, self._calls, tokens)
+        self._partial = PartialConditions(text, vocabulary, self._named, context, self._calls, tokens)
         shared = text, vocabulary, context, self._calls, self._partial, tokens
         self._order, self._places, self._tries = OrderWords(*shared), Places(*shared), Tries(*shared)
         self._requests, self._outcomes, self._visitors = Requests(*shared), Outcomes(*shared), Visitors(*shared)
@@ -225,7 +226,7 @@ class WordReader:
             tokens.append(Token("repeat", text.starts[at], text.ends[match.last - 1], role="doing"))
             return match.last
         end = self._partial.add_doing(at, match) if at and may_be_doing(tokens) else 0
-        return end or self._partial.add_third(at, match)
+        return end or self._partial.add_third(at, match) or self._partial.add_pause(at)
 
     def _left_out(self, match: Match | None, role: str, at: int) -> int:
         """Where a command is done, and commands that share their thing."""

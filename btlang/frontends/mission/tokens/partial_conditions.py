@@ -1,0 +1,100 @@
+"""Conditions that are not said as their phrases are: `it is at least 80%`, `the battery's low`, `nobody has been near`.
+
+They are read as the words that they stand for would be, in a text put together for that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+
+from btlang.frontends.mission.token import HOLDING, Called, Remembered, Token
+from btlang.frontends.mission.tokens.partial_commands import LONGEST_VERB, PartialCommands
+from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of
+from btlang.vocabulary.entry import Entry
+from btlang.vocabulary.match import Match
+from btlang.vocabulary.trie import longest
+from btlang.vocabulary.value_type import OBJECT
+
+
+class PartialConditions(PartialCommands):
+    """Those of one text, and its commands that are not written whole."""
+
+    def add_condition(self, at: int) -> int:
+        """A condition that isn't said as its phrases are. Returns where to go on, 0 where there is none."""
+        return self._add_quantity(at) or self._add_contracted(at) or self._add_lasting(at)
+
+    def _add_quantity(self, at: int) -> int:
+        """`charge until it is at least 80%`: the latest quantity is compared, or the only one with that unit."""
+        if OBJECT not in self._vocabulary.values.pronouns.get(self._text.words[at], ()):
+            return 0
+        spoken = (token.value for token in reversed(self._tokens) if isinstance(token.value, Called | Remembered))
+        latest = next((entry for value in spoken if (entry := self._measured_by(value.entry)) is not None), None)
+        if latest is None and OBJECT in self._context.latest:
+            return 0  # `pick up the cup. If it is below 50%, A`
+        found: dict[str, tuple[Match, Sequence[int]]] = {}
+        for entry in [latest] if latest is not None else self._measuring:
+            words = entry.quantity[0].split()
+            places = [*[at] * len(words), *rest_of(self._text, at + 1)]
+            match = match_of(self._text, places, dict(enumerate(words)), self._tries, self._context)
+            if match is not None and match.meaning.entry is not None and match.last > len(words):
+                is_about = latest is not None or match.meaning.entry.quantity == entry.quantity
+                if match.meaning.role == "condition" and is_about:
+                    found[entry.id] = match, places
+        if len(found) != 1:
+            return 0
+        match = relocated(*next(iter(found.values())))
+        self.append(match, at)
+        return match.last
+
+    def _measured_by(self, entry: Entry) -> Entry | None:
+        """The quantity that a command or condition is about: `the battery is low`."""
+        if entry.measures:
+            return entry
+        said = entry.phrases[0].split() if entry.sort == "condition" and entry.phrases else []
+        begun = (each for each in self._measuring if (words := each.quantity[0].split()) == said[: len(words)])
+        return next(begun, None)
+
+    @cached_property
+    def _measuring(self) -> list[Entry]:
+        """The quantities with a unit."""
+        vocabulary = self._vocabulary
+        entries = (entry for same in vocabulary.entries.values() for entry in same if entry.measures)
+        return [entry for entry in entries if vocabulary.types[entry.measures].kind == "quantity"]
+
+    def _add_contracted(self, at: int) -> int:
+        """`if the battery's low`: a condition with a verb that is only an ending of the word before it."""
+        words, ending = self._text.words, self._vocabulary.values.adjectives.ending
+        be = self._vocabulary.asking["asking_be"][:1]
+        verbs = range(at, min(at + LONGEST_VERB, len(words)) if be and ending else at)
+        for place in (place for place in verbs if words[place].endswith(ending)):
+            places = [*range(at, place + 1), *rest_of(self._text, place)]
+            other = {place - at: words[place].removesuffix(ending), place - at + 1: be[0]}
+            match = match_of(self._text, places, other, self._tries, self._context)
+            if match is not None and match.meaning.role in ("condition", "negated") and match.last > place - at + 2:
+                return self._condition(relocated(match, places), at)
+        return 0
+
+    def _add_lasting(self, at: int) -> int:
+        """`whenever nobody has been near for 5 min`: a condition that has held for some time."""
+        forms = ((form.split(), verb) for form, verb in self._vocabulary.perfect.items())
+        for form, verb in forms:
+            for place in range(at, min(at + LONGEST_VERB, len(self._text.words))):
+                if self._text.words[place : place + len(form)] != form:
+                    continue
+                places = [*range(at, place + 1), *rest_of(self._text, place + len(form))]
+                match = match_of(self._text, places, {place - at: verb}, self._tries, self._context)
+                if match is None or match.meaning.role not in ("condition", "negated"):
+                    continue
+                found = relocated(match, places)
+                behind = longest(self._vocabulary.trie, self._text, found.last, self._context)
+                if behind is not None and behind.meaning.role in HOLDING:
+                    return self._condition(found, at)
+        return 0
+
+    def _condition(self, found: Match, at: int) -> int:
+        """Add a condition, or its denial. Returns where to go on."""
+        if found.meaning.role != "condition":
+            self._tokens.append(Token("not", self._text.starts[at], self._text.starts[at]))
+        self.append(found, at)
+        return found.last
