@@ -33,12 +33,16 @@ class Measures:
         self.parts_of_day: dict[str, int] = language["parts_of_day"]
         self._past_words = [(language["clock"].get(name, ()), sign) for name, sign in (("past", 1), ("to", -1))]
         self._hour_words = frozenset(language["clock"].get("hour", ()))
+        roles = language["roles"]
+        self._joints = frozenset(
+            (",", *(word for role in ("and", "or") for word in roles.get(role, ()) if " " not in word))
+        )
         self._fractions = tree_of(language["fractions"].items())
         self._times = tree_of(language["times"].items())
         self._number_starts = frozenset((*self._numbers, *self._multipliers, *self._fractions))
         units = ((kind.name, unit) for kind in types.values() for unit in kind.units)
         self._units = tree_of((_apart(words), (name, unit)) for name, unit in units for words in unit.words)
-        self._facing = [phrase.split() for phrase in language["roles"].get("facing", ())]
+        self._facing = [phrase.split() for phrase in roles.get("facing", ())]
 
     def is_number(self, words: Sequence[str]) -> bool:
         """Whether the words are a number, and nothing else."""
@@ -70,7 +74,10 @@ class Measures:
         half = self.half_of_day(text, end)
         half = (half[0], half[1] + (text.words[half[1]] in self._hour_words)) if half is not None else None
         part = self.parts_of_day.get(text.words[at - 2]) if half is None and at > 1 else None
-        if half is not None:
+        shared = self._shared_half(text, end, hour) if half is None and part is None and not minutes else None
+        if shared is not None:
+            hour, half = hour % 12 + shared, (shared, end)
+        elif half is not None:
             hour, end = (hour % 12 + half[0] if 1 <= hour <= 12 else -1), half[1]
         elif part is not None and (hour <= 12 or part == 0):  # `every evening at 8`, `every night at 2`
             hour, half = (part + (hour - part) % 12) % 24 if 1 <= hour <= 12 else -1, (part, end)
@@ -78,6 +85,18 @@ class Measures:
         if hour not in range(24) or not is_told:
             return None
         return f"{int(hour):02}:{int(minutes or 0):02}", end
+
+    def _shared_half(self, text: Words, at: int, hour: float) -> int | None:
+        """The hours that `pm` behind a later number of a list adds to an earlier one: `at 1, 2 and 3 pm`."""
+        while 1 <= hour < 12 and text.words[at] in self._joints:
+            at += 1 + (text.words[at + 1] in self._joints)
+            number = self.number(text, at)
+            if number is None or number[0] <= hour:
+                return None  # `9 and 5 pm`
+            (hour, at), half = number, self.half_of_day(text, number[1])
+            if half is not None:
+                return half[0] if hour < 12 else None
+        return None
 
     def _past(self, text: Words, at: int) -> tuple[int, int]:
         """The minutes past an hour, below 0 before it, and where that stands: `half past 7`, `quarter to 8`."""

@@ -137,6 +137,7 @@ def test_numbers_that_are_said(sentence: str, tree: str) -> None:
         ("go to all four rooms", "BT013"),
         ("go to the lab. Drive slowly. Go to the hall", "BT012"),
         ("wave between 9 am and noon", "BT010"),
+        ("every day at 9 and 5 pm, wave", "BT160"),
         ("ask Bob again", "BT159"),
         ("go to the lab. If nobody is near, wave instead", "BT166"),
         ("wave no more than 2 times", "BT167"),

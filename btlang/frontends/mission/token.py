@@ -35,6 +35,8 @@ QUANTIFIERS = frozenset(("neither", "not_both", "any_of", "all_of", "none_of", "
 CORRELATIVES = frozenset(("either", "both"))
 """Raw kinds that say nothing before `A or B`, `A and B`."""
 
+IN_CONDITIONS = frozenset(("condition", "not", "and", "or", "open", "close", *CORRELATIVES, *QUANTIFIERS))
+"""Raw kinds of which a condition of a form consists."""
 HOLDING = ("for", "held")
 """What may say how long a condition has to hold."""
 WAITING = {"until": "wait_until", "for": "wait", "until_time": "wait_time"}

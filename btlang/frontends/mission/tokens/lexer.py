@@ -11,7 +11,13 @@ from btlang.frontends.mission.token import Token
 from btlang.frontends.mission.tokens.condition_names import condition_names, settle
 from btlang.frontends.mission.tokens.ended_rules import with_ends
 from btlang.frontends.mission.tokens.rules_inside import with_rules_inside
-from btlang.frontends.mission.tokens.settling import find_brief_stays, turn_branches, with_rounds, with_stays
+from btlang.frontends.mission.tokens.settling import (
+    find_brief_stays,
+    turn_branches,
+    with_either_end,
+    with_rounds,
+    with_stays,
+)
 from btlang.frontends.mission.tokens.word_reader import WordReader
 from btlang.text.source import Source, Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, split
@@ -55,6 +61,7 @@ class Lexer:
         self._lines()
         turn_branches(self.tokens)
         with_rounds(self.tokens)
+        with_either_end(self.tokens)
         with_stays(self.tokens, source, vocabulary.asking["standing_verbs"])
         self.problems += find_brief_stays(self.tokens, vocabulary, source) if explain else ()
         with_rules_inside(self.tokens)

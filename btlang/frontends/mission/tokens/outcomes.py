@@ -10,9 +10,8 @@ from collections.abc import Container
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import (
-    CORRELATIVES,
+    IN_CONDITIONS,
     JOINTS,
-    QUANTIFIERS,
     STATEMENT_ENDS,
     Called,
     Listed,
@@ -48,7 +47,6 @@ if TYPE_CHECKING:
 _ASKING = frozenset(("if", "as_soon_as", "once"))
 _HOLDS, _WHERE = "Holding", ("PersonIsAt", "ObjectIsAt")
 _DONE = ("command", "name")
-_IN_CONDITIONS = frozenset(("condition", "not", "and", "or", "open", "close", *CORRELATIVES, *QUANTIFIERS))
 
 
 class Outcomes(Limits):
@@ -91,7 +89,7 @@ class Outcomes(Limits):
     def _ask_later(self) -> None:
         """`if nobody is near five minutes later, A`: it waits, and asks then."""
         tokens = self._tokens
-        form = run_start(tokens, len(tokens) - 1, _IN_CONDITIONS) - 1
+        form = run_start(tokens, len(tokens) - 1, IN_CONDITIONS) - 1
         is_first = form == 0 or (form > 0 and tokens[form - 1].kind in (*BEGINS, *JOINTS))
         if is_first and tokens[form].kind in ("if", "unless"):
             delay = tokens.pop()

@@ -9,6 +9,7 @@ from collections.abc import Callable, Container, Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.token import (
+    IN_CONDITIONS,
     JOINTS,
     RULES,
     STATEMENT_ENDS,
@@ -136,6 +137,31 @@ def with_rounds(tokens: list[Token]) -> None:
         if isinstance(value, Called | Listed) and not value.entry.accompaniment:
             start = tokens[first].start
             tokens[first : at + 1] = [token, Token("comma", start, start), *tokens[first:at]]
+
+
+def with_either_end(tokens: list[Token]) -> None:
+    """Make `A for 5 min or until C` the same as `for up to 5 min, A until C`, and `wait 5 min or until C` likewise."""
+    at = 0
+    while at + 1 < len(tokens):
+        at += 1
+        if tokens[at].kind != "or" or tokens[at].value is not None or tokens[at + 1].kind != "until":
+            continue
+        time, start = tokens[at - 1], tokens[at].start
+        end = at + 2
+        while end < len(tokens) and tokens[end].kind in IN_CONDITIONS - {"close"}:
+            end += 1
+        if time.kind in ("for", "up_to") and tokens[at - 2].kind in ("command", "name"):
+            said = tokens[at - 2]
+            limit = Token("up_to", said.start, said.start, time.value)
+            comma, opening = Token("comma", said.start, said.start), Token("open", said.start, said.start)
+            closing = Token("close", tokens[end - 1].end, tokens[end - 1].end)
+            tokens[at - 2 : end] = [opening, limit, comma, said, *tokens[at + 1 : end], closing]
+        elif time.kind == "wait":
+            time.kind = "wait_up_to"
+            del tokens[at : at + 2]
+        elif time.kind == "close" and tokens[at - 2].kind == "wait":  # `wait at the door for 5 min or until C`
+            tokens[at - 2].kind = "wait_up_to"
+            tokens[at - 1 : end] = [*tokens[at + 2 : end], Token("close", start, tokens[end - 1].end)]
 
 
 def with_stays(tokens: list[Token], source: Source, standing: Container[str]) -> None:
