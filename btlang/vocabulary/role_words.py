@@ -23,6 +23,11 @@ class RoleWords(Record):
     directions: frozenset[str]
     ends: frozenset[str]
     way_starts: frozenset[str]
+    longer: tuple[tuple[str, ...], ...]
+
+    def introduces(self, words: Sequence[str], at: int) -> int:
+        """How many words at a place come before what fills a role or describes a thing, 0 for one: `next to`."""
+        return max((len(phrase) for phrase in self.longer if tuple(words[at : at + len(phrase)]) == phrase), default=0)
 
     def ends_at(self, words: Sequence[str], at: int) -> bool:
         """Whether no phrase goes on at a word; `to the lab, going through the hall` goes on at the comma."""
@@ -36,6 +41,7 @@ def role_words(language: Mapping[str, Any], describing: frozenset[str]) -> RoleW
         return tuple(tuple(phrase.split()) for phrase in phrases)
 
     introducing = {role: split_all(phrases) for role, phrases in language["prepositions"].items()}
+    relations = map(split_all, language["relations"].values())
     going_on = {phrase[0] for phrases in introducing.values() for phrase in phrases}
     going_on |= {*language["particles"], *language["fillers"], *describing}
     firsts = {role: {phrase.split()[0] for phrase in phrases} for role, phrases in language["roles"].items()}
@@ -49,4 +55,5 @@ def role_words(language: Mapping[str, Any], describing: frozenset[str]) -> RoleW
         frozenset(language["directions"]),
         frozenset((",", ";", ":", ")", "\n", *(set().union(*firsts.values()) - going_on))),
         frozenset(phrase[0] for phrase in introducing.get(PATH, ()) if len(phrase) > 1),
+        tuple(phrase for phrases in (*introducing.values(), *relations) for phrase in phrases if len(phrase) > 1),
     )

@@ -145,11 +145,7 @@ class AddressedTexts(SentenceReader):
         asked = self._of_speaker(at, last) if is_speaker else text
         about = asked if asked is not text or not is_speaker else None  # `ask me if she wants tea`
         question = values.texts.direct(about, at, last, self._joining_things(at, last)) if about is not None else None
-        for place in range(at, last):  # `ask Bob if he wants the cup. If so, bring it`
-            for kind in (OBJECT, DOOR):
-                named = find(values.names_tree(kind), text.words, place)
-                if named is not None:
-                    self._context.latest[kind] = named[0]
+        self._note_asked(at, last)
         if question is not None:
             self._set_text(command, value.name, question)
             if end:
@@ -172,6 +168,17 @@ class AddressedTexts(SentenceReader):
             elif text.words[at] in owners.own:
                 text = text.with_word(at, min(owners.other_owners))
         return text
+
+    def _note_asked(self, at: int, last: int) -> None:
+        """Make `it` what a question is about: `ask Bob if he wants the cup. If so, bring it`; of several, none."""
+        is_one = not any(self._text.words[place] in self._vocabulary.roles["or"] for place in range(at, last))
+        for kind in (OBJECT, DOOR):
+            names = self._vocabulary.values.names_tree(kind)
+            found = [found[0] for place in range(at, last) if (found := find(names, self._text.words, place))]
+            if len(set(found)) == 1 and is_one:
+                self._context.latest[kind] = found[0]
+            elif found:
+                self._context.latest.pop(kind, None)
 
     def _ask_too(self, entry: Entry, value: SlotValue, command: Token) -> int:
         """`ask Bob "Tea?". If he says no, ask Alice`: the latest question again, to somebody else."""

@@ -25,6 +25,7 @@ from btlang.frontends.mission.tokens.limits import Limits
 from btlang.frontends.mission.tokens.sentence_reader import may_fail, searches
 from btlang.frontends.mission.tokens.settling import (
     FAILS,
+    WAITS,
     WORKS,
     asked_about,
     is_about,
@@ -127,12 +128,31 @@ class Outcomes(Limits):
         if command is None:
             if denied and tokens[form].kind == "if":
                 self._join_otherwise(form)
+            elif not denied and tokens[form].kind == "if":
+                return self._go_on_then(form, end)
             return end
         first = self._statement(command)[0] if denied else command
         has_found = not denied and searches(tokens[command]) and _has_it(tokens[command], asked)
         if has_found or any(_achieves(tokens[at], asked) for at in range(command, first - 1, -1)):
+            said = tokens[command]
             self._join(command, form, asked.end, denied)
+            return self._limit(said, end) if denied else end
         return end
+
+    def _go_on_then(self, form: int, end: int) -> int:
+        """`wait until Bob arrives. When he arrives, A`: A then."""
+        tokens, asked = self._tokens, self._tokens[-1]
+        last = run_start(tokens, form, JOINTS | STATEMENT_ENDS) - 1
+        waits = last > 0 and tokens[last].kind == "condition" and tokens[last - 1].kind in WAITS
+        word = self._text.source.text[tokens[form].start : tokens[form].end].lower()
+        if not waits or word not in self._vocabulary.asked_once or not self._is_settled(tokens[last], asked):
+            return end
+        start = tokens[form].start
+        del tokens[form:]
+        go_on(tokens)
+        del tokens[last + 1 :]
+        tokens.append(Token("then", start, asked.end))
+        return self._behind_comma(end)
 
     def _is_settled(self, token: Token, asked: Token) -> bool:
         """Whether a command, or what is waited for, is what a condition asks."""
@@ -255,8 +275,9 @@ class Outcomes(Limits):
         if about and is_free and is_new:
             return self._settle(about[0], form, stop, match.last)
         if command is not None and about:
+            said = self._tokens[command]
             self._join(command, form, stop, True)
-            return match.last
+            return self._limit(said, match.last)
         if form and (not is_new or self._tokens[form - 1].kind != "newline"):
             return 0
         start = self._tokens.pop().start

@@ -37,7 +37,8 @@ TURNED = "turned"
 """The role of an `otherwise` behind words about a failure."""
 MEASURES = frozenset(("for", "up_to", "within", "count"))
 """What may stand between a command and the words that ask how it went."""
-_WAITING = ("wait_until", "wait_for", "wait_up_to")
+WAITS = ("wait_until", "wait_for", "wait_up_to")
+"""The raw kinds before a condition that is waited for."""
 _SIMPLE = frozenset(("command", "name", "wait", "nothing", *JOINTS))
 _BETWEEN = _SIMPLE | STATEMENT_ENDS | MEASURES | {"open", "close", "meanwhile"}
 _HEADS = frozenset(("every", "every_day", "at", "repeat", "comma", "then", "colon", "open"))
@@ -56,7 +57,7 @@ def asked_about(tokens: Sequence[Token], end: int, is_it: Callable[[Token], bool
             continue
         if tokens[at].role == IMPLIED:
             continue
-        waits = tokens[at].kind == "condition" and at > 0 and tokens[at - 1].kind in _WAITING
+        waits = tokens[at].kind == "condition" and at > 0 and tokens[at - 1].kind in WAITS
         if (waits or tokens[at].kind == "command") and is_it(tokens[at]):
             return at
     return None

@@ -143,12 +143,21 @@ class WordReader:
                 return end
             match = None
         match = self._with_names(match, at)
+        said = self._vocabulary.values.role_words
+        if (
+            match is not None
+            and match.meaning.role == "then"
+            and said.introduces(self._text.words, at) > match.last - at
+        ):
+            match = None  # `next to the table`
         role = match.meaning.role if match is not None else ""
         if match is not None and role in ("politeness", "never") and self._unknown.is_doubtful(match, role, at):
             match, role = None, ""
         end = self._sentence(match, role, at)
         if not end and (role in NOT_ALONE or self._text.words[at] in self._verb_forms):
             end = self._in_its_place(match, role, at)
+        if not end and role == "but":
+            end = self._places.left_out(at)  # `go to every room, but not the kitchen`
         if not end and (match is None or match.meaning.entry is not None):
             end = self._left_out(match, role, at)
         if not end and match is not None and role not in _NOT_READ:
