@@ -144,6 +144,7 @@ class Lexicon:
             for name in ("duties", "obliging", "reasons", "able", "unable", "reaching", "finishing")
         )
         """What no sentence has that only tells something, and what begins a reason, and what couldn't be done."""
+        self.likewise = tree_of((phrase, True) for phrase in self.asking["likewise"])
         self.answering = tree_of((phrase, True) for phrase in self.asking["answering"])
         self.replies = tree_of((words, is_yes) for name, is_yes in _REPLIES for words in self.asking[name])
         """Words behind a question, each with whether it is for a yes: `if so`."""

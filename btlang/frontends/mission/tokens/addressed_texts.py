@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import JOINTS, STATEMENT_ENDS, Called, Listed, Token, run_start, statement_start
-from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, is_question, searches
+from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, searches
 from btlang.frontends.mission.tokens.settling import FAILS, WORKS
 from btlang.frontends.mission.tokens.word_matches import words_of
 from btlang.text.words import Words
-from btlang.tree.answers import ABOUT_ANSWERS
+from btlang.tree.answers import ABOUT_ANSWERS, ASK
 from btlang.vocabulary.entry import RECIPIENT, Entry
 from btlang.vocabulary.match import SlotValue
 from btlang.vocabulary.trie import longest
@@ -25,8 +25,18 @@ _NO_QUESTION = "begins no question that I know"
 _PERSON = "is a person, and the question is missing"
 
 
+_BEHIND = ("politeness", "then", "and")
+
+
 class AddressedTexts(SentenceReader):
     """Texts without quotes that one text has for people."""
+
+    def _ends(self, at: int) -> bool:
+        """Whether a question, or what is said, may end before a word."""
+        if self._is_end(at) or self._text.words[at] == ",":
+            return True
+        match = self._phrase(at)
+        return match is not None and match.meaning.role in _BEHIND
 
     def _goes_on(self, at: int) -> bool:
         """Whether words follow that are neither a mark nor begin anything."""
@@ -126,8 +136,6 @@ class AddressedTexts(SentenceReader):
         Returns where to go on if the clause ends before its words do, else 0: `ask Bob what he wants and tell Alice`.
         """
         values, text, at = self._vocabulary.values, self._text, value.first
-        if end := self._ask_too(entry, value, command):
-            return end
         if not self._is_clause(value):
             if (
                 value.name == "question"
@@ -180,9 +188,13 @@ class AddressedTexts(SentenceReader):
             elif found:
                 self._context.latest.pop(kind, None)
 
-    def _ask_too(self, entry: Entry, value: SlotValue, command: Token) -> int:
-        """`ask Bob "Tea?". If he says no, ask Alice`: the latest question again, to somebody else."""
-        asked = next((token.value for token in reversed(self._tokens) if is_question(token)), None)
+    def _say_too(self, entry: Entry, value: SlotValue, command: Token) -> int:
+        """`ask Bob "Tea?". If he says no, ask Alice`, `tell Bob lunch is ready, then tell Alice too`: to somebody else.
+
+        What was asked or told last is said again.
+        """
+        before = (each.value for each in reversed(self._tokens) if isinstance(each.value, Called | Listed))
+        asked = next((said for said in before if said.entry.id == entry.id), None)
         if not isinstance(asked, Called) or not isinstance(command.value, Called):
             return 0
         people = self._vocabulary.values.names_tree(PERSON)
@@ -192,15 +204,18 @@ class AddressedTexts(SentenceReader):
             return 0
         behind = self._phrase(named[1])
         is_silent = behind is not None and behind.meaning.role in ("instead", "politeness")
-        if not (is_silent or self._is_end(named[1]) or self._text.words[named[1]] == ","):
+        likewise = find(self._vocabulary.likewise, self._text.words, named[1])
+        if entry.id != ASK and not (given and likewise is not None and self._ends(likewise[1])):
             return 0
-        question = dict(asked.arguments)[value.name]
+        if not (is_silent or likewise is not None or self._ends(named[1])):
+            return 0
+        text = dict(asked.arguments)[value.name]
         said = {PERSON: named[0]}
-        command.value = Called(entry, tuple((slot.name, said.get(slot.type, question)) for slot in entry.slots))
+        command.value = Called(entry, tuple((slot.name, said.get(slot.type, text)) for slot in entry.slots))
         command.end = self._text.ends[named[1] - 1]
         self._tokens.append(command)
         self._context.latest[PERSON] = named[0]
-        return named[1]
+        return likewise[1] if likewise is not None else named[1]
 
     def _end_before_command(self, value: SlotValue) -> int:
         """Where a clause ends before `and` and a command, whose verb can't go on with it; 0 if it doesn't."""

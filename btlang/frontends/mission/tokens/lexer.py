@@ -18,6 +18,7 @@ from btlang.frontends.mission.tokens.settling import (
     with_rounds,
     with_stays,
 )
+from btlang.frontends.mission.tokens.visitors import with_sightings
 from btlang.frontends.mission.tokens.word_reader import WordReader
 from btlang.text.source import Source, Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, split
@@ -64,6 +65,7 @@ class Lexer:
         with_either_end(self.tokens)
         with_stays(self.tokens, source, vocabulary.asking["standing_verbs"])
         self.problems += find_brief_stays(self.tokens, vocabulary, source) if explain else ()
+        with_sightings(self.tokens, vocabulary, source)
         with_rules_inside(self.tokens)
         self.problems += with_ends(self.tokens, self.vocabulary, partial(Span, source))
         self.conditions = condition_names(self.tokens, self.names.included_conditions())

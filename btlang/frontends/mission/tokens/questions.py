@@ -26,7 +26,6 @@ _ANSWER = "Answer"
 _OF_SEVERAL = "could be that of any of those who were asked"
 _MOST_WORDS = 8  # of the subject of a question
 _DEPENDS = "may begin what is told, as 'whether' does, or say when it is told"
-_BEHIND = ("politeness", "then", "and")
 
 
 class Questions(Answers):
@@ -238,13 +237,6 @@ class Questions(Answers):
     def _saying_of(self, words: str) -> Called:
         assert self._saying is not None
         return Called(self._saying, ((self._saying.slots[0].name, words),))
-
-    def _ends(self, at: int) -> bool:
-        """Whether a question may end before a word."""
-        if self._is_end(at) or self._text.words[at] == ",":
-            return True
-        match = self._phrase(at)
-        return match is not None and match.meaning.role in _BEHIND
 
     def _then(self, at: int) -> None:
         self._tokens.append(Token("then", self._text.starts[at], self._text.starts[at]))

@@ -59,6 +59,12 @@ class Requests(Questions):
         if again is not None and again.meaning.role == "again":
             self._repeat(entry, value, command)
             return 0
+        if entry.id in (ASK, TELL) and (end := self._say_too(entry, value, command)):
+            return end
+        likewise = find(self._vocabulary.likewise, self._text.words, value.first)
+        if entry.id == TELL and likewise is not None and self._ends(likewise[1]):
+            self._doubt(entry, value.first)  # `tell Bob too` behind nothing that was told
+            return 0
         if entry.id == ASK:
             return self._ask(entry, value, command)
         if self._is_clause(value):

@@ -2,15 +2,31 @@
 
 from __future__ import annotations
 
-from btlang.frontends.mission.token import JOINTS, STATEMENT_ENDS, Called, Token, run_start, statement_start
+from collections.abc import Sequence
+
+from btlang.frontends.mission.token import (
+    JOINTS,
+    STATEMENT_ENDS,
+    Called,
+    Listed,
+    Token,
+    drives,
+    run_start,
+    statement_start,
+    texts_of,
+)
+from btlang.frontends.mission.tokens.rules_inside import ON_WAY
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.frontends.mission.tokens.settling import STAYS
 from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of, words_of
+from btlang.text.source import Source
 from btlang.text.words import END_OF_TEXT
+from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match
-from btlang.vocabulary.references import choice_of
-from btlang.vocabulary.value_type import PERSON
+from btlang.vocabulary.references import ALL, choice_of
+from btlang.vocabulary.value_type import PERSON, PLACE
 
+_SEEN, _COMMANDS = "SeesSomeone", ("command", "name")
 _SIMPLE = frozenset(("command", "name", "wait", "wait_time", "for", "until_time", "count", *JOINTS))
 
 
@@ -72,3 +88,58 @@ class Visitors(SentenceReader):
         found = match_of(text, places, other, (self._vocabulary.trie,), self._context)
         is_event = found is not None and found.meaning.role == "condition"
         return relocated(found, places) if found is not None and is_event else None
+
+
+def with_sightings(tokens: list[Token], vocabulary: Lexicon, source: Source) -> None:
+    """Make `go to the lab and wave at anyone you see` a rule for the journey, which holds on the way and at its end.
+
+    Elsewhere, and at one place with `there`, it is done if somebody is in view then.
+    """
+    seen = vocabulary.entry(_SEEN)
+    for at in reversed(range(len(tokens)) if seen is not None else ()):
+        end = tokens[at + 1].start if at + 1 < len(tokens) else len(source.text)
+        said = source.text[tokens[at].start : end].lower().replace(",", " ").replace(".", " ").split()
+        if seen is None or not _is_whoever(tokens[at]) or vocabulary.subjects.isdisjoint(said):
+            continue
+        token, start = tokens[at], tokens[at].start
+        condition, comma = Token("condition", start, start, Called(seen, ())), Token("comma", start, start)
+        is_there = any(PLACE in vocabulary.values.pronouns.get(word, ()) for word in said)
+        joint = run_start(tokens, at, JOINTS)
+        behind = next((i for i in range(at + 1, len(tokens)) if tokens[i].kind not in JOINTS), len(tokens))
+        is_one = is_there and not any(map(_goes_to_several, tokens[statement_start(tokens, at) : joint]))
+        if not is_one and _is_behind_journey(tokens, joint, at, behind):
+            if behind > at + 1:
+                tokens[at + 1 : behind] = [Token("semi", token.end, token.end)]
+            tokens[joint:at] = [Token("whenever", start, start, role=ON_WAY), condition, comma]
+        else:
+            opening, closing = Token("open", start, start), Token("close", token.end, token.end)
+            tokens[at : at + 1] = [opening, Token("if", start, start), condition, comma, token, closing]
+
+
+def _goes_to_several(journey: Token) -> bool:
+    """Whether a command has a list of things, or a set."""
+    value = journey.value
+    choices = map(choice_of, texts_of(value)) if isinstance(value, Called) else ()
+    return isinstance(value, Listed) or any(choice is not None and choice.how == ALL for choice in choices)
+
+
+def _is_behind_journey(tokens: Sequence[Token], joint: int, at: int, behind: int) -> bool:
+    """Whether a command goes on with a journey with `and`, and ends the statement but for what is done then."""
+    first = statement_start(tokens, at)
+    if not first < joint < at or any(token.kind == "then" for token in tokens[joint:at]):
+        return False
+    is_last = behind == len(tokens) or tokens[behind].kind in (*STATEMENT_ENDS, "dedent")
+    goes_on = any(token.kind == "then" for token in tokens[at + 1 : behind])
+    before = tokens[first:joint]
+    is_plain = all(token.kind in (*_COMMANDS, *JOINTS) for token in before)
+    return (is_last or goes_on) and is_plain and any(drives(token.value) for token in before)
+
+
+def _is_whoever(token: Token) -> bool:
+    """Whether a command is about whoever the robot sees: anyone, or everyone."""
+    value = token.value
+    if token.kind != "command" or not isinstance(value, Called):
+        return False
+    people = [text for name, text in value.arguments if value.entry.slot(name).type == PERSON]
+    choice = choice_of(people[0]) if people else None
+    return choice is not None and dict(choice.parts) == {"seen_by": "robot"} and choice.how in ("seen", ALL)
