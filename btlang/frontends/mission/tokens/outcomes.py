@@ -29,9 +29,11 @@ from btlang.frontends.mission.tokens.settling import (
     WORKS,
     asked_about,
     is_about,
+    misses,
     named_by,
     names_of,
     settle,
+    takes,
 )
 from btlang.frontends.mission.tokens.silent_words import BEGINS, begins
 from btlang.frontends.mission.tokens.tries import LIMIT
@@ -157,7 +159,7 @@ class Outcomes(Limits):
     def _is_settled(self, token: Token, asked: Token) -> bool:
         """Whether a command, or what is waited for, is what a condition asks."""
         if token.kind == "command":
-            return _achieves(token, asked)
+            return _achieves(token, asked) or misses(token, asked)
         somebody = self._vocabulary.negative_subjects
         return token.value == asked.value or all(_is_presence(each.value, somebody) for each in (token, asked))
 
@@ -197,6 +199,12 @@ class Outcomes(Limits):
         if not behind or self._tokens[behind - 1].value != FAILS:
             return self._search_missing(at) if behind else 0
         search = next(filter(searches, reversed(self._tokens)), None)
+        fetch = next((token for token in reversed(self._tokens) if token.kind == "command"), None)
+        is_there = self._text.words[at + 1] in self._vocabulary.asking["located"]
+        if is_there and search is None and fetch is not None and takes(fetch):
+            words, done = self._text.span(at, at + 1), self._text.source.text[fetch.start : fetch.end]
+            reason, advice = f"'{done}' is more than to look for it", "Say all that is to be done with it there."
+            self._calls.problems.append(diagnostic("BT152", words, words=words.text, reason=reason, advice=advice))
         if search is not None or self._text.words[at] not in self._vocabulary.roles["try"]:
             return self._partial.add_further(search, at + 1) if search is not None else 0
         journey = self._journey() if self._context.read(PLACE, self._text, at + 1) is not None else None

@@ -27,6 +27,7 @@ from btlang.text.source import Source, Span
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import ALL, choice_of
+from btlang.vocabulary.value_type import OBJECT
 
 FAILS, WORKS = "if_fails", "if_works"
 STAYS = "stays"
@@ -39,6 +40,7 @@ MEASURES = frozenset(("for", "up_to", "within", "count"))
 """What may stand between a command and the words that ask how it went."""
 WAITS = ("wait_until", "wait_for", "wait_up_to")
 """The raw kinds before a condition that is waited for."""
+_HOLDING, _THERE = "holding", ("SeesObject", "ObjectIsAt")
 _SIMPLE = frozenset(("command", "name", "wait", "nothing", *JOINTS))
 _BETWEEN = _SIMPLE | STATEMENT_ENDS | MEASURES | {"open", "close", "meanwhile"}
 _HEADS = frozenset(("every", "every_day", "at", "repeat", "comma", "then", "colon", "open"))
@@ -266,3 +268,17 @@ def names_of(text: str) -> set[str]:
     """What refers to the value of a port: its text, and the key of what is chosen."""
     choice = choice_of(text)
     return {text} if choice is None else {text, f"{{{choice.key}}}"}
+
+
+def takes(command: Token) -> bool:
+    """Whether a command takes something into a hand."""
+    return isinstance(command.value, Called | Listed) and _HOLDING in command.value.entry.needs
+
+
+def misses(command: Token, asked: Token) -> bool:
+    """`bring me the cup. If it isn't there, A`: whether a command fails where what it takes isn't there."""
+    value, condition = command.value, asked.value
+    if not isinstance(value, Called | Listed) or not isinstance(condition, Called) or not takes(command):
+        return False
+    things = {text for name, text in condition.arguments if condition.entry.slot(name).type == OBJECT}
+    return condition.entry.id in _THERE and bool(things) and things <= named_by(value)
