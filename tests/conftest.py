@@ -7,6 +7,7 @@ import gc
 import getpass
 import os
 import re
+import shutil
 import signal
 import socket
 import sys
@@ -30,6 +31,8 @@ settings.register_profile(
 )
 for variable in ("FORCE_COLOR", "CLICOLOR_FORCE"):  # what is compared is plain text
     os.environ.pop(variable, None)
+os.environ["XDG_STATE_HOME"] = tempfile.mkdtemp(prefix="btlang-state-")  # the user's own latest run stays
+atexit.register(shutil.rmtree, os.environ["XDG_STATE_HOME"], ignore_errors=True)
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # hundreds of commands are started: each would compile btlang anew
 sys.dont_write_bytecode = False  # and each worker the tests
 # with shared memory, who writes to a peer that was killed may wait for a second, and the next in its domain prints an

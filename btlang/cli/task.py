@@ -11,9 +11,11 @@ from collections.abc import Callable
 
 from btlang.cli.parser import check_act, check_count
 from btlang.cli.verbs import VERBS
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.files import read_source
 from btlang.task import messages
-from btlang.task.commands.client import RobotClient
+from btlang.task.commands.checks import refusal_error
+from btlang.task.commands.client import RobotClient, find_listening
 from btlang.task.messages import Answer, Command, wrong
 from btlang.task.store.records import TaskState
 from btlang.text.formatting import one_line
@@ -50,11 +52,7 @@ def ask(name: str, command: Command, as_json: bool) -> int:
 
 def explain_task(name: str, number: int, as_json: bool = False) -> int:
     """Print what became of a task, and what happened in its recorded run; return the exit code. Raises MissionError."""
-    from btlang.task.commands.down import open_reader
-
-    command = messages.Show(number)
-    with open_reader(name, command, _note) as client:
-        answer = client.send(command)
+    answer = _show(name, number)
     code = print_answer(answer, as_json)
     recording = answer.data.get("task", {}).get("recording", "")
     if answer.ok and not as_json and os.path.isfile(recording):
@@ -62,6 +60,31 @@ def explain_task(name: str, number: int, as_json: bool = False) -> int:
 
         show("\n" + explain_recording(recording))
     return code
+
+
+def recording_of(name: str, number: int) -> str:
+    """Return the recording of a task. Raises MissionError, also if there's none (BT088) or no such task (BT187)."""
+    from btlang.recording.reader import no_recording
+
+    answer = _show(name, number)
+    if not answer.ok:
+        raise refusal_error(number, "isn't known")
+    path: str = answer.data["task"]["recording"]
+    if not os.path.isfile(path):
+        state = answer.data["task"]["state"]
+        raise no_recording(
+            f"task {number}, which is {state}",
+            "Tasks are recorded as they run, if 'btc robot up' allows it.",
+        )
+    return path
+
+
+def _show(name: str, number: int) -> Answer:
+    from btlang.task.commands.down import open_reader
+
+    command = messages.Show(number)
+    with open_reader(name, command, _note) as client:
+        return client.send(command)
 
 
 def _note(text: str) -> None:
@@ -104,7 +127,10 @@ def print_answer(answer: Answer, as_json: bool) -> int:
 
 
 def _live(client: RobotClient, command: Command) -> int:
-    """Show the list until Ctrl-C. Where it isn't a terminal, it's printed again when it has changed."""
+    """Show the list until Ctrl-C, or until the robot is down. Where it isn't a terminal, changed lists are printed.
+
+    Return the exit code. Raises MissionError (BT199) if the robot is up but doesn't answer.
+    """
     from btlang.run.live.screen import LiveScreen
 
     screen, before = LiveScreen(sys.stdout, shutil.get_terminal_size), ""
@@ -113,7 +139,10 @@ def _live(client: RobotClient, command: Command) -> int:
         if is_terminal:
             screen.begin()
         while True:
-            text = client.send(messages.Status()).text + "\n\n" + client.send(command).text
+            answers = client.send(messages.Status()), client.send(command)
+            if not all(answer.ok for answer in answers) and client.name not in find_listening():
+                break  # it's going down, and its store is closed
+            text = "\n\n".join(answer.text for answer in answers)
             if is_terminal:
                 screen.draw([], [((one_line(line), ""),) for line in text.splitlines()])
             elif text != before:
@@ -122,10 +151,15 @@ def _live(client: RobotClient, command: Command) -> int:
             time.sleep(_AGAIN)
     except KeyboardInterrupt:
         return 0
+    except MissionError:
+        if client.name in find_listening():
+            raise
     finally:
         if is_terminal:
             screen.leave()
             screen.end()
+    show(f"The robot '{client.name}' is down.")
+    return 0
 
 
 def _command(options: argparse.Namespace) -> Command:

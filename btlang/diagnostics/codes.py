@@ -137,6 +137,7 @@ _ALL = (
     Code("BT085", "Groot2 needs packages that aren't installed.", "Run: pip install 'btlang[groot]'"),
     Code("BT086", "Port {port} can't be used for Groot2: {reason}.", "Choose another one: --groot PORT"),
     Code("BT087", "For {what} btlang needs {package}, which isn't installed.", "Run: pip install 'btlang[maps]'"),
+    Code("BT088", "There's no recording of {what}.", "{advice}"),
     Code("BT090", "There's no message code '{name}'.", "Run 'btc explain' to list them."),
     Code("BT099", "btlang has a bug: {error}.", "{advice}"),
     Code("BT100", "ROS 2 can't be used: {reason}.", "{advice}"),

@@ -54,9 +54,12 @@ class Story:
         """Yield the story, from the beginning."""
         about = self._about
         when = time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(float(about.get("wall", 0))))
-        yield one_line(
-            f"{about.get('mission') or 'A mission'}, {when}, on the robot {about.get('robot', 'simulated')}:"
+        name = about.get("mission") or (f"Task {about['task']}" if "task" in about else "A mission")
+        robot = about.get("robot", "simulated")
+        on = (
+            "" if "task" in about else ", on the simulated robot" if robot == "simulated" else f", on the robot {robot}"
         )
+        yield one_line(f"{name}, {when}{on}:")
         yield from self.body()
 
     def body(self) -> Iterator[str]:
