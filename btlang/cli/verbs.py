@@ -172,7 +172,7 @@ _TABLE = (
         RECORDING,
         examples=(
             ("btc why", "what happened in the latest run, command by command"),
-            ("btc why 3", "what became of task 3, and what happened in it"),
+            ("btc why tea.mcap", "what happened in a recorded run"),
         ),
     ),
     Verb(
