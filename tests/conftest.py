@@ -71,8 +71,19 @@ def _may_go_first() -> bool:
 _MAY_GO_FIRST = _may_go_first()
 
 
+@pytest.hookimpl(tryfirst=True)
+def pytest_cmdline_main(config: pytest.Config) -> None:
+    """Tests run in several processes (`-n0`: in one), unless the command line says how many."""
+    if config.option.numprocesses is None and "PYTEST_XDIST_WORKER" not in os.environ:
+        config.option.numprocesses, config.option.dist = "auto", "worksteal"
+
+
 def pytest_configure(config: pytest.Config) -> None:
-    """`-m long` is known before the tests are read."""
+    """`-m long` is known before the tests are read. The profile "ci" of hypothesis draws the same examples each time;
+    `--hypothesis-profile=default` draws new ones.
+    """
+    if config.option.hypothesis_profile is None:
+        settings.load_profile("ci")
     if config.option.markexpr == "long":
         os.environ[LONG] = "1"
 

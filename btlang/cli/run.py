@@ -85,7 +85,7 @@ def _note_robots_up() -> None:
         who = f"robot '{names[0]}', which is up" if len(names) == 1 else "robots that are up"
         show(
             f"note: this runs in a simulation of its own, not on the {who}. To stop that: btc robot stop. "
-            "To give it work: btc task add -c '...'",
+            'To give it work: btc task add "..."',
             sys.stderr,
         )
 

@@ -9,7 +9,7 @@ import sys
 import time
 from collections.abc import Callable
 
-from btlang.cli.parser import check_act, check_count
+from btlang.cli.parser import check_act, check_count, quote_mission
 from btlang.cli.verbs import VERBS
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.files import read_source
@@ -36,10 +36,25 @@ def run_act(options: argparse.Namespace) -> int:
     if options.act == "why":
         return explain_task(options.name, _number(options), options.json)
     command = _command(options)
+    if isinstance(command, messages.Submit | messages.AddSchedule) and not command.text and " " in command.name:
+        return _add_named_or_text(options, command)
     if options.live:
         with RobotClient(options.name) as client:
             return _live(client, command)
     return ask(options.name, command, options.json)
+
+
+def _add_named_or_text(options: argparse.Namespace, command: messages.Submit | messages.AddSchedule) -> int:
+    """Add the mission of the library whose name has spaces, or else the mission that these words are."""
+    with RobotClient(options.name) as client:
+        answer = client.send(command)
+        if answer.code == "BT187" and not client.send(messages.Library(command.name)).ok:
+            answer = client.send(command.replace(text=command.name, name=""))
+            if not answer.ok:
+                _note(
+                    f"There's no mission '{one_line(command.name)}' in the library, and as a mission it has mistakes."
+                )
+        return print_answer(answer, options.json)
 
 
 def ask(name: str, command: Command, as_json: bool) -> int:
@@ -105,6 +120,8 @@ def _check_words(options: argparse.Namespace) -> None:
     act, given = options.act, check_act(options)
     if "code" in given and len(options.item) == VERBS["task"].acts[act].words:
         raise wrong(act, f"it takes -c TEXT or '{options.item[-1]}', but not both")
+    if act in ("add", "schedule") and len(options.item) > 1:
+        raise wrong(act, f"put the mission in quotes: btc task {act} {quote_mission(' '.join(options.item))}")
     check_count(options, "code" in given)
     for first, second in (("live", "json"), ("priority", "before")):
         if act in ("list", "move") and {first, second} <= given:
@@ -207,7 +224,7 @@ def _with_mission(options: argparse.Namespace) -> Command:
             text = read_source(_word(options, "a name and a file", 1)).text
         return messages.Put(name, text, kind=options.kind)
     if not text:
-        name = _word(options, "a file, a name of the library, or -c TEXT")
+        name = _word(options, "a mission in quotes, a file, or a name of the library")
         if os.path.exists(name) or name.endswith(".txt"):
             text, name = read_source(name).text, os.path.basename(name)
     given: dict[str, Any] = {

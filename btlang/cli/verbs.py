@@ -438,12 +438,12 @@ _TABLE = (
             JSON,
             Option(
                 "item", nargs="*", default=[], metavar="FILE",
-                help="mission file, name in the library, or number of a task",
+                help="mission in quotes, mission file, name in the library, or number of a task",
             ),
         ),
         acts={
             "add": VerbAct(
-                'gives the robot a task: btc task add patrol.txt, btc task add -c "go to the lab"',
+                'gives the robot a task: btc task add "go to the lab", btc task add patrol.txt',
                 (*_ADD, "at", "by"),
             ),
             "list": VerbAct(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterable, Iterator, Mapping
+from operator import itemgetter
 
 from btlang.api import Mission
 from btlang.engine.engine import Failure
@@ -64,9 +65,12 @@ class Story:
 
     def body(self) -> Iterator[str]:
         """Yield the story without its first line."""
-        yield from (self._line(t, text) for t, _, text in self.notes)
-        for began, node in self._began.values():
-            yield self._line(began, f"{self._mission.label(node)}: not over when the recording ended")
+        unfinished = [
+            (began, f"{self._mission.label(node)}: not over when the recording ended")
+            for began, node in self._began.values()
+        ]
+        noted = [(t, text) for t, _, text in self.notes] + unfinished  # a command is noted when it ends
+        yield from (self._line(t, text) for t, text in sorted(noted, key=itemgetter(0)))
         yield from self.ending()
 
     def ending(self) -> Iterator[str]:

@@ -263,12 +263,24 @@ def test_what_is_not_there_is_called_so(robot: TaskLayer, btc: Btc) -> None:
         code, text = btc("task", *words.split())
         assert code == 1
         assert "isn't known" in text or "The mission 'nosuch' isn't in the library" in text
-    code, text = btc("task", "add", "go to the kitchen")
-    assert "The mission 'go to the kitchen' isn't in the library; to give a mission as text, write -c before it" in text
-    assert "btc task add -c 'go to the kitchen'" in text
     assert btc("task", "list", "--limit", huge) == (0, "There are no tasks.\n")
     assert btc("task", "library") == (0, "The library is empty.\n")
     assert "isn't the number of a task" in btc("task", "show", "9" * 5000)[1]
+
+
+def test_a_mission_in_quotes_is_a_task_unless_it_is_a_name(robot: TaskLayer, btc: Btc) -> None:
+    ask(robot, "pause")
+    assert btc("task", "add", "go to the kitchen") == (0, "Task 1 is queued.\n")
+    ask(robot, "put", name="evening round", text="wave")
+    assert btc("task", "add", "evening round")[0] == 0
+    assert btc("task", "schedule", "wave and nod", "--every", "every hour")[0] == 0
+    assert [task.mission.name for task in robot.store.tasks()] == ["", "evening round"]
+    assert robot.store.schedules()[0].mission.text == "wave and nod"
+    code, text = btc("task", "add", "morning round")
+    assert code == 1
+    assert "There's no mission 'morning round' in the library, and as a mission it has mistakes." in text
+    assert "I don't know" in text
+    assert 'put the mission in quotes: btc task add "go to the lab"' in btc("task", "add", "go", "to", "the", "lab")[1]
 
 
 def test_a_token_that_is_not_given_is_asked_for(robot: TaskLayer, btc: Btc) -> None:

@@ -177,11 +177,12 @@ def open_monitor(mission: Mission, name: str, body: Body, is_simulated: bool, br
         yield monitor
 
 
-def serve(recording: str, browser: bool) -> int:
+def serve(path: str, browser: bool) -> int:
     """Show a recording on a page until that is closed; return the exit code. Raises MissionError."""
-    read_recording(recording)  # what isn't a recording says so at once
-    with local_page(partial(_recording_api, recording)) as page:
-        say_where(page, f"Watch {one_line(recording)}", browser)
+    about = read_recording(path).about  # what isn't a recording says so at once
+    name = about.get("mission") or (f"task {about['task']}" if "task" in about else os.path.basename(path))
+    with local_page(partial(_recording_api, path)) as page:
+        say_where(page, f"Watch {one_line(name)}", browser)
         show("End with Ctrl-C, or close the page.")
         return page.wait(lambda: page.was_left)
 
