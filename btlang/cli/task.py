@@ -36,7 +36,7 @@ def run_act(options: argparse.Namespace) -> int:
     if options.act == "why":
         return explain_task(options.name, _number(options), options.json)
     command = _command(options)
-    if isinstance(command, messages.Submit | messages.AddSchedule) and not command.text and " " in command.name:
+    if isinstance(command, messages.Submit | messages.AddSchedule) and not command.text:
         return _add_named_or_text(options, command)
     if options.live:
         with RobotClient(options.name) as client:
@@ -45,15 +45,15 @@ def run_act(options: argparse.Namespace) -> int:
 
 
 def _add_named_or_text(options: argparse.Namespace, command: messages.Submit | messages.AddSchedule) -> int:
-    """Add the mission of the library whose name has spaces, or else the mission that these words are."""
+    """Add the mission of the library that has this name, or else the mission that its words are."""
     with RobotClient(options.name) as client:
         answer = client.send(command)
         if answer.code == "BT187" and not client.send(messages.Library(command.name)).ok:
-            answer = client.send(command.replace(text=command.name, name=""))
-            if not answer.ok:
-                _note(
-                    f"There's no mission '{one_line(command.name)}' in the library, and as a mission it has mistakes."
-                )
+            as_text = client.send(command.replace(text=command.name, name=""))
+            if as_text.ok or " " in command.name:
+                answer = as_text
+            if not answer.ok and answer is as_text:
+                _note(f"There's no mission '{one_line(command.name)}' in the library. As a mission it has mistakes:")
         return print_answer(answer, options.json)
 
 

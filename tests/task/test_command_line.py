@@ -278,8 +278,10 @@ def test_a_mission_in_quotes_is_a_task_unless_it_is_a_name(robot: TaskLayer, btc
     assert robot.store.schedules()[0].mission.text == "wave and nod"
     code, text = btc("task", "add", "morning round")
     assert code == 1
-    assert "There's no mission 'morning round' in the library, and as a mission it has mistakes." in text
+    assert "There's no mission 'morning round' in the library. As a mission it has mistakes:" in text
     assert "I don't know" in text
+    assert "isn't in the library" in btc("task", "add", "morning")[1]
+    assert btc("task", "add", "nod") == (0, "Task 3 is queued.\n")
     assert 'put the mission in quotes: btc task add "go to the lab"' in btc("task", "add", "go", "to", "the", "lab")[1]
 
 
