@@ -52,6 +52,7 @@ def test_a_file_wins_over_a_mission_of_the_same_words(capsys: pytest.CaptureFixt
         ('say "hi"', "btc: there's no verb or file 'say'\nPut a mission in quotes: btc 'say \"hi\"'\n"),
         ("add wave", "btc: there's no verb or file 'add'\nDid you mean: btc task add wave\n"),
         ("list", "btc: there's no verb or file 'list'\nDid you mean: btc task list\n"),
+        ("gesture", "btc gesture: say what to do: play, check, picture, record\nRun 'btc help gesture' for help.\n"),
         ("fly x", "btc: there's no verb or file 'fly'\nRun 'btc help' for help.\n"),
         ("--world x.toml", "btc: unexpected option '--world'\nA verb comes first: btc VERB --world x.toml\n"),
         ("help rnu", "btc: there's no verb 'rnu'\nDid you mean: btc help run\n"),

@@ -67,6 +67,12 @@ class OptionParser(argparse.ArgumentParser):
             self.refuse(f"there's no option '{name}'", f"Did you mean: {near[0]}" if near else "")
 
     def error(self, message: str) -> NoReturn:
+        if (
+            self._verb is not None
+            and self._verb.acts
+            and message.startswith("the following arguments are required: ACT")
+        ):
+            message = f"say what to do: {', '.join(self._verb.acts)}"
         self.refuse(message)
 
     def refuse(self, message: str, hint: str = "") -> NoReturn:
