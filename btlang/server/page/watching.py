@@ -180,7 +180,7 @@ def open_monitor(mission: Mission, name: str, body: Body, is_simulated: bool, br
 def serve(path: str, browser: bool) -> int:
     """Show a recording on a page until that is closed; return the exit code. Raises MissionError."""
     about = read_recording(path).about  # what isn't a recording says so at once
-    name = about.get("mission") or (f"task {about['task']}" if "task" in about else os.path.basename(path))
+    name = about.get("mission") or "the run"
     with local_page(partial(_recording_api, path)) as page:
         say_where(page, f"Watch {one_line(name)}", browser)
         show("End with Ctrl-C, or close the page.")
