@@ -9,9 +9,12 @@ from btlang.builders import always_success as always_success
 from btlang.builders import async_fallback as async_fallback
 from btlang.builders import async_sequence as async_sequence
 from btlang.builders import delay as delay
+from btlang.builders import distance_controller as distance_controller
 from btlang.builders import fallback as fallback
 from btlang.builders import force_failure as force_failure
 from btlang.builders import force_success as force_success
+from btlang.builders import goal_updated_controller as goal_updated_controller
+from btlang.builders import goal_updater as goal_updater
 from btlang.builders import if_then_else as if_then_else
 from btlang.builders import inverter as inverter
 from btlang.builders import keep_in as keep_in
@@ -25,6 +28,7 @@ from btlang.builders import loop_string as loop_string
 from btlang.builders import nonblocking_sequence as nonblocking_sequence
 from btlang.builders import parallel as parallel
 from btlang.builders import parallel_all as parallel_all
+from btlang.builders import persistent_sequence as persistent_sequence
 from btlang.builders import pipeline_sequence as pipeline_sequence
 from btlang.builders import precondition as precondition
 from btlang.builders import rate_controller as rate_controller
@@ -43,6 +47,7 @@ from btlang.builders import set_blackboard as set_blackboard
 from btlang.builders import single_trigger as single_trigger
 from btlang.builders import skip_unless_updated as skip_unless_updated
 from btlang.builders import sleep as sleep
+from btlang.builders import speed_controller as speed_controller
 from btlang.builders import sub_tree as sub_tree
 from btlang.builders import switch_2 as switch_2
 from btlang.builders import switch_3 as switch_3

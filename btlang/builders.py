@@ -30,9 +30,12 @@ __all__ = [
     "async_fallback",
     "async_sequence",
     "delay",
+    "distance_controller",
     "fallback",
     "force_failure",
     "force_success",
+    "goal_updated_controller",
+    "goal_updater",
     "if_then_else",
     "inverter",
     "keep_in",
@@ -46,6 +49,7 @@ __all__ = [
     "nonblocking_sequence",
     "parallel",
     "parallel_all",
+    "persistent_sequence",
     "pipeline_sequence",
     "precondition",
     "rate_controller",
@@ -64,6 +68,7 @@ __all__ = [
     "single_trigger",
     "skip_unless_updated",
     "sleep",
+    "speed_controller",
     "sub_tree",
     "switch_2",
     "switch_3",
@@ -109,6 +114,13 @@ def pipeline_sequence(*children: Child, name: str = "", **scripts: Unpack[Script
 def nonblocking_sequence(*children: Child, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
     """Make the node NonblockingSequence of Nav2."""
     return built("NonblockingSequence", children, {}, name, scripts)
+
+
+def persistent_sequence(
+    *children: Child, current_child_idx: int | str, name: str = "", **scripts: Unpack[Scripts]
+) -> Behavior:
+    """Make the node PersistentSequence of Nav2."""
+    return built("PersistentSequence", children, {"current_child_idx": current_child_idx}, name, scripts)
 
 
 def fallback(*children: Child, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
@@ -405,6 +417,86 @@ def rate_controller(
 ) -> Behavior:
     """Make the node RateController of Nav2."""
     return built("RateController", (child,), {"hz": hz}, name, scripts)
+
+
+def speed_controller(
+    child: Child,
+    *,
+    min_rate: float | str | None = None,
+    max_rate: float | str | None = None,
+    min_speed: float | str | None = None,
+    max_speed: float | str | None = None,
+    goal: Value | None = None,
+    goals: Value | None = None,
+    name: str = "",
+    **scripts: Unpack[Scripts],
+) -> Behavior:
+    """Make the node SpeedController of Nav2."""
+    return built(
+        "SpeedController",
+        (child,),
+        {
+            "min_rate": min_rate,
+            "max_rate": max_rate,
+            "min_speed": min_speed,
+            "max_speed": max_speed,
+            "goal": goal,
+            "goals": goals,
+        },
+        name,
+        scripts,
+    )
+
+
+def distance_controller(
+    child: Child,
+    *,
+    distance: float | str | None = None,
+    global_frame: Value | None = None,
+    robot_base_frame: Value | None = None,
+    name: str = "",
+    **scripts: Unpack[Scripts],
+) -> Behavior:
+    """Make the node DistanceController of Nav2."""
+    return built(
+        "DistanceController",
+        (child,),
+        {"distance": distance, "global_frame": global_frame, "robot_base_frame": robot_base_frame},
+        name,
+        scripts,
+    )
+
+
+def goal_updated_controller(
+    child: Child, *, goal: Value | None = None, goals: Value | None = None, name: str = "", **scripts: Unpack[Scripts]
+) -> Behavior:
+    """Make the node GoalUpdatedController of Nav2."""
+    return built("GoalUpdatedController", (child,), {"goal": goal, "goals": goals}, name, scripts)
+
+
+def goal_updater(
+    child: Child,
+    *,
+    input_goal: Value | None = None,
+    input_goals: Value | None = None,
+    output_goal: Value | None = None,
+    output_goals: Value | None = None,
+    name: str = "",
+    **scripts: Unpack[Scripts],
+) -> Behavior:
+    """Make the node GoalUpdater of Nav2."""
+    return built(
+        "GoalUpdater",
+        (child,),
+        {
+            "input_goal": input_goal,
+            "input_goals": input_goals,
+            "output_goal": output_goal,
+            "output_goals": output_goals,
+        },
+        name,
+        scripts,
+    )
 
 
 def single_trigger(child: Child, *, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:

@@ -7,6 +7,7 @@ import gc
 import getpass
 import os
 import re
+import shutil
 import signal
 import socket
 import sys
@@ -30,6 +31,8 @@ settings.register_profile(
 )
 for variable in ("FORCE_COLOR", "CLICOLOR_FORCE"):  # what is compared is plain text
     os.environ.pop(variable, None)
+os.environ["XDG_STATE_HOME"] = tempfile.mkdtemp(prefix="btlang-state-")  # the user's own latest run stays
+atexit.register(shutil.rmtree, os.environ["XDG_STATE_HOME"], ignore_errors=True)
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # hundreds of commands are started: each would compile btlang anew
 sys.dont_write_bytecode = False  # and each worker the tests
 # with shared memory, who writes to a peer that was killed may wait for a second, and the next in its domain prints an
@@ -68,8 +71,19 @@ def _may_go_first() -> bool:
 _MAY_GO_FIRST = _may_go_first()
 
 
+@pytest.hookimpl(tryfirst=True)
+def pytest_cmdline_main(config: pytest.Config) -> None:
+    """Tests run in several processes (`-n0`: in one), unless the command line says how many."""
+    if config.option.numprocesses is None and "PYTEST_XDIST_WORKER" not in os.environ:
+        config.option.numprocesses, config.option.dist = "auto", "worksteal"
+
+
 def pytest_configure(config: pytest.Config) -> None:
-    """`-m long` is known before the tests are read."""
+    """`-m long` is known before the tests are read. The profile "ci" of hypothesis draws the same examples each time;
+    `--hypothesis-profile=default` draws new ones.
+    """
+    if config.option.hypothesis_profile is None:
+        settings.load_profile("ci")
     if config.option.markexpr == "long":
         os.environ[LONG] = "1"
 

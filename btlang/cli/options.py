@@ -10,6 +10,7 @@ from btlang.cli.values import (
     port,
     pose,
     real_speed,
+    robot_name,
     robot_on,
     server_address,
     speed,
@@ -164,7 +165,18 @@ GROOT = Option(
     "--groot", nargs="?", type=port, const=GROOT_PORT, metavar="PORT",
     help=f"show the run in Groot2, which connects to this port (default: {GROOT_PORT})",
 )  # fmt: skip
-RECORDING = Option("file", metavar="FILE", help="recording that btc run --record wrote")
+NAME = Option(
+    "--name", type=robot_name, default="", metavar="NAME", help="which robot, if several are up (default: robot)"
+)
+RECORDING = (
+    NAME,
+    Option(
+        "file",
+        nargs="?",
+        metavar="FILE|NUMBER",
+        help="recording, or the number of a task (see btc task list --all); without one, the latest run",
+    ),
+)
 ROS_ARGS = Option("--ros-args", nargs="...", help="all further arguments are for ROS 2")
 
 ADDRESS = (

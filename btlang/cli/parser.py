@@ -67,6 +67,12 @@ class OptionParser(argparse.ArgumentParser):
             self.refuse(f"there's no option '{name}'", f"Did you mean: {near[0]}" if near else "")
 
     def error(self, message: str) -> NoReturn:
+        if (
+            self._verb is not None
+            and self._verb.acts
+            and message.startswith("the following arguments are required: ACT")
+        ):
+            message = f"say what to do: {', '.join(self._verb.acts)}"
         self.refuse(message)
 
     def refuse(self, message: str, hint: str = "") -> NoReturn:
@@ -171,14 +177,14 @@ def _with_verb(words: list[str]) -> list[str]:
         return [first, *words[1:]]
     if first in ("-", "-c") or os.path.exists(first):
         return ["run", *words]
-    near = _near_verbs(first)
+    near = _near_verbs(first) or [f"{verb.name} {first}" for verb in VERBS.values() if first in verb.acts]
     is_alone = len(words) == 1 or words[1].startswith("-")
     mission = " ".join(words)
     if first.startswith("-"):
         _main_parser().refuse(f"unexpected option '{first}'", f"A verb comes first: btc VERB {shlex.join(words)}")
     if is_alone and (looks_like_path(first) or not near or reads_as_mission(first)):
         return ["run", *([] if looks_like_path(first) else ["-c"]), *words]
-    hint = f"Did you mean: {shlex.join(('btc', near[0], *words[1:]))}" if near else ""
+    hint = f"Did you mean: btc {shlex.join((*near[0].split(), *words[1:]))}" if near else ""
     if not is_alone and reads_as_mission(mission):
         hint = f"Put a mission in quotes: btc {quote_mission(mission)}"
     return _main_parser().refuse(f"there's no verb or file '{first}'", hint)

@@ -1,4 +1,4 @@
-"""The verbs `replay` and `why`."""
+"""The verbs `replay`, `watch` and `why`."""
 
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ from btlang.cli.run import pictures_of
 from btlang.pictures.terminal_map import TerminalMap
 from btlang.recording.bundle import ROBOT
 from btlang.recording.diff import first_difference
-from btlang.recording.reader import RecordedNodes, Recording, open_recording
+from btlang.recording.latest import latest_recording
+from btlang.recording.reader import RecordedNodes, Recording, no_recording, open_recording
 from btlang.recording.replay import Player, ReplayTimeline, adapt_picture
 from btlang.recording.story import Story, explain_recording
 from btlang.robots.bodies.body_file import shipped_bodies
@@ -41,7 +42,11 @@ _MOVE = 10.0  # seconds of the mission that an arrow key goes on or back
 
 def replay(options: argparse.Namespace) -> int:
     """Show a recorded run as it was, or run its mission again; return the exit code."""
-    with open_recording(options.file, options.keywords if options.as_mission else None) as (recording, mission, nodes):
+    with open_recording(_chosen(options), options.keywords if options.as_mission else None) as (
+        recording,
+        mission,
+        nodes,
+    ):
         if options.as_mission:
             return _run_again(recording, mission, nodes)
         if options.to is not None:
@@ -112,14 +117,40 @@ def _write_log(path: str, recording: Recording, mission: Mission, nodes: Recorde
     return 0
 
 
+def watch(options: argparse.Namespace) -> int:
+    """Show a recorded run in the browser; return the exit code."""
+    from btlang.server.page.watching import serve
+
+    return serve(_chosen(options), options.browser)
+
+
 def explain_run(options: argparse.Namespace) -> int:
     """Print what happened in a recorded run, or in a task by its number; return the exit code."""
-    if options.file.isdecimal() and not os.path.exists(options.file):
+    if _is_number(options.file):
         from btlang.cli.task import explain_task, number_of
 
         return explain_task(options.name, number_of("why", options.file))
-    show(explain_recording(options.file))
+    show(explain_recording(_chosen(options)))
     return 0
+
+
+def _is_number(file: str | None) -> bool:
+    return file is not None and file.isdecimal() and not os.path.exists(file)
+
+
+def _chosen(options: argparse.Namespace) -> str:
+    """Return the recording that the options name: a file, that of a task, or that of the latest run.
+
+    Raises MissionError (BT088) if there's no such recording.
+    """
+    if _is_number(options.file):
+        from btlang.cli.task import number_of, recording_of
+
+        return recording_of(options.name, number_of(options.verb, options.file))
+    path = options.file or latest_recording()
+    if not path:
+        raise no_recording("the latest run", "Run a mission first, or name a recording.")
+    return path
 
 
 @contextmanager

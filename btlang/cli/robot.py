@@ -10,7 +10,6 @@ import threading
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from functools import partial
-from urllib.parse import parse_qs, urlsplit
 
 from btlang.cli.parser import check_act, check_count
 from btlang.cli.task import ask
@@ -28,6 +27,7 @@ from btlang.task.execution.manager import DAY
 from btlang.task.execution.missions import MissionReader
 from btlang.task.layer import KEPT, TaskLayer, keep_ticks_in_time, make_robot_layer
 from btlang.task.store.backup import restore_backup
+from btlang.task.store.location import latest_store, usual_store, without_password
 from btlang.task.store.records import ACTIVE, WAITING, LibraryKind
 from btlang.task.store.task_store import TaskStore, open_store
 from btlang.text.formatting import one_line
@@ -114,7 +114,7 @@ def layer_options(options: argparse.Namespace, name: str) -> dict[str, Any]:
     folder = data_folder(name)
     recordings = None if options.no_recordings else options.record or os.path.join(folder, "recordings")
     return {
-        "folder": folder, "store": options.store or os.path.join(folder, "tasks.db"), "rules": options.rules,
+        "folder": folder, "store": options.store or usual_store(folder), "rules": options.rules,
         "schedules": options.schedules,
         "durable": options.durable, "recordings": recordings,
         "keeps": KEPT if options.keep is None else options.keep * DAY,
@@ -244,7 +244,7 @@ def _unit(options: argparse.Namespace) -> str:
         if _CONTROL.search(word):  # behind the end of a line would be another setting
             raise messages.wrong("unit", f"'{one_line(word)}' can't stand in a unit")
     return _UNIT.format(
-        note=_SECRET if _has_password(options.store) else "",
+        note=_SECRET if without_password(options.store) != options.store else "",
         name=options.name or USUAL_NAME,
         command=" ".join(map(_quote, words)),
         folder=folder.replace("%", "%%"),
@@ -257,15 +257,6 @@ def _quote(word: str) -> str:
     return plain if _PLAIN.fullmatch(word) else f'"{plain}"'
 
 
-def _has_password(store: str) -> bool:
-    """Return whether the place of a store has a password: in its user, or as a parameter."""
-    try:
-        parts = urlsplit(store)
-        return parts.password is not None or "password" in parse_qs(parts.query)
-    except ValueError:
-        return "password" in store
-
-
 def _copy(options: argparse.Namespace) -> int:
     """Back up the store, or restore one."""
     if len(options.item) != 1:
@@ -273,12 +264,11 @@ def _copy(options: argparse.Namespace) -> int:
     [path] = options.item
     folder = data_folder(options.name or USUAL_NAME)
     os.makedirs(folder, mode=0o700, exist_ok=True)
-    place = options.store or os.path.join(folder, "tasks.db")
     if options.act == "restore":
-        restore_backup(path, place)
+        restore_backup(path, options.store or usual_store(folder))
         show(f"Restored {path}.")
     else:
-        with open_store(place) as store:
+        with open_store(options.store or latest_store(folder)) as store:
             store.backup(path)
         show(f"Wrote {path}.")
     return 0

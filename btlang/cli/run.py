@@ -28,6 +28,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+    from btlang.robots.bodies.body import Body
     from btlang.robots.registry import Connector
     from btlang.run.events import Sink
 
@@ -56,7 +57,7 @@ def _run_shown(options: argparse.Namespace, mission: Mission, robot: Connector, 
     """Run a mission with its pictures and its recording; `monitors` show it elsewhere."""
     with (
         pictures_of(mission, options.picture, options.tree_picture, options.quiet) as sinks,
-        record_run(mission, options) as recorders,
+        record_run(mission, options, robot.body) as recorders,
         voice_track(options.voice, robot.body) as voices,
     ):
         return run_mission(
@@ -71,7 +72,7 @@ def _run_shown(options: argparse.Namespace, mission: Mission, robot: Connector, 
             quiet=options.quiet,
             lines=options.lines,
             sinks=[*sinks, *recorders, *voices],
-            scans=options.record_scans if recorders else None,
+            scans=None if not recorders else 0.0 if options.record is None else options.record_scans,
             open_monitors=[*_groot(options.groot), *monitors],
         )
 
@@ -84,7 +85,7 @@ def _note_robots_up() -> None:
         who = f"robot '{names[0]}', which is up" if len(names) == 1 else "robots that are up"
         show(
             f"note: this runs in a simulation of its own, not on the {who}. To stop that: btc robot stop. "
-            "To give it work: btc task add -c '...'",
+            'To give it work: btc task add "..."',
             sys.stderr,
         )
 
@@ -139,35 +140,45 @@ def pictures_of(mission: Mission, run: str | None, tree: str | None, quiet: bool
 
 
 @contextmanager
-def record_run(mission: Mission, options: argparse.Namespace) -> Iterator[list[Sink]]:
-    """Give the sinks that record a run, none if the options ask for no recording. A recorded run has a seed.
+def record_run(mission: Mission, options: argparse.Namespace, body: Body) -> Iterator[list[Sink]]:
+    """Give the sinks that record a run, which then has a seed: into the file of the options, or else as the latest run.
 
-    Raises MissionError (BT009).
+    A quiet run is only recorded if the options ask for it. Raises MissionError (BT009).
     """
-    if options.record is None:
+    if options.record is None and options.quiet:
         yield []
         return
     import btlang
     from btlang.recording.bundle import files_of
+    from btlang.recording.latest import PART_BYTES, UnaskedRecording, note_latest, unasked_path
     from btlang.recording.recorder import Recorder
 
+    if options.seed is None:
+        options.seed = read_world(mission.world, body).seed
     if options.seed is None:
         options.seed = int.from_bytes(os.urandom(4), "big")
     about = {
         "btlang": btlang.__version__, "python": platform.python_version(), "wall": f"{time.time():.3f}",
-        "mission": os.path.basename(options.file or "") or "a mission", "language": options.language,
+        "mission": os.path.basename(options.file or ""), "language": options.language,
         "robot": options.robot, "over": options.over or "",
         "seed": str(options.seed), "rate": f"{options.rate:g}", "speed": str(options.speed),
         "time_limit": "" if options.time_limit is None else f"{options.time_limit:g}",
     }  # fmt: skip
+    is_asked = options.record is not None
     try:
+        path, size = (options.record, options.record_size) if is_asked else (unasked_path(), PART_BYTES)
         files = files_of(mission, options.keywords, options.robot)
-        recorder = Recorder(options.record, mission.label, files, about, options.record_size)
-    except OSError as error:
-        raise MissionError([unwritable(options.record, error)]) from None
+        recorder = Recorder(path, mission.label, files, about, size, note_latest)
+    except (OSError, MissionError) as error:
+        if is_asked:
+            raise MissionError([unwritable(path, error)]) if isinstance(error, OSError) else error from None
+        recorder = None
+    if recorder is None:
+        yield []
+        return
     try:
-        yield [recorder]
+        yield [recorder if is_asked else UnaskedRecording(recorder)]
     finally:
         recorder.close()
-        if not options.quiet and not recorder.is_broken:
+        if is_asked and not options.quiet and not recorder.is_broken:
             show(f"Wrote {options.record}.")

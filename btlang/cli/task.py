@@ -9,11 +9,13 @@ import sys
 import time
 from collections.abc import Callable
 
-from btlang.cli.parser import check_act, check_count
+from btlang.cli.parser import check_act, check_count, quote_mission
 from btlang.cli.verbs import VERBS
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.files import read_source
 from btlang.task import messages
-from btlang.task.commands.client import RobotClient
+from btlang.task.commands.checks import refusal_error
+from btlang.task.commands.client import RobotClient, find_listening
 from btlang.task.messages import Answer, Command, wrong
 from btlang.task.store.records import TaskState
 from btlang.text.formatting import one_line
@@ -34,10 +36,25 @@ def run_act(options: argparse.Namespace) -> int:
     if options.act == "why":
         return explain_task(options.name, _number(options), options.json)
     command = _command(options)
+    if isinstance(command, messages.Submit | messages.AddSchedule) and not command.text:
+        return _add_named_or_text(options, command)
     if options.live:
         with RobotClient(options.name) as client:
             return _live(client, command)
     return ask(options.name, command, options.json)
+
+
+def _add_named_or_text(options: argparse.Namespace, command: messages.Submit | messages.AddSchedule) -> int:
+    """Add the mission of the library that has this name, or else the mission that its words are."""
+    with RobotClient(options.name) as client:
+        answer = client.send(command)
+        if answer.code == "BT187" and not client.send(messages.Library(command.name)).ok:
+            as_text = client.send(command.replace(text=command.name, name=""))
+            if as_text.ok or " " in command.name:
+                answer = as_text
+            if not answer.ok and answer is as_text:
+                _note(f"There's no mission '{one_line(command.name)}' in the library. As a mission it has mistakes:")
+        return print_answer(answer, options.json)
 
 
 def ask(name: str, command: Command, as_json: bool) -> int:
@@ -50,11 +67,7 @@ def ask(name: str, command: Command, as_json: bool) -> int:
 
 def explain_task(name: str, number: int, as_json: bool = False) -> int:
     """Print what became of a task, and what happened in its recorded run; return the exit code. Raises MissionError."""
-    from btlang.task.commands.down import open_reader
-
-    command = messages.Show(number)
-    with open_reader(name, command, _note) as client:
-        answer = client.send(command)
+    answer = _show(name, number)
     code = print_answer(answer, as_json)
     recording = answer.data.get("task", {}).get("recording", "")
     if answer.ok and not as_json and os.path.isfile(recording):
@@ -62,6 +75,31 @@ def explain_task(name: str, number: int, as_json: bool = False) -> int:
 
         show("\n" + explain_recording(recording))
     return code
+
+
+def recording_of(name: str, number: int) -> str:
+    """Return the recording of a task. Raises MissionError, also if there's none (BT088) or no such task (BT187)."""
+    from btlang.recording.reader import no_recording
+
+    answer = _show(name, number)
+    if not answer.ok:
+        raise refusal_error(number, "isn't known")
+    path: str = answer.data["task"]["recording"]
+    if not os.path.isfile(path):
+        state = answer.data["task"]["state"]
+        raise no_recording(
+            f"task {number}, which is {state}",
+            "Tasks are recorded as they run, if 'btc robot up' allows it.",
+        )
+    return path
+
+
+def _show(name: str, number: int) -> Answer:
+    from btlang.task.commands.down import open_reader
+
+    command = messages.Show(number)
+    with open_reader(name, command, _note) as client:
+        return client.send(command)
 
 
 def _note(text: str) -> None:
@@ -82,6 +120,8 @@ def _check_words(options: argparse.Namespace) -> None:
     act, given = options.act, check_act(options)
     if "code" in given and len(options.item) == VERBS["task"].acts[act].words:
         raise wrong(act, f"it takes -c TEXT or '{options.item[-1]}', but not both")
+    if act in ("add", "schedule") and len(options.item) > 1:
+        raise wrong(act, f"put the mission in quotes: btc task {act} {quote_mission(' '.join(options.item))}")
     check_count(options, "code" in given)
     for first, second in (("live", "json"), ("priority", "before")):
         if act in ("list", "move") and {first, second} <= given:
@@ -104,7 +144,10 @@ def print_answer(answer: Answer, as_json: bool) -> int:
 
 
 def _live(client: RobotClient, command: Command) -> int:
-    """Show the list until Ctrl-C. Where it isn't a terminal, it's printed again when it has changed."""
+    """Show the list until Ctrl-C, or until the robot is down. Where it isn't a terminal, changed lists are printed.
+
+    Return the exit code. Raises MissionError (BT199) if the robot is up but doesn't answer.
+    """
     from btlang.run.live.screen import LiveScreen
 
     screen, before = LiveScreen(sys.stdout, shutil.get_terminal_size), ""
@@ -113,7 +156,10 @@ def _live(client: RobotClient, command: Command) -> int:
         if is_terminal:
             screen.begin()
         while True:
-            text = client.send(messages.Status()).text + "\n\n" + client.send(command).text
+            answers = client.send(messages.Status()), client.send(command)
+            if not all(answer.ok for answer in answers) and client.name not in find_listening():
+                break  # it's going down, and its store is closed
+            text = "\n\n".join(answer.text for answer in answers)
             if is_terminal:
                 screen.draw([], [((one_line(line), ""),) for line in text.splitlines()])
             elif text != before:
@@ -122,10 +168,15 @@ def _live(client: RobotClient, command: Command) -> int:
             time.sleep(_AGAIN)
     except KeyboardInterrupt:
         return 0
+    except MissionError:
+        if client.name in find_listening():
+            raise
     finally:
         if is_terminal:
             screen.leave()
             screen.end()
+    show(f"The robot '{client.name}' is down.")
+    return 0
 
 
 def _command(options: argparse.Namespace) -> Command:
@@ -173,7 +224,7 @@ def _with_mission(options: argparse.Namespace) -> Command:
             text = read_source(_word(options, "a name and a file", 1)).text
         return messages.Put(name, text, kind=options.kind)
     if not text:
-        name = _word(options, "a file, a name of the library, or -c TEXT")
+        name = _word(options, "a mission in quotes, a file, or a name of the library")
         if os.path.exists(name) or name.endswith(".txt"):
             text, name = read_source(name).text, os.path.basename(name)
     given: dict[str, Any] = {

@@ -20,6 +20,7 @@ from btlang.cli.options import (
     MAIN,
     MISSION,
     MISSIONS,
+    NAME,
     ORIGIN,
     PICTURES,
     PLATFORMS,
@@ -55,7 +56,6 @@ from btlang.cli.values import (
     picture,
     port,
     project_name,
-    robot_name,
     robot_on,
     robot_or_library,
     ros_name,
@@ -65,9 +65,6 @@ from btlang.cli.values import (
 RUN, WRITE, KEEP_UP = "run and see", "write and check", "keep a robot up"
 BUILD, SHARE, ROS, OWN = "build", "share", "ROS 2", "this command"
 
-_NAME = Option(
-    "--name", type=robot_name, default="", metavar="NAME", help="which robot, if several are up (default: robot)"
-)
 _UP = (
     "robot", "over", "simulate", "world", "keywords", "rules", "schedules", "store", "durable", "keep", "record",
     "no_recordings", "allow_keywords", "include_root", "speed", "serve", "host", "port", "join", "code", "answers",
@@ -96,7 +93,7 @@ _TABLE = (
             Option("--watch", action="store_true", help="show map, text, tree and speech in the browser"),
             BROWSER, LINES,
             Option("--quiet", action="store_true", help="print only errors"),
-            Option("--record", metavar="FILE", help="record the run as MCAP, for replay, why and Foxglove"),
+            Option("--record", metavar="FILE", help="record the run as MCAP, for replay, watch, why and Foxglove"),
             Option(
                 "--record-scans", type=between(0, 100), default=2.0, metavar="HZ",
                 help="with --record: scans per second (default: 2)",
@@ -141,7 +138,7 @@ _TABLE = (
         ),
     ),
     Verb(
-        "replay", RUN, "replay a recorded run", "btlang.cli.recordings:replay",
+        "replay", RUN, "replay a run", "btlang.cli.recordings:replay",
         (
             SPEED, LINES,
             Option("--from", type=duration, dest="start", metavar="DURATION", help="begin at this time, such as 5min"),
@@ -157,28 +154,26 @@ _TABLE = (
                 "--keywords", action="append", default=[], metavar="FILE",
                 help="with --as-mission: keyword file; may be repeated",
             ),
-            RECORDING,
+            *RECORDING,
         ),
         examples=(
+            ("btc replay", "the latest run, as it was"),
             ("btc replay tea.mcap --speed 20", "twenty times as fast as it was"),
             ("btc replay tea.mcap --speed max --from 30s --why", "from the 30th second on"),
         ),
     ),
     Verb(
-        "watch", RUN, "show a recorded run in the browser", "btlang.server.page.watching:serve", (BROWSER, RECORDING),
-        examples=(("btc watch tea.mcap", "opens the browser"),),
+        "watch", RUN, "show a run in the browser, as it was", "btlang.cli.recordings:watch", (BROWSER, *RECORDING),
+        examples=(("btc watch", "the latest run"), ("btc watch 3", "task 3 of the robot that is up")),
     ),
     Verb(
-        "why", RUN, "explain what happened in a recorded run or a task, and why it failed",
+        "why", RUN, "explain what happened in a run or a task, and why it failed",
         "btlang.cli.recordings:explain_run",
-        (
-            _NAME,
-            Option(
-                "file", metavar="FILE|NUMBER",
-                help="recording that btc run --record wrote, or the number of a task (see btc task list --all)",
-            ),
+        RECORDING,
+        examples=(
+            ("btc why", "what happened in the latest run, command by command"),
+            ("btc why tea.mcap", "what happened in a recorded run"),
         ),
-        examples=(("btc why tea.mcap", "what happened, command by command"),),
     ),
     Verb(
         "check", WRITE, "report mistakes in missions and trees", "btlang.cli.check:check_files",
@@ -338,7 +333,7 @@ _TABLE = (
     Verb(
         "robot", KEEP_UP, "bring a robot up for many tasks, and control it", "btlang.cli.robot:run_act",
         (
-            _NAME,
+            NAME,
             Option(
                 "--robot", type=robot_or_library, default="simulated", metavar="ROBOT",
                 help="robot file, installed robot, or library:NAME (default: simulated)",
@@ -393,7 +388,7 @@ _TABLE = (
     Verb(
         "task", KEEP_UP, "give work to a robot that is up", "btlang.cli.task:run_act",
         (
-            _NAME,
+            NAME,
             Option("-c", dest="code", metavar="TEXT", help="mission as text"),
             Option(
                 "--kind", default="mission", metavar="KIND",
@@ -443,12 +438,12 @@ _TABLE = (
             JSON,
             Option(
                 "item", nargs="*", default=[], metavar="FILE",
-                help="mission file, name in the library, or number of a task",
+                help="mission in quotes, mission file, name in the library, or number of a task",
             ),
         ),
         acts={
             "add": VerbAct(
-                'gives the robot a task: btc task add patrol.txt, btc task add -c "go to the lab"',
+                'gives the robot a task: btc task add "go to the lab", btc task add patrol.txt',
                 (*_ADD, "at", "by"),
             ),
             "list": VerbAct(
@@ -494,7 +489,7 @@ _TABLE = (
     Verb(
         "components", KEEP_UP, "list the components and devices of a robot that is up",
         "btlang.cli.task:change_components",
-        (_NAME, JSON, Option("item", nargs="?", default="", metavar="NAME", help="name of a component")),
+        (NAME, JSON, Option("item", nargs="?", default="", metavar="NAME", help="name of a component")),
         acts={
             "list": VerbAct("lists the components and devices with their states"),
             "restart": VerbAct("restarts a component: btc components restart camera"),

@@ -13,7 +13,17 @@ from btlang.engine.fused import choose_compiler
 from btlang.engine.instance import EngineError, EngineState, NodeInstance, blackboard_key, halt_nothing
 from btlang.engine.leaves.binding import bind_leaf
 from btlang.engine.leaves.leaf import ActionFailed, LeafSignature
-from btlang.engine.nodes import branches, built_in_leaves, control, decorators, guards, nav2, rules, timed
+from btlang.engine.nodes import (
+    branches,
+    built_in_leaves,
+    control,
+    decorators,
+    guards,
+    nav2,
+    nav2_controllers,
+    rules,
+    timed,
+)
 from btlang.engine.nodes.ports import TRUTHS
 from btlang.engine.resume_path import find_resume_paths, mark_resumable, resume_at_top
 from btlang.engine.script.values import literal
@@ -45,7 +55,12 @@ SEMANTICS: dict[str, Callable[[NodeInstance, Sequence[Compiled]], Compiled]] = {
     "Whenever": rules.whenever,
     "PipelineSequence": nav2.pipeline_sequence,
     "NonblockingSequence": nav2.nonblocking_sequence,
+    "PersistentSequence": nav2.persistent_sequence,
     "SingleTrigger": nav2.single_trigger,
+    "SpeedController": nav2_controllers.speed_controller,
+    "DistanceController": nav2_controllers.distance_controller,
+    "GoalUpdatedController": nav2_controllers.goal_updated_controller,
+    "GoalUpdater": nav2_controllers.goal_updater,
     "RecoveryNode": nav2.recovery_node,
     "RoundRobin": nav2.round_robin,
     "Inverter": decorators.inverter,

@@ -14,7 +14,14 @@ from btlang.passes import PASSES
 from btlang.passes.compilation import Compilation
 from btlang.passes.lint.allow import not_allowed
 from btlang.projects.cpp_ports import CppSources
-from btlang.projects.entries import conflicting_types, entries_of, unset_entries, unset_enums
+from btlang.projects.entries import (
+    EntryFlow,
+    conflicting_types,
+    entries_of,
+    unset_entries,
+    unset_enums,
+    wrong_constants,
+)
 from btlang.projects.ports import (
     DescribedUses,
     constant_outputs,
@@ -153,7 +160,9 @@ class _Check:
     def _wrong_entries(self) -> Iterator[Diagnostic]:
         entries = {name: entries_of(root, self._ports, self._dialect(root) == 3)
                    for name, root in self._project.trees.items()}  # fmt: skip
-        yield from unset_entries(entries, self._project.mains)
+        flow = EntryFlow(entries)
+        yield from unset_entries(entries, flow)
+        yield from wrong_constants(entries, flow)
         if any(use.may_be_enum for each in entries.values() for use in each.uses):
             types = {port.type for model in self._project.models.values() for port in model.ports}
             registered, are_all = self._sources.enums

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.engine.instance import blackboard_key
 from btlang.engine.script.tokens import READS, SETS, ScriptError, find_script_names
 from btlang.frontends.btcpp.spelling import AUTOREMAP, TRUE
-from btlang.projects.ports import attribute_value, place_of
+from btlang.projects.ports import attribute_value, describe_type, place_of
 from btlang.support.record import Record
 from btlang.text.source import Span
 from btlang.text.spelling import misspelt
@@ -51,10 +51,12 @@ class EntryUse(Record):
 class TreeEntries(Record):
     """The entries that a tree names, in the order in which its nodes are made, and its SubTree nodes.
 
-    If it `is_older`, it is of version 3, where outputs may name an entry without braces: `named`.
+    `given` are those in ports of SubTree nodes: what becomes of them, their trees decide. If it `is_older`, it is of
+    version 3, where outputs may name an entry without braces: `named`.
     """
 
     uses: tuple[EntryUse, ...]
+    given: tuple[EntryUse, ...]
     subtrees: tuple[Node, ...]
     named: frozenset[str]
     is_older: bool
@@ -68,6 +70,7 @@ class TreeEntries(Record):
 def entries_of(root: Node, ports_of: PortsOf, is_older: bool) -> TreeEntries:
     """Return what a tree says of its blackboard; a port of which nothing is known may read and set an entry."""
     uses: list[EntryUse] = []
+    given: list[EntryUse] = []
     subtrees: list[Node] = []
     named: set[str] = set()
     for node in Tree(root).walk():
@@ -87,12 +90,12 @@ def entries_of(root: Node, ports_of: PortsOf, is_older: bool) -> TreeEntries:
             elif "{" in text:
                 key = blackboard_key(port, text)
                 if key is not None and key[:1] != "@":
-                    uses.append(_port_use(node, port, key, ports.get(port)))
+                    (given if node.id == SUBTREE else uses).append(_port_use(node, port, key, ports.get(port)))
             elif holds:
                 uses.append(EntryUse(node, port, text, reads=False))
             elif is_older and not is_built_in and (port not in ports or ports[port].direction != "input"):
                 named.add(text)
-    return TreeEntries(tuple(uses), tuple(subtrees), frozenset(named), is_older)
+    return TreeEntries(tuple(uses), tuple(given), tuple(subtrees), frozenset(named), is_older)
 
 
 def _script_uses(node: Node, port: str, code: str) -> list[EntryUse]:
@@ -118,29 +121,71 @@ def _port_use(node: Node, port: str, key: str, described: PortModel | None) -> E
     return EntryUse(node, port, key, direction != "output", direction != "input", described.type)
 
 
-def unset_entries(entries: Mapping[str, TreeEntries], mains: Collection[str]) -> Iterator[Diagnostic]:
-    """Report BT241 for what a tree with a blackboard of its own reads, if neither it nor a SubTree node sets that."""
+class EntryFlow:
+    """What each tree may read and set of the entries that it names, also through its SubTree nodes."""
+
+    def __init__(self, entries: Mapping[str, TreeEntries]) -> None:
+        self._entries = entries
+        self.sets = self._closure(lambda each: {use.key for use in each.uses if use.sets} | each.named)
+        self.reads = self._closure(lambda each: {use.key for use in each.uses if use.reads and not use.may_be_enum})
+
+    def is_read(self, use: EntryUse) -> bool:
+        """Return whether a use reads its entry; that of a SubTree node does if its tree reads the port."""
+        return use.reads if use.node.id != SUBTREE else self._has(self.reads, use.node, use.port)
+
+    def _closure(self, own: Callable[[TreeEntries], Iterable[str]]) -> dict[str, set[str]]:
+        """Return the keys of each tree: its `own`, those of ports whose tree has them, and what remapping shares."""
+        found = {name: set(own(each)) for name, each in self._entries.items()}
+        users: dict[str, set[str]] = {}
+        for name, each in self._entries.items():
+            for node in each.subtrees:
+                users.setdefault(node.port("ID"), set()).add(name)
+        waiting = dict.fromkeys(self._entries)
+        while waiting:
+            name, _ = waiting.popitem()
+            more = {use.key for use in self._entries[name].given if self._has(found, use.node, use.port)}
+            for node in self._entries[name].subtrees:
+                if node.port(AUTOREMAP) in TRUE:
+                    more |= found.get(node.port("ID"), set())
+            if not more <= found[name]:
+                found[name] |= more
+                waiting.update(dict.fromkeys(users.get(name, ())))
+        return found
+
+    @staticmethod
+    def _has(found: Mapping[str, set[str]], node: Node, port: str) -> bool:
+        tree = node.port("ID")
+        return tree not in found or port in found[tree]  # nothing is known of a tree that isn't there
+
+
+def unset_entries(entries: Mapping[str, TreeEntries], flow: EntryFlow) -> Iterator[Diagnostic]:
+    """Report BT241 for what a tree with a blackboard of its own reads, if neither it nor a SubTree node sets that.
+
+    A tree whose blackboard isn't its own, or that isn't used, may be given anything; there it is only reported if an
+    entry with a similar name is set and not read.
+    """
     users: dict[str, list[Node]] = {}
     for each in entries.values():
         for node in each.subtrees:
             users.setdefault(node.port("ID"), []).append(node)
-    for name, nodes in users.items():
-        if name not in entries or name in mains or any(node.port(AUTOREMAP) in TRUE for node in nodes):
-            continue
-        if not entries[name].shares:
-            yield from _unset(entries[name], nodes)
+    for name, each in entries.items():
+        isolated = [node for node in users.get(name, ()) if node.port(AUTOREMAP) not in TRUE]
+        yield from _unset(name, each, flow, isolated)
 
 
-def _unset(entries: TreeEntries, users: Iterable[Node]) -> Iterator[Diagnostic]:
-    done = {use.key for use in entries.uses if use.sets} | entries.named
-    for use in entries.uses:
-        if use.key in done or use.may_be_enum:
+def _unset(name: str, entries: TreeEntries, flow: EntryFlow, users: Sequence[Node]) -> Iterator[Diagnostic]:
+    done = set(flow.sets[name])
+    in_vain = sorted(flow.sets[name] - flow.reads[name])
+    for use in (*entries.uses, *entries.given):
+        if use.key in done or use.may_be_enum or not flow.is_read(use):
             continue
         done.add(use.key)
         lacking = [node for node in users if all(port != use.key for port, _ in node.ports)]
         if lacking:
             notes = tuple((place_of(node), "this SubTree doesn't give it") for node in lacking[:_MOST_PLACES])
             yield _nothing_sets(use, _ISOLATED, notes)
+        elif not users and (near := misspelt(use.key, in_vain)):
+            yield _nothing_sets(use, f"Similar: {', '.join(near)}")
 
 
 def unset_enums(entries: Mapping[str, TreeEntries], enums: Collection[str], are_all: bool) -> Iterator[Diagnostic]:
@@ -148,7 +193,10 @@ def unset_enums(entries: Mapping[str, TreeEntries], enums: Collection[str], are_
 
     If these may not be all, only for misspelt ones.
     """
-    known = {*enums, *(use.key for each in entries.values() for use in each.uses if not use.may_be_enum)}
+    known = {
+        *enums,
+        *(use.key for each in entries.values() for use in (*each.uses, *each.given) if not use.may_be_enum),
+    }
     for each in entries.values():
         known.update(each.named, (port for node in each.subtrees for port, _ in node.ports))
     for use in (use for each in entries.values() for use in each.uses):
@@ -161,8 +209,42 @@ def unset_enums(entries: Mapping[str, TreeEntries], enums: Collection[str], are_
 
 
 def _nothing_sets(use: EntryUse, help: str, notes: tuple[tuple[Span, str], ...] = ()) -> Diagnostic:
-    place = attribute_value(use.node, use.port)
-    return diagnostic("BT241", place, notes, None, key=use.key, port=use.port, id=use.node.id, help=help)
+    place, id = attribute_value(use.node, use.port), _named(use.node)
+    return diagnostic("BT241", place, notes, None, key=use.key, port=use.port, id=id, help=help)
+
+
+def _named(node: Node) -> str:
+    return node.port("ID") if node.id == SUBTREE else node.id
+
+
+def wrong_constants(entries: Mapping[str, TreeEntries], flow: EntryFlow) -> Iterator[Diagnostic]:
+    """Report BT233 for constants of SubTree nodes that a port in their tree can't read. Version 3 has none."""
+    for each in entries.values():
+        for node in each.subtrees if not each.is_older else ():
+            for port, text in node.ports:
+                if port == "ID" or port[:1] == "_" or "{" in text or not text.strip():
+                    continue
+                for use in _readers(entries, flow, node.port("ID"), port):
+                    if wanted := describe_type(text.strip(), use.type):
+                        notes = ((attribute_value(use.node, use.port), "here it is read"),)
+                        place = attribute_value(node, port)
+                        yield diagnostic(
+                            "BT233", place, notes, None, text=text, port=port, id=_named(node), wanted=wanted
+                        )
+                        break
+
+
+def _readers(entries: Mapping[str, TreeEntries], flow: EntryFlow, tree: str, key: str) -> Iterator[EntryUse]:
+    """Yield the ports that read an entry of a tree, which nothing sets there, also in the trees that it gives it to."""
+    waiting, done = [(tree, key)], set[tuple[str, str]]()
+    while waiting:
+        place = waiting.pop()
+        tree, key = place
+        if place in done or tree not in entries or key in flow.sets[tree]:
+            continue
+        done.add(place)
+        yield from (use for use in entries[tree].uses if use.key == key)
+        waiting += [(use.node.port("ID"), use.port) for use in entries[tree].given if use.key == key]
 
 
 def conflicting_types(entries: Mapping[str, TreeEntries]) -> Iterator[Diagnostic]:
@@ -181,8 +263,9 @@ def conflicting_types(entries: Mapping[str, TreeEntries]) -> Iterator[Diagnostic
         if each.is_older or each.shares or name in shared:
             continue
         first: dict[str, EntryUse] = {}
+        unsure = outside.get(name, set()) | {use.key for use in each.given}
         for use in each.uses:
-            if use.key in outside.get(name, ()) or port_content(use.node.id, use.port) == SCRIPT:
+            if use.key in unsure or port_content(use.node.id, use.port) == SCRIPT:
                 continue
             before = first.setdefault(use.key, use)
             if _differ(before.type, use.type):

@@ -125,7 +125,7 @@ def port_problems(uses: DescribedUses) -> Iterator[Diagnostic]:
                 continue
             near = _near(name, own, ports)
             fix = suggest_name(attribute_name(node, name), near)
-            missing = [port for port in missing if fix is None or port != fix[1]]
+            missing = [port for port in missing if near != [port]]
             help = f"Similar: {', '.join(near)}" if near else f"It has {', '.join(ports) or 'none'}."
             yield diagnostic("BT232", attribute_name(node, name), (), fix, port=name, id=node.id, help=help)
         for name in missing:

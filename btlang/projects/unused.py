@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 
 _WORD = re.compile(r"[^\W\d]\w*")
+_FOR_NAVIGATOR = ("error_code_id", "error_msg")  # what these ports name, Nav2's navigator reads for its result
 
 
 def keys_read(nodes: Iterable[Node], outputs_of: OutputsOf) -> frozenset[str]:
@@ -51,7 +52,7 @@ def unread_values(nodes: Iterable[Node], outputs_of: OutputsOf, read: frozenset[
         outputs = outputs_of(node)
         for name, text in node.ports:
             for key in _keys_set(node.id, name, text, outputs):
-                if key not in read and key[:1] != "@":
+                if key not in read and key[:1] != "@" and name not in _FOR_NAVIGATOR:
                     yield diagnostic("BT235", attribute_value(node, name), key=key, port=name, id=node.id)
 
 

@@ -23,20 +23,25 @@ def files_of(mission: Mission, keywords: Sequence[str], robot: str = "") -> dict
     """Return the tree, the text of the mission with what it includes, its world, keyword and robot files, by their
     names.
     """
-    files = {TREE: str(mission.to("json")).encode()}
+    files = {TREE: _encode(str(mission.to("json")))}
     if mission.syntax is not None:
-        files[MISSION] = mission.syntax.span.source.text.encode()
+        files[MISSION] = _encode(mission.syntax.span.source.text)
     for include in _includes(mission):
-        files[f"{_INCLUDED}/{include.path}"] = include.mission.span.source.text.encode()
+        files[f"{_INCLUDED}/{include.path}"] = _encode(include.mission.span.source.text)
     for number, path in enumerate(path for path in keywords if os.path.isfile(path)):
         files[f"{_WORDS}/{number}/{os.path.basename(path)}"] = _content(path)
     if isinstance(mission.world, Source):
-        files[_WORLD] = mission.world.text.encode()
+        files[_WORLD] = _encode(mission.world.text)
     elif mission.world is not None and os.path.isfile(mission.world):
         files[_WORLD] = _content(mission.world)
     if robot.endswith(".toml") and os.path.isfile(robot):
         files[ROBOT] = _content(robot)
     return files
+
+
+def _encode(text: str) -> bytes:
+    """Encode a text; what UTF-8 lacks becomes an escape, as in write_file."""
+    return text.encode(errors="backslashreplace")
 
 
 @contextmanager

@@ -148,6 +148,11 @@ def read_recording(path: str) -> Recording:
     return Recording(about, files, tuple(entries))
 
 
+def no_recording(what: str, advice: str) -> MissionError:
+    """Make the error BT088."""
+    return MissionError([diagnostic("BT088", NOWHERE, what=what, advice=advice)])
+
+
 def read_about(path: str) -> dict[str, str]:
     """Return what a recording says of itself, from its beginning; nothing if it can't be read."""
     from mcap.exceptions import McapError
@@ -236,6 +241,6 @@ def open_recording(
     Raises MissionError.
     """
     recording = read_recording(path)
-    name, language = recording.about.get("mission", "a mission"), recording.about.get("language", "en")
+    name, language = recording.about.get("mission") or "a mission", recording.about.get("language", "en")
     with open_mission(recording.files, name, language, keywords) as mission:
         yield recording, mission, RecordedNodes(*outline(mission.tree))

@@ -35,7 +35,8 @@ class Recorder:
 
     What happens is in the file at the end of each period, also if the process is killed. From `most_bytes` on there is
     a next file (`run.2.mcap`), which has all of that too. A file that cannot be written to ends the recording, and the
-    bus drops this sink. `label` gives the words of a node. Raises MissionError (BT009) if the file can't be opened.
+    bus drops this sink. `label` gives the words of a node. `opened` gets the path of each file. Raises OSError if it
+    can't be opened.
     """
 
     policy = BLOCK
@@ -47,8 +48,10 @@ class Recorder:
         files: Mapping[str, bytes],
         about: Mapping[str, str],
         most_bytes: int | None = None,
+        opened: Callable[[str], object] = lambda path: None,
     ) -> None:
         self.path = path
+        self._opened = opened
         self._label, self._files, self._about, self._most = label, files, dict(about), most_bytes
         self.is_broken = False
         """Whether the file could not be written to its end."""
@@ -75,7 +78,7 @@ class Recorder:
         at = self._began + int(event.t * 1e9)  # mission time, so that it is played at its pace
         published = int(event.wall * 1e9)
         for channel, data in messages(event, at, self._label, self._movements):
-            text = (data if isinstance(data, str) else _encode(data)).encode()
+            text = (data if isinstance(data, str) else _encode(data)).encode(errors="backslashreplace")
             known = self._channels.get(channel.topic)
             if known is None:  # the writer puts the channel before its first message
                 self._writer.add_message(self._new_id(channel), at, text, published)
@@ -118,6 +121,7 @@ class Recorder:
         for name, data in self._files.items():
             self._writer.add_attachment(now, now, name, _media_type(name), data)
         self._file.flush()
+        self._opened(path)
 
     def _new_id(self, channel: RecordingChannel) -> int:
         schema = self._writer.register_schema(channel.schema, "jsonschema", _schema(channel).encode())
@@ -136,7 +140,12 @@ def _media_type(name: str) -> str:
 
 
 def recorder_in(
-    folder: str, mission: Mission, keywords: Sequence[str], about: Mapping[str, str], most_bytes: int | None = None
+    folder: str,
+    mission: Mission,
+    keywords: Sequence[str],
+    about: Mapping[str, str],
+    most_bytes: int | None = None,
+    opened: Callable[[str], object] = lambda path: None,
 ) -> Recorder:
     """Return a recorder for a run of a mission, in a file of a folder that is named after the time.
 
@@ -148,6 +157,6 @@ def recorder_in(
     known = {"btlang": btlang.__version__, "wall": f"{time.time():.3f}", **about}
     try:
         os.makedirs(folder, exist_ok=True)
-        return Recorder(path, mission.label, files_of(mission, keywords), known, most_bytes)
+        return Recorder(path, mission.label, files_of(mission, keywords), known, most_bytes, opened)
     except OSError as error:
         raise MissionError([unwritable(path, error)]) from None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterable, Iterator, Mapping
+from operator import itemgetter
 
 from btlang.api import Mission
 from btlang.engine.engine import Failure
@@ -54,16 +55,22 @@ class Story:
         """Yield the story, from the beginning."""
         about = self._about
         when = time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(float(about.get("wall", 0))))
-        yield one_line(
-            f"{about.get('mission') or 'A mission'}, {when}, on the robot {about.get('robot', 'simulated')}:"
+        name = about.get("mission") or (f"Task {about['task']}" if "task" in about else "A mission")
+        robot = about.get("robot", "simulated")
+        on = (
+            "" if "task" in about else ", on the simulated robot" if robot == "simulated" else f", on the robot {robot}"
         )
+        yield one_line(f"{name}, {when}{on}:")
         yield from self.body()
 
     def body(self) -> Iterator[str]:
         """Yield the story without its first line."""
-        yield from (self._line(t, text) for t, _, text in self.notes)
-        for began, node in self._began.values():
-            yield self._line(began, f"{self._mission.label(node)}: not over when the recording ended")
+        unfinished = [
+            (began, f"{self._mission.label(node)}: not over when the recording ended")
+            for began, node in self._began.values()
+        ]
+        noted = [(t, text) for t, _, text in self.notes] + unfinished  # a command is noted when it ends
+        yield from (self._line(t, text) for t, text in sorted(noted, key=itemgetter(0)))
         yield from self.ending()
 
     def ending(self) -> Iterator[str]:

@@ -28,6 +28,7 @@ from btlang.task.execution.run_sinks import Recordings
 from btlang.task.live.feed import Feed
 from btlang.task.messages import AddSchedule, Answer, Command, Put, RemoveSchedule, as_json, read_command
 from btlang.task.schedule.recurrence import read_rule
+from btlang.task.store.location import note_store, usual_store
 from btlang.task.store.records import Missed, MissionText, Overlap, Restart, Schedule, Task
 from btlang.task.store.task_store import open_store
 from btlang.text.source import NOWHERE
@@ -90,9 +91,11 @@ class TaskLayer:
         self.rules: HouseRules = no_house_rules()
         if rules is not None:
             self.rules = read_house_rules(self.reader.read(MissionText("", file=rules)))
-        self.store = open_store(store or os.path.join(folder, "tasks.db"), durable)
+        place = store or usual_store(folder)
+        self.store = open_store(place, durable)
         try:
             self.store.own()
+            note_store(folder, place)
             self.session = Session(robot, world=self.reader.world, over=over)
         except BaseException:
             self.store.close()

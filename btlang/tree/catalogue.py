@@ -149,6 +149,7 @@ _IN_TURN: dict[str, Any] = {"goes_on": ON_FAILURE, "skipped": "all", "symbol": "
 _AT_ONCE: dict[str, Any] = {"at_once": True, "skipped": "all", "symbol": "⇉"}
 _BRANCHES: dict[str, Any] = {"skipped": "branch"}
 _MILLISECONDS = Port("unsigned int", None, 0, _UNSIGNED, "ms")
+_GOALS = {"goal": Port(default=""), "goals": Port(default="")}
 _ROUNDS = Port("int", None, -1, _INT, "rounds")
 
 CATALOGUE: dict[str, NodeKind] = {
@@ -160,6 +161,10 @@ CATALOGUE: dict[str, NodeKind] = {
         _control("ReactiveSequence", reactive=True, interrupts=True, tags_3=("ReactiveSequence",), **_IN_ORDER),
         _control("PipelineSequence", origin=NAV2, keeps_completed=True, **_IN_ORDER),
         _control("NonblockingSequence", origin=NAV2, keeps_completed=True, **_AT_ONCE),
+        _control(
+            "PersistentSequence", ports={"current_child_idx": Port("int", direction="inout")}, origin=NAV2,
+            goes_on=ON_SUCCESS, skipped="never", symbol="→",
+        ),
         _control("Fallback", waits=True, tags_3=("Fallback", "FallbackStar"), **_IN_TURN),
         _control("AsyncFallback", waits=True, **_IN_TURN),
         _control("ReactiveFallback", reactive=True, interrupts=True, tags_3=("ReactiveFallback",), **_IN_TURN),
@@ -216,6 +221,32 @@ CATALOGUE: dict[str, NodeKind] = {
         _decorator("Timeout", ports={"msec": _MILLISECONDS}, interrupts=True, tags_3=("Timeout",)),
         _decorator("Delay", ports={"delay_msec": _MILLISECONDS}, takes_time=True, tags_3=("Delay",)),
         _decorator("RateController", ports={"hz": Port("double", "10", unit="Hz")}, takes_time=True, origin=NAV2),
+        _decorator(
+            "SpeedController",
+            ports={
+                "min_rate": Port("double", "0.1", unit="Hz"), "max_rate": Port("double", "1.0", unit="Hz"),
+                "min_speed": Port("double", "0.0"), "max_speed": Port("double", "0.5"), **_GOALS,
+            },
+            takes_time=True, origin=NAV2,
+        ),
+        _decorator(
+            "DistanceController",
+            ports={
+                "distance": Port("double", "1.0"), "global_frame": Port("std::string", ""),
+                "robot_base_frame": Port("std::string", ""),
+            },
+            takes_time=True, origin=NAV2,
+        ),
+        _decorator("GoalUpdatedController", ports=_GOALS, takes_time=True, origin=NAV2),
+        _decorator(
+            "GoalUpdater",
+            ports={
+                "input_goal": Port(default=""), "input_goals": Port(default=""),
+                "output_goal": Port(default="", direction="output"),
+                "output_goals": Port(default="", direction="output"),
+            },
+            origin=NAV2,
+        ),
         _decorator("SingleTrigger", origin=NAV2),
         _decorator("RunOnce", ports={"then_skip": Port("bool", "true")}),
         _decorator("Precondition", ports={"if": Port(holds=SCRIPT), "else": Port(default="FAILURE")}),

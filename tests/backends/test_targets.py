@@ -278,8 +278,8 @@ def test_a_port_that_is_missing_is_no_number_out_of_range() -> None:
 
 
 def test_py_trees_tells_of_nodes_with_children_that_are_not_there() -> None:
-    tree = btlang.parse_tree('do "DistanceController" with distance 1:\n  wave')
-    with pytest.raises(MissionError, match="BT131: There's no node 'DistanceController' that takes children"):
+    tree = btlang.parse_tree('do "PathLongerOnApproach" with path "x":\n  wave')
+    with pytest.raises(MissionError, match="BT131: There's no node 'PathLongerOnApproach' that takes children"):
         tree.to("py_trees")
 
 

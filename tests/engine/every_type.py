@@ -27,6 +27,11 @@ RUNS: dict[str, tuple[str, dict[str, str]]] = {
     "PipelineSequence": ("s R", {}),
     "NonblockingSequence": ("R s R", {}),
     "SingleTrigger": ("R", {}),
+    "PersistentSequence": ("s R", {"current_child_idx": "{at}"}),
+    "SpeedController": ("R", {}),
+    "DistanceController": ("R", {}),
+    "GoalUpdatedController": ("R", {}),
+    "GoalUpdater": ("R", {"input_goal": "{x}", "output_goal": "{y}"}),
     "RecoveryNode": ("f R", {}),
     "RoundRobin": ("f R", {}),
     "Inverter": ("R", {}),
@@ -65,6 +70,7 @@ def running(id: str) -> tuple[World, Engine, list[str]]:
     scripts = RUNS[id][0].split()
     engine = world.engine(around(id, *leaves(world, scripts)), watched=True)
     engine.blackboard.set("x", 1)
+    engine.blackboard.set("at", 0)
     assert engine.tick() == RUNNING
     world.since()
     return world, engine, [name for name, script in zip("ABCDEFG", scripts, strict=False) if script == "R"] + ["Z"]

@@ -87,6 +87,14 @@ def _more_parents(children: st.SearchStrategy[Node]) -> list[st.SearchStrategy[N
             lambda many: st.just(n(many.id, n("SingleTrigger", many.children[0]), *many.children[1:]))
         ),
         around("SingleTrigger"),
+        several("PersistentSequence", 1, 4, current_child_idx="{x}"),
+        around("GoalUpdater", input_goal=st.just("{x}"), output_goal=st.just("{y}")),
+        around("GoalUpdatedController", goal=st.just("{x}")),
+        several("PipelineSequence", 1, 4).flatmap(
+            lambda many: st.just(
+                n(many.id, n("GoalUpdatedController", many.children[0], goal="{x}"), *many.children[1:])
+            )
+        ),
         several("PipelineSequence", 1, 4),
         st.sampled_from(("true", "false")).flatmap(lambda wraps: several("RoundRobin", 1, 4, wrap_around=wraps)),
         st.integers(0, 2).flatmap(lambda retries: several("RecoveryNode", 2, 2, number_of_retries=retries)),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections import Counter
 from collections.abc import Callable
-from typing import Self
+from typing import Any, Self
 
 from btlang.engine.clock import Clock
 from btlang.engine.status import IDLE, RUNNING
@@ -41,6 +41,7 @@ class ReferenceNode(ABC):
         self.status = IDLE
         self.at = self.count = self.skipped = self.seen = 0
         self.completed: set[int] = set()
+        self.goal: Any = None
         self.failures = self.successes = 0
         self.since: float | None = None
         self.kept = 0.0

@@ -289,6 +289,47 @@ class MoreNodes(ReferenceNode):
         self.triggered = result in (SUCCESS, FAILURE)
         return result
 
+    def PersistentSequence(self) -> int:
+        """As there, but a child that ran is halted where the number has become that of another one."""
+        self.status = RUNNING
+        key = self.node.port("current_child_idx").strip("{}")
+        try:
+            number = float(self.board.get(key))
+        except (KeyError, ValueError):
+            number = -1
+        if number not in range(len(self.children) + 1):
+            self.reset_children()
+            return FAILURE
+        at = int(number)
+        for index, child in enumerate(self.children):
+            if index != at:
+                child.reset()
+        while at < len(self.children):
+            result = self.children[at].execute()
+            if result == RUNNING:
+                return RUNNING
+            self.children[at].reset()
+            at = 0 if result == FAILURE else at + 1
+            self.board.set(key, at)
+            if result == FAILURE:
+                return FAILURE
+        self.board.set(key, 0)
+        return SUCCESS
+
+    def GoalUpdater(self) -> int:
+        source, target = (self.node.port(port).strip("{}") for port in ("input_goal", "output_goal"))
+        self.status = RUNNING
+        if source in self.board:
+            self.board.set(target, self.board.get(source))
+        return self.once_more()
+
+    def GoalUpdatedController(self) -> int:
+        key = self.node.port("goal").strip("{}")
+        goal = self.board.get(key) if key in self.board else None
+        is_new = self.status == IDLE or goal != self.goal
+        self.goal, self.status = goal, RUNNING
+        return self.once_more() if is_new or self.working else RUNNING
+
     def RecoveryNode(self) -> int:
         self.status = RUNNING
         main, recovery = self.children

@@ -10,6 +10,7 @@ from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
 from btlang.engine.leaves.leaf import ActionFailed, LeafBinding
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
+from btlang.robots.geometry import Pose
 from btlang.tree.node import Node, Tree
 
 STATUS = {"r": RUNNING, "s": SUCCESS, "f": FAILURE, "k": SKIPPED}
@@ -63,11 +64,19 @@ class Restriction:
             self._held.remove(entry)
 
 
+class Base:
+    """The base of a robot that stands."""
+
+    pose = Pose(0.0, 0.0, 0.0)
+    velocity = 0.0, 0.0
+
+
 class Zoned:
-    """A robot that has zones, and nothing else."""
+    """A robot that has zones and a base, and nothing else."""
 
     def __init__(self) -> None:
         self.zones = Zones()
+        self.base = Base()
 
 
 class World:

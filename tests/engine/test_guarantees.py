@@ -209,6 +209,7 @@ def engine_with(leaf: Callable[[World], Node], world: World, id: str, **options:
     children = [leaf(world) if script == "R" else other for script, other in zip(scripts, others, strict=True)]
     engine = world.engine(around(id, *children), **options)
     engine.blackboard.set("x", 1)
+    engine.blackboard.set("at", 0)
     return engine
 
 

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import pytest
+
+from btlang.engine.instance import EngineError
 from btlang.engine.status import FAILURE
+from btlang.robots.geometry import Pose
 from btlang.tree.node import Node
 
 from .scripted import World, n
@@ -114,3 +118,77 @@ def test_a_single_trigger_fails_once_its_child_has_ended_where_it_stays_complete
         engine = world.engine(n(parent, n("SingleTrigger", world.fn("Beep", "s")), world.cls("Follow", "r")))
         assert world.ticks(engine, 2) == statuses
         assert world.log.count("Beep") == 1
+
+
+def moved(first: Node, ports: str, values: list[float], robot: str) -> str:
+    """A letter for each tick of 0.25 s, P where the plan is made: x, a pose or a speed has these values."""
+    world = World()
+    engine = world.engine(
+        n("PipelineSequence", first.replace(children=(world.fn("Plan", "s"),)), world.cls("Follow", "r"))
+    )
+    letters = ""
+    for value in values:
+        if robot:
+            setattr(world.robot.base, robot, Pose(value, 0.0, 0.0) if robot == "pose" else (value, 0.0))
+        engine.blackboard.set("goal", value if ports else 0)
+        world.log.clear()
+        engine.tick()
+        letters += "P" if "Plan" in world.log else "."
+        world.clock.advance(0.25)
+    return letters
+
+
+def test_a_distance_controller_plans_each_metre() -> None:
+    places = [0.0, 0.4, 0.9, 1.0, 1.6, 2.1, 1.2, 1.0]
+    assert moved(n("DistanceController"), "", places, "pose") == "P..P.P.P"
+    assert moved(n("DistanceController", distance="0.5"), "", places, "pose") == "P.P.PPP."
+
+
+def test_a_speed_controller_plans_the_more_often_the_faster_it_drives() -> None:
+    ports = {"min_rate": 0.5, "max_rate": 2, "max_speed": 1}
+    assert moved(n("SpeedController", **ports), "", [1.0] * 9, "velocity") == "P.P.P.P.P"
+    assert moved(n("SpeedController", **ports), "", [0.0] * 12, "velocity") == "P.P.......P."
+    assert moved(n("SpeedController", **ports), "", [1 / 3] * 11, "velocity") == "P.P...P...P"
+    assert moved(n("SpeedController", min_speed=1, max_speed=1), "", [2.0] * 9, "velocity") == "P...P...P"
+    assert moved(n("SpeedController"), "goal", [1, 1, 2, 2, 3, 3, 3], "") == "P.P.P.."
+
+
+def test_a_new_goal_is_planned() -> None:
+    assert moved(n("GoalUpdatedController"), "goal", [1, 1, 2, 2, 1, 1], "") == "P.P.P."
+    assert moved(n("GoalUpdatedController", goal="{goal}"), "goal", [1, 1, 2], "") == "P.P"
+    assert moved(n("GoalUpdatedController", goal="{other}"), "goal", [1, 1, 2], "") == "P.."
+
+
+def test_a_goal_updater_passes_on_the_goal_as_it_is_now() -> None:
+    world = World()
+    engine = world.engine(n("GoalUpdater", world.cls("Follow", "r"), input_goal="{goal}", output_goal="{new}"))
+    engine.tick()
+    assert "new" not in engine.blackboard  # there's no goal yet
+    for goal in (1, 2):
+        engine.blackboard.set("goal", goal)
+        engine.tick()
+        assert engine.blackboard.get("new") == goal
+
+
+@pytest.mark.parametrize("id", ["DistanceController", "SpeedController"])
+def test_a_robot_without_a_base_is_a_failure(id: str) -> None:
+    world = World()
+    del world.robot.base
+    engine = world.engine(n("PipelineSequence", n(id, world.fn("Plan", "s")), world.cls("Follow", "r")))
+    engine.tick()
+    world.clock.advance(1)
+    assert engine.tick() == FAILURE
+    assert engine.failure is not None
+    assert engine.failure.reason == "this robot has no base"
+
+
+@pytest.mark.parametrize("value", [None, -1, 3, "one", 0.5])
+def test_a_persistent_sequence_needs_a_position(value: object) -> None:
+    world = World()
+    engine = world.engine(n("PersistentSequence", world.fn("A", "s"), world.fn("B", "s"), current_child_idx="{at}"))
+    if value is not None:
+        engine.blackboard.set("at", value)
+    assert engine.tick() == FAILURE
+    assert world.log == []
+    with pytest.raises(EngineError, match="must be a"):
+        world.engine(n("PersistentSequence", world.fn("A", "s"), current_child_idx="0"))

@@ -15,7 +15,7 @@ from tests.lies.scene import Result
 from tests.lies.test_lies import mission, scene
 
 PAGE = Path(__file__).parents[2] / "docs" / "lies.md"
-HEAD = """# What came of lies
+HEAD = """# Wrong sensors
 
 A sensor begins to lie after the robot has driven 0.3 m at 0.5 m/s; wheels and joints lie from the start. The table has
 the metres and seconds from then until the robot was really at rest, the exit code of `btc run`, and the reason that it

@@ -40,8 +40,13 @@ def found(
         ('<SubTree ID="T1"/>', '<Nobody to="{goal}"/><Move to="{goal}"/>', ""),
         ('<SubTree ID="T1"/>', '<Script code="goal := 1"/><Move to="{goal}"/>', ""),
         ('<SubTree ID="T1"/>', '<SetBlackboard output_key="goal" value="1"/><Move to="{goal}"/>', ""),
-        ('<SubTree ID="T1"/>', '<SubTree ID="T2" out="{goal}"/><Move to="{goal}"/>', ""),
-        ('<SubTree ID="T1"/>', '<SubTree ID="T2" _autoremap="true"/><Move to="{goal}"/>', ""),
+        ('<SubTree ID="T1"/>', '<SubTree ID="T2" out="{goal}"/><Move to="{goal}"/>', "goal"),
+        ('<SubTree ID="T1"/>', '<SubTree ID="T3" out="{goal}"/><Move to="{goal}"/>', ""),
+        ('<SubTree ID="T1"/>', '<SubTree ID="Gone" out="{goal}"/><Move to="{goal}"/>', ""),
+        ('<SubTree ID="T1"/>', '<SubTree ID="T2" _autoremap="true"/><Move to="{goal}"/>', "goal"),
+        ('<SubTree ID="T1"/>', '<SubTree ID="T3" _autoremap="true"/><Log text="{out}"/>', ""),
+        ('<SubTree ID="T1"/>', '<SubTree ID="T4" text="{goal}"/>', "goal"),
+        ('<SubTree ID="T1"/><SubTree ID="T1" _autoremap="true"/>', '<Move to="{goal}"/>', "goal"),
         ('<SubTree ID="T1"/>', '<Move to="{@goal}"/>', ""),
         ('<SubTree ID="T1"/>', '<Log text="at {goal}"/>', ""),
     ],
@@ -49,9 +54,44 @@ def found(
 def test_entries_of_subtrees_that_nothing_sets(
     use: str, tree: str, unset: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """An unknown port may set an entry, and from outside only a main tree can be given one."""
-    messages = found(tmp_path, capsys, use + '<Move to="{from_outside}"/>', tree, '<Log text="x"/>', code="BT241")
+    """A SubTree node sets what its tree sets, and an unknown port may set anything. Only a main tree is given more."""
+    inner = '<Log text="x"/>', '<SubTree ID="T5" at="{out}"/>', '<SubTree ID="T6" text="{text}"/>'
+    leaves = '<Find at="{at}"/>', '<Log text="{text}"/>'
+    messages = found(tmp_path, capsys, use + '<Move to="{from_outside}"/>', tree, *inner, *leaves, code="BT241")
     assert [message.split("'")[1] for message in messages] == ([unset] if unset else [])
+
+
+@pytest.mark.parametrize(
+    ("tree", "unset"),
+    [
+        ('<Script code="count := 1; done := 2"/><ScriptCondition code="coutn == done"/>', "coutn"),
+        ('<Script code="count := 1"/><ScriptCondition code="coutn == count"/>', ""),  # count has a reader
+        ('<Script code="count := 1"/><ScriptCondition code="limit == 2"/>', ""),
+        ('<SubTree ID="T1" at="{goal}"/><Move to="{gaol}"/>', "gaol"),
+    ],
+)
+def test_what_is_set_in_a_main_tree_is_read_by_another_name(
+    tree: str, unset: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    messages = found(tmp_path, capsys, tree, '<Find at="{at}"/>', code="BT241")
+    assert [message.split("'")[1] for message in messages] == ([unset] if unset else [])
+
+
+@pytest.mark.parametrize(
+    ("use", "tree", "wanted"),
+    [
+        ('<SubTree ID="T1" v="fast"/>', '<Spin speed="{v}"/>', ["a number"]),
+        ('<SubTree ID="T1" v="1.5"/>', '<Spin speed="{v}"/>', []),
+        ('<SubTree ID="T1" v="blue"/>', '<SubTree ID="T2" c="{v}"/>', ["one of RED, GREEN"]),
+        ('<SubTree ID="T1" v="fast"/>', '<Script code="v := 1"/><Spin speed="{v}"/>', []),
+        ('<SubTree ID="T1" v="{fast}"/>', '<Spin speed="{v}"/>', []),
+    ],
+)
+def test_a_constant_of_a_subtree_is_read_as_what_it_can_be(
+    use: str, tree: str, wanted: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    messages = found(tmp_path, capsys, use, tree, '<Paint color="{c}"/>', code="BT233")
+    assert [message.partition("of T1: ")[2].removesuffix(" is needed.") for message in messages] == wanted
 
 
 def test_version_3_names_outputs_without_braces(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -158,8 +158,8 @@ def test_a_report_begins_in_the_past(robot: TaskLayer, btc: Btc) -> None:
         ("task show ../x", "'../x' isn't the number of a task"),
         ("task unschedule x", "'x' isn't the number of a schedule"),
         ("task --name ../x list", "--name: expected up to 32 letters, digits, '-' and '_', not '../x'"),
-        ("task", "required: ACT\n"),
-        ("robot", "required: ACT\n"),
+        ("task", "say what to do: "),
+        ("robot", "say what to do: "),
         ("robot status --speed max", "--speed doesn't apply to it"),
         ("robot status now", "'now' is more than it takes"),
         ("robot unit --json", "--json doesn't apply to it"),
@@ -263,12 +263,26 @@ def test_what_is_not_there_is_called_so(robot: TaskLayer, btc: Btc) -> None:
         code, text = btc("task", *words.split())
         assert code == 1
         assert "isn't known" in text or "The mission 'nosuch' isn't in the library" in text
-    code, text = btc("task", "add", "go to the kitchen")
-    assert "The mission 'go to the kitchen' isn't in the library; to give a mission as text, write -c before it" in text
-    assert "btc task add -c 'go to the kitchen'" in text
     assert btc("task", "list", "--limit", huge) == (0, "There are no tasks.\n")
     assert btc("task", "library") == (0, "The library is empty.\n")
     assert "isn't the number of a task" in btc("task", "show", "9" * 5000)[1]
+
+
+def test_a_mission_in_quotes_is_a_task_unless_it_is_a_name(robot: TaskLayer, btc: Btc) -> None:
+    ask(robot, "pause")
+    assert btc("task", "add", "go to the kitchen") == (0, "Task 1 is queued.\n")
+    ask(robot, "put", name="evening round", text="wave")
+    assert btc("task", "add", "evening round")[0] == 0
+    assert btc("task", "schedule", "wave and nod", "--every", "every hour")[0] == 0
+    assert [task.mission.name for task in robot.store.tasks()] == ["", "evening round"]
+    assert robot.store.schedules()[0].mission.text == "wave and nod"
+    code, text = btc("task", "add", "morning round")
+    assert code == 1
+    assert "There's no mission 'morning round' in the library. As a mission it has mistakes:" in text
+    assert "I don't know" in text
+    assert "isn't in the library" in btc("task", "add", "morning")[1]
+    assert btc("task", "add", "nod") == (0, "Task 3 is queued.\n")
+    assert 'put the mission in quotes: btc task add "go to the lab"' in btc("task", "add", "go", "to", "the", "lab")[1]
 
 
 def test_a_token_that_is_not_given_is_asked_for(robot: TaskLayer, btc: Btc) -> None:

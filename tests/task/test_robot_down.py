@@ -9,6 +9,7 @@ import pytest
 from btlang.cli.robot import left_over
 from btlang.task.commands.client import data_folder
 from btlang.task.layer import TaskLayer
+from btlang.task.store.location import latest_store, note_store
 from btlang.task.store.records import MissionText, Task, TaskState
 from btlang.task.store.task_store import open_store
 
@@ -62,6 +63,50 @@ def test_a_robot_that_is_down_still_says_what_it_did(name: str, btc: Btc, short:
     for words in ("task add -c wave", "task cancel 2", "robot status", "task list --live", "robot resume"):
         code, text = btc(*words.split())
         assert (code, "No robot is up" in text) == (2, True), text
+
+
+def test_the_recording_of_a_task_is_replayed_by_its_number(btc: Btc, short: Path) -> None:
+    folder = Path(data_folder("robot"))
+    with robot_up(folder, recordings=str(folder / "recordings")) as layer:
+        wait_for(layer, submit(layer, "say hi"), TaskState.COMPLETED)
+        ask(layer, "pause")
+        submit(layer, "wave")
+        assert "start  say" in btc("replay", "1", "--lines", "--speed", "max")[1]
+        code, text = btc("replay", "2")
+        assert (code, "BT088: There's no recording of task 2, which is queued." in text) == (2, True), text
+        assert "Task 9 isn't known" in btc("watch", "9")[1]
+    for words in (["replay", "1"], ["replay", "1", "--name", "robot"], ["replay"]):  # of the store, and the latest run
+        code, text = btc(*words, "--lines", "--speed", "max")
+        assert (code, "start  say" in text) == (0, True), text
+
+
+@pytest.mark.parametrize("is_file", [True, False])
+def test_a_store_elsewhere_is_found_when_the_robot_is_down(
+    is_file: bool, btc: Btc, short: Path, tmp_path: Path
+) -> None:
+    store = str(tmp_path / "elsewhere.db")
+    with robot_up(Path(data_folder("robot")), store=store) as layer:
+        wait_for(layer, submit(layer, "say hi"), TaskState.COMPLETED)
+    if not is_file:
+        Path(store).unlink()
+    code, text = btc("task", "list", "--all")
+    assert (code, "completed  say hi" in text) == ((0, True) if is_file else (2, False)), text
+    if is_file:
+        assert btc("robot", "backup", str(tmp_path / "copy.db"))[0] == 0
+        with open_store(str(tmp_path / "copy.db")) as copy:
+            assert copy.task(1) is not None
+
+
+def test_the_place_of_a_store_is_kept_without_its_password(short: Path) -> None:
+    for place, kept in (
+        ("postgresql://u:se@cret@h/db?sslmode=require", "postgresql://u@h/db?sslmode=require"),
+        ("postgresql:///db?host=/tmp/x&password=a&user=u", "postgresql:///db?host=/tmp/x&user=u"),
+        ("postgresql://h/db?password=a", "postgresql://h/db"),
+        ("postgresql://u@h:5432/db", "postgresql://u@h:5432/db"),
+        ("/a:b@c?password=d", "/a:b@c?password=d"),
+    ):
+        note_store(str(short), place)
+        assert latest_store(str(short)) == kept
 
 
 def test_a_robot_that_never_was_up_has_no_store(btc: Btc, short: Path) -> None:

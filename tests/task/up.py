@@ -39,6 +39,11 @@ def robot_for(code: str, patch: pytest.MonkeyPatch) -> Iterator[None]:
         with _store(code, patch):
             yield
         return
+    if code == "BT088":
+        with tempfile.TemporaryDirectory() as folder:
+            patch.setenv("XDG_STATE_HOME", folder)
+            yield
+        return
     if code == "BT107":
         with _without_scanner(patch):
             yield

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -16,7 +17,8 @@ from btlang.task.layer import TaskLayer
 from tests.task.layers import ask, robot_up, submit
 from tests.terminal.emulator import Terminal
 
-LIST = (sys.executable, "-m", "btlang", "task", "list", "--live")
+BTC = (sys.executable, "-m", "btlang")
+LIST = (*BTC, "task", "list", "--live")
 
 
 @pytest.fixture
@@ -57,3 +59,18 @@ def test_a_pipe_gets_what_is_new(robot: TaskLayer) -> None:
         assert [next(lines) for _ in range(5)][3:] == ["   1  queued     wave  [the robot is paused]\n", "\n"]
         shown.send_signal(signal.SIGINT)
         assert shown.wait(10) == 0
+
+
+def test_it_ends_when_the_robot_goes_down() -> None:
+    with tempfile.TemporaryDirectory() as short:
+        environment = {**os.environ, "PYTHONUNBUFFERED": "1", "XDG_RUNTIME_DIR": short, "XDG_DATA_HOME": short}
+        btc = partial(subprocess.Popen, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment)
+        with btc([*BTC, "robot", "up"]) as robot:
+            assert "is up" in next(robot.stdout)
+            with btc(LIST) as shown:
+                assert "." in next(shown.stdout)
+                robot.terminate()
+                printed, errors = shown.communicate(timeout=20)
+            robot.communicate()
+    assert printed.endswith("The robot 'robot' is down.\n")
+    assert (shown.returncode, errors) == (0, "")

@@ -3,14 +3,15 @@
 Differences: a RecoveryNode whose recovery was SKIPPED fails and forgets its count, as after any other failure. There
 the count stays, and the next run has fewer retries; what resets it by distance or time is not here. A RoundRobin with
 wrap_around="false" succeeds with its last child; there it fails. A NonblockingSequence takes a child that was SKIPPED
-as one that succeeded; there it throws.
+as one that succeeded; there it throws. A PersistentSequence halts a running child when its position is set elsewhere.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
-from btlang.engine.instance import NodeInstance, split_children
+from btlang.engine.instance import NodeInstance, blackboard_key, split_children
+from btlang.engine.leaves.leaf import ActionFailed
 from btlang.engine.nodes.ports import TRUTHS, choice_port, rate_port
 from btlang.engine.nodes.timed import Stopwatch
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
@@ -168,6 +169,52 @@ def nonblocking_sequence(instance: NodeInstance, children: Sequence[Compiled]) -
     def halt(keep: bool) -> None:
         for stop in halts:
             stop(keep)
+
+    return tick, halt
+
+
+def persistent_sequence(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
+    """Run the children from the one whose number is in current_child_idx, and count it there (persistent_sequence.cpp).
+
+    A halt doesn't change the number; a failure and the end set it to 0. SKIPPED is as SUCCESS.
+    """
+    ticks, halts = split_children(children)
+    position = instance.number("current_child_idx", 0, len(ticks))
+    key = blackboard_key("current_child_idx", instance.node.port("current_child_idx"))
+    if key is None:
+        raise instance.error("current_child_idx must be a {key}, where a Script has set it to 0")
+    scope, running = instance.scope, -1  # the child that was RUNNING at the last tick
+
+    def tick() -> int:
+        nonlocal running
+        try:
+            at = position()
+        except ActionFailed as problem:
+            halt(False)
+            return instance.fail(str(problem))
+        if running not in (-1, at):
+            halts[running](False)
+        while at < len(ticks):
+            status, running = ticks[at](), at
+            if status == RUNNING:
+                return RUNNING
+            running = -1
+            if status == FAILURE:
+                scope.set(key, 0)
+                return FAILURE
+            if status == SKIPPED:
+                halts[at](False)
+            at += 1
+            scope.set(key, at)
+        scope.set(key, 0)
+        return SUCCESS
+
+    def halt(keep: bool) -> None:
+        nonlocal running
+        for stop in halts:
+            stop(keep)
+        if not keep:
+            running = -1
 
     return tick, halt
 

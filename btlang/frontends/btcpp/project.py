@@ -81,7 +81,7 @@ def read_project(read: XmlFiles, palettes: XmlFiles, main: str = "") -> XmlProje
     return XmlProject(
         trees,
         heads,
-        frozenset(mains.values()),
+        frozenset(mains.values()) | _starts(sound, read),
         models,
         {file.document.source.name: nearest.models(file) for file in sound},
         described,
@@ -213,6 +213,14 @@ def _named(files: list[XmlFile]) -> dict[str, TreeHead]:
                 name, number = f"{head.name} ({number})", number + 1
             heads[name] = file.heads[at] = head.replace(name=name)
     return heads
+
+
+def _starts(files: Iterable[XmlFile], read: XmlFiles) -> frozenset[str]:
+    """Return the trees that programs begin with although no file says so: those that nothing uses in a file that
+    includes others and isn't included itself.
+    """
+    alone = (file for file in files if MAIN not in file.attributes and read.scopes.is_start(file.path))
+    return frozenset(name for file in alone for name in file.names.values() if name not in read.used)
 
 
 def _main_of(file: XmlFile, names: dict[str, str]) -> str:

@@ -30,6 +30,10 @@ class Scopes:
         """The files of each program, a file with all that it includes, if these are several."""
         return [self._reached_from(file) for file, included in self._includes.items() if included]
 
+    def is_start(self, file: str) -> bool:
+        """Return whether a file includes others, and isn't included."""
+        return bool(self._includes.get(file)) and len(self._programs_with(file)) == 1
+
     def is_joined(self, file: str) -> bool:
         """Whether a file includes another one, or is included."""
         return bool(self._includes.get(file)) or len(self._programs_with(file)) > 1

@@ -35,7 +35,6 @@ from btlang.text.output import show
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    import argparse
     from typing import Any
 
     from btlang.robots.bodies.body import Body
@@ -178,11 +177,12 @@ def open_monitor(mission: Mission, name: str, body: Body, is_simulated: bool, br
         yield monitor
 
 
-def serve(options: argparse.Namespace) -> int:
-    """Do the verb `watch`; return the exit code. Raises MissionError."""
-    read_recording(options.file)  # what isn't a recording says so at once
-    with local_page(partial(_recording_api, options.file)) as page:
-        say_where(page, f"Watch {one_line(options.file)}", options.browser)
+def serve(path: str, browser: bool) -> int:
+    """Show a recording on a page until that is closed; return the exit code. Raises MissionError."""
+    about = read_recording(path).about  # what isn't a recording says so at once
+    name = about.get("mission") or "the run"
+    with local_page(partial(_recording_api, path)) as page:
+        say_where(page, f"Watch {one_line(name)}", browser)
         show("End with Ctrl-C, or close the page.")
         return page.wait(lambda: page.was_left)
 

@@ -13,6 +13,7 @@ from btlang.task.commands.store_handlers import LibraryHandler, ScheduleHandler
 from btlang.task.commands.store_reader import StoreReader
 from btlang.task.execution.manager import TaskManager
 from btlang.task.messages import Answer, Command
+from btlang.task.store.location import latest_store
 from btlang.task.store.task_store import open_store
 
 TYPE_CHECKING = False
@@ -21,8 +22,6 @@ if TYPE_CHECKING:
 
     from btlang.task.store.records import MissionText
 
-STORE = "tasks.db"
-"""The file of the store in the folder of a robot, where no other one is chosen."""
 _DOWN = "the robot is down"
 
 
@@ -81,12 +80,16 @@ def open_reader(name: str, command: Command, note: Callable[[str], object]) -> R
 
 def _name_of_one_down(name: str) -> str:
     """Return the name of a robot with a store: this one, or else the usual or the only one; "" if there's none."""
-    known = [each for each in ([name] if name else robots_known()) if os.path.isfile(_store_of(each))]
+    known = [each for each in ([name] if name else robots_known()) if _has_store(_store_of(each))]
     return USUAL_NAME if USUAL_NAME in known else known[0] if len(known) == 1 else ""
 
 
 def _store_of(name: str) -> str:
-    return os.path.join(data_folder(name), STORE)
+    return latest_store(data_folder(name))
+
+
+def _has_store(place: str) -> bool:
+    return "://" in place or os.path.isfile(place)
 
 
 def _refuse_mission(given: MissionText | messages.AddSchedule) -> NoReturn:

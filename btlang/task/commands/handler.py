@@ -308,7 +308,7 @@ class Handler:
                 raise wrong(command.tag, "it needs 'text' or 'name'")
             found = self._store.text(name)
             if found is None:
-                raise unknown_text_error(name, is_asked_for=True)
+                raise unknown_text_error(name)
             text, revision = found.text, found.number
         mission = MissionText(text, name, revision, dict(command.values), command.keywords)
         check_values(self._admit(mission), mission.values)

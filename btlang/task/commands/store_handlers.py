@@ -132,15 +132,9 @@ def latest_text(store: TaskStore, name: str, kind: LibraryKind) -> Source:
     return Source(found.text, one_line(name), roots=())
 
 
-def unknown_text_error(name: str, kind: LibraryKind = LibraryKind.MISSION, is_asked_for: bool = False) -> MissionError:
-    """Make the error BT187: there's no such text.
-
-    One that `is_asked_for` as a task may be meant as the mission itself.
-    """
-    reason = "isn't in the library"
-    if is_asked_for and " " in name:
-        reason += f"; to give a mission as text, write -c before it: btc task add -c '{one_line(name)}'"
-    return refusal_error(f"The {_CALLED[kind]} '{name}'", reason)
+def unknown_text_error(name: str, kind: LibraryKind = LibraryKind.MISSION) -> MissionError:
+    """Make the error BT187: there's no such text."""
+    return refusal_error(f"The {_CALLED[kind]} '{name}'", "isn't in the library")
 
 
 class ScheduleHandler:

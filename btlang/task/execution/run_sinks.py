@@ -10,6 +10,7 @@ from contextlib import suppress
 from btlang.api import Mission
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.engine.status import FAILURE, RUNNING, SUCCESS
+from btlang.recording.latest import note_latest
 from btlang.recording.recorder import Recorder, recorder_in
 from btlang.run.bus import INLINE
 from btlang.run.events import Event, PeriodPassed, StatusesChanged
@@ -123,7 +124,7 @@ class Recordings:
         """Make the recorder for a run of a task that begins now, until `end`."""
         self.make_room()
         try:
-            recorder = recorder_in(self._folder, mission, (), {"task": str(task)}, _EACH)
+            recorder = recorder_in(self._folder, mission, (), {"task": str(task)}, _EACH, note_latest)
         except MissionError as error:
             if not self.problem:
                 self._trouble(str(error))
