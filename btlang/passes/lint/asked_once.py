@@ -204,15 +204,29 @@ def _warn(node: ast.If, before: ast.Ast | None, vocabulary: Lexicon) -> Iterator
             yield diagnostic("BT068", node.span, words=node.span.text, advice=advice).replace(
                 readings=((node.span, each),)
             )
+        elif node.body.span.text.lower() not in vocabulary.halting and not _is_answered(node):
+            word = next(iter(source.text[node.body.span.end : condition.start].lower().split()), "")
+            if word in vocabulary.asked_once:  # `wave when Bob is near`
+                form = f"{node.body.span.text} {{}} {condition.text}"
+                yield _asked_once(node, f"{word} {condition.text}", form, vocabulary)
         return
-    asked = node.condition.condition if isinstance(node.condition, ast.Not) else node.condition
-    if isinstance(asked, ast.Phrase) and asked.entry.id in ABOUT_ANSWERS:
-        return  # `when she has answered`: the question is over by then
+    if _is_answered(node):
+        return
     word = next(iter(source.text[node.span.start : condition.start].split(maxsplit=1)), "")  # none before a question
     if word.lower() in vocabulary.asked_once or _is_event(node.condition, vocabulary):
         rest = source.text[node.span.start + len(word) : node.span.end].lstrip()
-        once, each = (f"{vocabulary.word(role)} {rest}" for role in ("as_soon_as", "whenever"))
-        advice, other = f"To wait until it is true, write: {once}", f"To do it each time, write: {each}"
-        readings = (node.span, once), (node.span, each)
-        words = f"{word} {condition.text}"
-        yield diagnostic("BT068", node.span, words=words, advice=advice, help=other).replace(readings=readings)
+        yield _asked_once(node, f"{word} {condition.text}", f"{{}} {rest}", vocabulary)
+
+
+def _asked_once(node: ast.If, words: str, other: str, vocabulary: Lexicon) -> Diagnostic:
+    """Make BT068 with the words that ask, and the same with others in front that wait for it, or watch for it."""
+    once, each = (other.replace("{}", vocabulary.word(role)) for role in ("as_soon_as", "whenever"))
+    advice, help = f"To wait until it is true, write: {once}", f"To do it each time, write: {each}"
+    problem = diagnostic("BT068", node.span, words=words, advice=advice, help=help)
+    return problem.replace(readings=((node.span, once), (node.span, each)))  # type: ignore[no-any-return]
+
+
+def _is_answered(node: ast.If) -> bool:
+    """Whether a condition is about an answer: `when she has answered`. The question is over by then."""
+    asked = node.condition.condition if isinstance(node.condition, ast.Not) else node.condition
+    return isinstance(asked, ast.Phrase) and asked.entry.id in ABOUT_ANSWERS

@@ -111,8 +111,8 @@ class Outcomes(Limits):
         Returns where to go on: behind a time that says how long the command may take.
         """
         tokens, roles = self._tokens, self._vocabulary.roles
-        if self._text.words[end] in (*roles["or"], *roles["and"]):
-            return end  # `go to Bob. If he isn't there or bumped, A` asks more
+        if self._is_end(end) or self._text.words[end] in (*roles["or"], *roles["and"]):
+            return end  # `go to Bob. If he isn't there or bumped, A` asks more; `say hi to Bob when he comes`
         denied, asked = tokens[-2].kind == "not", tokens[-1]
         form = len(tokens) - (3 if denied else 2)
         if form < 1 or tokens[form].kind not in _ASKING:

@@ -12,7 +12,15 @@ from btlang.frontends.mission.symbols.includes import ROLE as INCLUDE
 from btlang.frontends.mission.symbols.names import Names
 from btlang.frontends.mission.symbols.nodes import Unreadable, read_node, unreadable
 from btlang.frontends.mission.symbols.prefixes import SEPARATORS, Prefix, span_of
-from btlang.frontends.mission.token import BEFORE_CONDITIONS, RULES, Token, constraint_of, go_on, statement_start
+from btlang.frontends.mission.token import (
+    BEFORE_CONDITIONS,
+    RULES,
+    Called,
+    Token,
+    constraint_of,
+    go_on,
+    statement_start,
+)
 from btlang.frontends.mission.tokens.calls import NEGATED, Calls
 from btlang.frontends.mission.tokens.condition_words import check_negation, with_words_before
 from btlang.frontends.mission.tokens.journey_words import COMES
@@ -35,7 +43,7 @@ from btlang.frontends.mission.tokens.silent_words import (
 from btlang.frontends.mission.tokens.tries import Tries
 from btlang.frontends.mission.tokens.unknown_words import UnknownWords
 from btlang.frontends.mission.tokens.visitors import Visitors
-from btlang.text.words import END_OF_STATEMENT, Words
+from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.language_tables import CONNECTIVES, NOT_ALONE, ORDER, QUESTIONS
 from btlang.vocabulary.lexicon import NODE_ROLES
@@ -151,6 +159,8 @@ class WordReader:
         ):
             match = None  # `next to the table`
         role = match.meaning.role if match is not None else ""
+        if match is not None and role == "then" and self._is_end_condition(match, at):
+            match, role = Match(Meaning("if"), at + 1), "if"
         if match is not None and role in ("politeness", "never") and self._unknown.is_doubtful(match, role, at):
             match, role = None, ""
         end = self._sentence(match, role, at)
@@ -163,6 +173,17 @@ class WordReader:
         if not end and match is not None and role not in _NOT_READ:
             return self._known(match, at)
         return end or self._other(match, role, at, last)
+
+    def _is_end_condition(self, match: Match, at: int) -> bool:
+        """Whether words that go on with what was done stand at the end: `say hi to Bob when you see him`."""
+        text = self._text
+        if text.words[at] not in self._vocabulary.asked_once or text.words[match.last] not in (
+            END_OF_STATEMENT,
+            END_OF_TEXT,
+        ):
+            return False
+        asked = longest(self._vocabulary.trie, text, at + 1, self._context)
+        return asked is not None and asked.meaning.role in _CONDITIONS
 
     def _match(self, at: int) -> Match | None:
         """The phrase at a word, which was looked for before unless values or commands that share a thing may end it."""
@@ -343,6 +364,14 @@ class WordReader:
             self._origin = (token, *shared[1:]) if shared is not None else (token, at, match, self._root)
         return self._outcomes.settle(match.last) if len(tokens) > 2 else match.last
 
+    def _is_said_twice(self, said: Token) -> bool:
+        """Whether a command is that before `and` in other words: `take it to the lab and leave it there`."""
+        if len(self._tokens) < 2 or self._tokens[-1].kind != "and" or not isinstance(said.value, Called):
+            return False
+        before, source = self._tokens[-2], self._text.source.text
+        is_same = before.kind == "command" and before.value == said.value and not said.value.entry.accompaniment
+        return is_same and source[before.start : before.end].lower() != source[said.start : said.end].lower()
+
     def _operand(self, match: Match, role: str, at: int) -> int:
         """The token of a command or connective; where a value in it is asked for, the commands that say it."""
         tokens, word = self._tokens, self._text.words[at]
@@ -354,6 +383,10 @@ class WordReader:
             return end
         if (word in self._unknown.before_doing or word in self._verb_forms) and constraint_of(said) is not None:
             said.role = "fronted"
+        if self._is_said_twice(said):
+            tokens.pop()
+            tokens[-1].end = said.end
+            return match.last
         tokens.append(said)
         self._requests.note_question(said)
         self._outcomes.give_up(match.last)
