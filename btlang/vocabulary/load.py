@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.diagnostics.files import read_source
+from btlang.support.gc_pause import gc_paused
 from btlang.text.source import Source, Span
 from btlang.vocabulary.cache import cached, recent, stamp
 from btlang.vocabulary.entry import Entry
@@ -50,10 +51,9 @@ def vocabulary_with(
     """The same with a further keyword file, its text or what it declares. Raises MissionError (BT001, BT002, BT060 to
     BT065).
     """
-    folder, english = _folder(language), shipped("keywords", ENGLISH)
+    folder = _folder(language)
     paths, entries = _items(keywords)
-    known = None if folder == english else _words(english, (), ())
-    return _made([*keyword_files(folder), *paths], entries, folder, known, [file])
+    return _made(paths, entries, folder, [file])
 
 
 def _folder(language: str) -> str:
@@ -80,7 +80,7 @@ def _words(folder: str, paths: Sequence[str], entries: Sequence[Entry]) -> Lexic
     known = [] if folder == english else keyword_files(english)  # another language is made of these, too
 
     def make() -> Lexicon:
-        return _made(files, entries, folder, _words(english, (), ()) if known else None)
+        return _made(paths, entries, folder)
 
     if not entries:
         return cached("words", [*known, *files], make)
@@ -92,14 +92,40 @@ def _words(folder: str, paths: Sequence[str], entries: Sequence[Entry]) -> Lexic
 
 
 def _made(
-    paths: Sequence[str],
-    entries: Iterable[Entry],
-    folder: str,
-    english: Lexicon | None,
-    further: Sequence[Source | KeywordFile] = (),
+    paths: Sequence[str], entries: Sequence[Entry], folder: str, further: Sequence[Source | KeywordFile] = ()
 ) -> Lexicon:
-    """The vocabulary of keyword files, those of a language among them, of further ones, and of entries."""
+    """The vocabulary of a language, of keyword files, those at paths and further ones, and of entries."""
     from btlang.vocabulary.keyword_file import read_keyword_file  # not where the cache has it
+
+    try:
+        own = _read_all(paths)
+    except MissionError:
+        _read_all([*keyword_files(folder), *paths])  # what is wrong with any of them, all at once
+        raise
+    own += (read_keyword_file(file) if isinstance(file, Source) else file for file in further)
+    with gc_paused:  # a vocabulary is a hundred thousand objects, none of them garbage
+        if own or entries:
+            plain = all(file.shipped and not (file.types or file.names or file.language or file.nouns) for file in own)
+            added = [*(entry for file in _after_yielding(own, entries) for entry in file.entries), *entries]
+            made = _words(folder, (), ()).extended(added) if plain else None
+            if made is not None:
+                return made
+        files = _read_all(keyword_files(folder))
+        if not all(file.shipped for file in (*files, *own)):  # what no phrase says is a part of the language
+            files = [
+                file.replace(
+                    entries=tuple(e for e in file.entries if not (e.phrases or e.quantity or e.verbs)), nouns=()
+                )
+                for file in files
+            ]
+        english = shipped("keywords", ENGLISH)
+        known = None if folder == english else _words(english, (), ())
+        return Lexicon(_after_yielding([*files, *own], entries), entries, known, folder)
+
+
+def _read_all(paths: Iterable[str]) -> list[KeywordFile]:
+    """The keyword files at paths. Raises MissionError with what is wrong with all of them."""
+    from btlang.vocabulary.keyword_file import read_keyword_file
 
     files: list[KeywordFile] = []
     problems = []
@@ -110,19 +136,7 @@ def _made(
             problems += error.diagnostics
     if problems:
         raise MissionError(problems)
-    files += (read_keyword_file(file) if isinstance(file, Source) else file for file in further)
-    if not all(file.shipped for file in files):  # what no phrase says is a part of the language
-        own = {shown_name(path) for path in keyword_files(folder)}
-        files = [
-            file.replace(
-                entries=tuple(entry for entry in file.entries if not (entry.phrases or entry.quantity or entry.verbs)),
-                nouns=(),
-            )
-            if file.source.name in own
-            else file
-            for file in files
-        ]
-    return Lexicon(_after_yielding(files, entries := list(entries)), entries, english, folder)
+    return files
 
 
 def _after_yielding(files: Sequence[KeywordFile], entries: Iterable[Entry]) -> list[KeywordFile]:
