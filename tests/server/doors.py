@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import http.client
+import io
 import json
 import os
 import re
@@ -13,13 +14,15 @@ import sys
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import closing, contextmanager, suppress
+from contextlib import closing, contextmanager, redirect_stderr, redirect_stdout, suppress
 from pathlib import Path
 from typing import Any
 
+import pytest
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
+from btlang.cli import main
 from btlang.task.layer import TaskLayer
 from tests.task.layers import LONG, robot_up
 
@@ -90,12 +93,7 @@ class Door(Program):
 
     def user(self, *words: str, password: str = PASSWORD) -> str:
         """What `btc user` prints."""
-        done = subprocess.run(
-            [sys.executable, "-m", "btlang", "user", *words], env=self.environment, input=f"{password}\n",
-            capture_output=True, text=True, timeout=LONG,
-        )  # fmt: skip
-        assert done.returncode == 0, done.stderr
-        return done.stdout.strip()
+        return btc(self.environment, "user", *words, typed=f"{password}\n").strip()
 
     def connection(self) -> http.client.HTTPConnection:
         if self.tls is None:
@@ -155,6 +153,18 @@ class Reply:
     @property
     def data(self) -> Any:
         return json.loads(self.body)
+
+
+def btc(environment: dict[str, str], *words: str, typed: str = "") -> str:
+    """What a command prints that ends well. It runs in this process: to start one takes longer than the command."""
+    printed, errors = io.StringIO(), io.StringIO()
+    with pytest.MonkeyPatch.context() as patch, redirect_stdout(printed), redirect_stderr(errors):
+        for name in ("XDG_DATA_HOME", "XDG_RUNTIME_DIR"):
+            patch.setenv(name, environment[name])
+        patch.setattr(sys, "stdin", io.StringIO(typed))
+        code = main(words)
+    assert code == 0, errors.getvalue()
+    return printed.getvalue()
 
 
 @contextmanager

@@ -14,6 +14,7 @@ from typing import Any
 
 from websockets.sync.client import ClientConnection
 
+from tests.server import doors
 from tests.server.doors import Door, Reply, child_of
 from tests.task.layers import LONG, wait_until
 
@@ -56,11 +57,7 @@ class Elsewhere:
 
 
 def btc(door: Door, *words: str) -> str:
-    done = subprocess.run(
-        [sys.executable, "-m", "btlang", *words], env=door.environment, capture_output=True, text=True, timeout=LONG
-    )
-    assert done.returncode == 0, done.stderr
-    return done.stdout
+    return doors.btc(door.environment, *words)
 
 
 def invited(door: Door, name: str) -> str:
