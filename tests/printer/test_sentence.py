@@ -125,9 +125,10 @@ def _subclasses(kind: type[ast.Ast]) -> Iterator[type[ast.Ast]]:
 
 def test_no_connective_stands_in_the_code() -> None:
     """The words come from the vocabulary: with other words other sentences."""
-    loud = load_vocabulary([Entry("action", "U", ("u",)), Entry("condition", "P", ("p",))])
-    mission = read_mission(Source("if p, (u then u) 3 times otherwise u"), loud).mission
-    loud.roles.update({"if": ["falls"], "then": ["danach"], "otherwise": ["sonst"], "count": ["{count} mal"]})
+    words = load_vocabulary([Entry("action", "U", ("u",)), Entry("condition", "P", ("p",))])
+    mission = read_mission(Source("if p, (u then u) 3 times otherwise u"), words).mission
+    said = {"if": ["falls"], "then": ["danach"], "otherwise": ["sonst"], "count": ["{count} mal"]}
+    loud = words.replaced(roles={**words.roles, **said})
     assert english(mission, loud) == "falls p, (u danach u) 3 mal sonst u"
 
 
