@@ -24,23 +24,16 @@ from websockets.sync.client import ClientConnection, connect
 
 from btlang.cli import main
 from btlang.task.layer import TaskLayer
+from tests.forked import ROOT, Process, popen
 from tests.task.layers import LONG, robot_up
 
-_WITH_PAGE = """
-import sys
-from pathlib import Path
-from btlang.server.page import local_page
-local_page.PAGE = Path(__import__("btlang").__file__)
-from btlang.cli import main
-sys.exit(main(sys.argv[1:]))
-"""  # whether the page is built or not
 PASSWORD = "correct horse battery"
 
 
 class Program:
     """A command of btlang in a process of its own. Each line that is printed is kept once it has ended."""
 
-    process: subprocess.Popen[str]
+    process: Process
     lines: list[str]
 
     def __init__(self, environment: dict[str, str], *words: str) -> None:
@@ -48,7 +41,7 @@ class Program:
 
     def start(self, beginning: str) -> None:
         """Until its first line, which has to begin so. Also again, after its end."""
-        self.process = subprocess.Popen(
+        self.process = popen(
             self._command, env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
         )
         assert self.process.stdout is not None
@@ -130,8 +123,9 @@ class LocalDoor(Door):
 
     def __init__(self, folder: Path, *words: str, **environment: str) -> None:
         self.folder, self.tls = folder, None
-        self.environment = {**os.environ, "XDG_RUNTIME_DIR": str(folder), "TMPDIR": str(folder), **environment}
-        self._command = [sys.executable, "-c", _WITH_PAGE, *words]
+        folders = {"XDG_RUNTIME_DIR": str(folder), "TMPDIR": str(folder), "PYTHONPATH": str(ROOT)}
+        self.environment = {**os.environ, **folders, **environment}
+        self._command = [sys.executable, "-m", "tests.server.with_page", *words]
         self.start("")
         address = re.search(r"http://127\.0\.0\.1:(\d+)(?:/login#token=(\S+))?", self.lines[0])
         assert address is not None, self.lines

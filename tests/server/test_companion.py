@@ -14,6 +14,7 @@ from contextlib import suppress
 
 import pytest
 
+from tests.forked import popen
 from tests.server.doors import child_of, free_port
 from tests.task.layers import LONG, wait_until
 
@@ -25,7 +26,7 @@ def environment() -> Iterator[dict[str, str]]:
 
 
 def up(environment: dict[str, str], *words: str) -> subprocess.Popen[str]:
-    return subprocess.Popen(
+    return popen(
         [sys.executable, "-m", "btlang", "robot", "up", *words], env=environment, text=True, stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE, stderr=subprocess.PIPE,
     )  # fmt: skip
