@@ -15,6 +15,7 @@ import time
 from collections.abc import Generator, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from functools import cache
+from itertools import groupby
 from pathlib import Path
 from types import ModuleType
 from typing import IO
@@ -23,6 +24,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from btlang.text.source import Source
+from tests import forked
 from tests.profiles import LONG
 
 settings.register_profile(
@@ -49,7 +51,7 @@ _FOLDERS = ("components", "devices", "lies", "monitor", "server", "speech", "tas
 IN_REAL_TIME = (*OVER_DDS, *(f"tests/{folder}/" for folder in _FOLDERS))
 """Tests whose processes wait for one another, and for the clock: what only computes gives way to them."""
 _AT_ONCE = 2
-"""The tests of OVER_DDS that run at a time. With two on two cores some come too late."""
+"""The tests of OVER_DDS that run at a time: they wait most of the time. Of three on two cores some come too late."""
 _WORKER = int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw"))
 _GIVING_WAY, _FIRST = 15, -10
 """How nice a test that only computes is, and one over DDS."""
@@ -117,18 +119,27 @@ def _locked(file: IO[str]) -> bool:
 
 
 def pytest_xdist_auto_num_workers() -> int | None:
-    """Two more than there are cores: tests with ROS 2 wait more than they compute. With three DDS came too late."""
-    return None if "PYTEST_XDIST_AUTO_NUM_WORKERS" in os.environ else (os.cpu_count() or 1) + 2
+    """Two more than there are cores: so many tests over DDS wait at a time, and others compute beside them."""
+    return None if "PYTEST_XDIST_AUTO_NUM_WORKERS" in os.environ else (os.cpu_count() or 1) + _AT_ONCE
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Each worker first gets as many tests of the list as the others, in a row: some begin with those over DDS."""
+    """Each worker first gets as many tests of the list as the others, in a row: some begin with what takes longest."""
     workers = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
-    over_dds = [item for item in items if item.nodeid.startswith(OVER_DDS)]
-    others = [item for item in items if not item.nodeid.startswith(OVER_DDS)]
-    share, half = len(items) // workers, len(over_dds) // min(_AT_ONCE, workers)
-    between = max(0, share - half)
-    items[:] = [*over_dds[:half], *others[:between], *over_dds[half:], *others[between:]]
+    chains: list[list[pytest.Item]] = [[] for _ in range(min(_AT_ONCE, workers))]
+    over_dds = (item for item in items if item.nodeid.startswith(OVER_DDS))
+    for number, (_, module) in enumerate(groupby(over_dds, key=lambda item: item.path)):
+        chains[number % len(chains)] += module
+    if workers > len(chains):
+        chains.append([item for item in items if item.nodeid.startswith("tests/web/")])
+    first = {item for chain in chains for item in chain}
+    others = [item for item in items if item not in first]
+    share, ordered = len(items) // workers, list[pytest.Item]()
+    for chain in chains:
+        beside = max(0, share - len(chain))
+        ordered += [*chain, *others[:beside]]
+        others = others[beside:]
+    items[:] = [*ordered, *others]
 
 
 def pytest_collection_finish() -> None:
@@ -137,6 +148,11 @@ def pytest_collection_finish() -> None:
     gc.unfreeze()  # they are old ones now, and `gc_paused` can do the same for what is made later
     gc.set_threshold(20_000, 20, 20)
     gc.enable()
+
+
+def pytest_sessionfinish() -> None:
+    """Nothing that tests have started goes on."""
+    forked.end()
 
 
 @pytest.fixture(scope="session", autouse=True)
