@@ -100,8 +100,8 @@ def popen(
 ) -> Process:
     """A `subprocess.Popen`, or a ForkedProcess for a command of btlang that any folder has the modules of."""
     words, environment = [*map(str, command)], dict(os.environ if env is None else env)
-    path = environment.get("PYTHONPATH", "")
-    if not _can_be_forked(words) or path not in ("", str(ROOT)):
+    paths = "", str(ROOT), os.environ.get("PYTHONPATH", "")
+    if not _can_be_forked(words) or environment.get("PYTHONPATH", "") not in paths:
         options = {"stdin": stdin, "stdout": stdout, "stderr": stderr, "text": text, "cwd": cwd, "env": env}
         return subprocess.Popen(words, start_new_session=start_new_session, **options)
     mode = ("w", "r") if text else ("wb", "rb")
@@ -216,7 +216,7 @@ def _become(request: dict[str, Any], streams: list[int]) -> list[str]:
     os.environ.clear()
     os.environ.update(request["environment"])
     os.chdir(request["folder"])
-    sys.path[:1] = [request["folder"], *filter(None, [os.environ.get("PYTHONPATH")])]
+    sys.path[:1] = [request["folder"], *filter(None, os.environ.get("PYTHONPATH", "").split(os.pathsep))]
     unbuffered = bool(os.environ.get("PYTHONUNBUFFERED"))
     sys.stdin = open(0, closefd=False)  # noqa: SIM115
     setattr(sys, "__stdin__", sys.stdin)  # noqa: B010
