@@ -119,8 +119,8 @@ def _locked(file: IO[str]) -> bool:
 
 
 def pytest_xdist_auto_num_workers() -> int | None:
-    """Two more than there are cores: so many tests over DDS wait at a time, and others compute beside them."""
-    return None if "PYTEST_XDIST_AUTO_NUM_WORKERS" in os.environ else (os.cpu_count() or 1) + _AT_ONCE
+    """Three more than there are cores: two wait for tests over DDS, one for others in real time, and two compute."""
+    return None if "PYTEST_XDIST_AUTO_NUM_WORKERS" in os.environ else (os.cpu_count() or 1) + _AT_ONCE + 1
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -101,7 +101,7 @@ def popen(
     """A `subprocess.Popen`, or a ForkedProcess for a command of btlang that any folder has the modules of."""
     words, environment = [*map(str, command)], dict(os.environ if env is None else env)
     paths = "", str(ROOT), os.environ.get("PYTHONPATH", "")
-    if not _can_be_forked(words) or environment.get("PYTHONPATH", "") not in paths:
+    if stderr == subprocess.PIPE or not _can_be_forked(words) or environment.get("PYTHONPATH", "") not in paths:
         options = {"stdin": stdin, "stdout": stdout, "stderr": stderr, "text": text, "cwd": cwd, "env": env}
         return subprocess.Popen(words, start_new_session=start_new_session, **options)
     mode = ("w", "r") if text else ("wb", "rb")

@@ -14,7 +14,6 @@ from contextlib import suppress
 
 import pytest
 
-from tests.forked import popen
 from tests.server.doors import child_of, free_port
 from tests.task.layers import LONG, wait_until
 
@@ -26,7 +25,7 @@ def environment() -> Iterator[dict[str, str]]:
 
 
 def up(environment: dict[str, str], *words: str) -> subprocess.Popen[str]:
-    return popen(
+    return subprocess.Popen(
         [sys.executable, "-m", "btlang", "robot", "up", *words], env=environment, text=True, stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE, stderr=subprocess.PIPE,
     )  # fmt: skip
