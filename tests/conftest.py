@@ -16,6 +16,7 @@ import time
 from collections.abc import Generator, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from functools import cache
+from itertools import groupby
 from pathlib import Path
 from types import ModuleType
 from typing import IO
@@ -24,6 +25,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from btlang.text.source import Source
+from tests import forked
 from tests.profiles import LONG
 
 settings.register_profile(
@@ -51,8 +53,8 @@ OVER_DDS = ("tests/ros/", "tests/diagnostics/test_pages.py::test_examples[BT107]
 _FOLDERS = ("components", "devices", "lies", "monitor", "server", "speech", "task", "terminal", "web")
 IN_REAL_TIME = (*OVER_DDS, *(f"tests/{folder}/" for folder in _FOLDERS))
 """Tests whose processes wait for one another, and for the clock: what only computes gives way to them."""
-_AT_ONCE = 1
-"""The tests of OVER_DDS that run at a time. With two on two cores some come too late."""
+_AT_ONCE = 2
+"""The tests of OVER_DDS that run at a time: they wait most of the time. Of three on two cores some come too late."""
 _WORKER = int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw"))
 _GIVING_WAY, _FIRST = 15, -10
 """How nice a test that only computes is, and one over DDS."""
@@ -79,13 +81,14 @@ def pytest_cmdline_main(config: pytest.Config) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """`-m long` is known before the tests are read. The profile "ci" of hypothesis draws the same examples each time;
-    `--hypothesis-profile=default` draws new ones.
+    """`-m long` is known before the tests are read, which leave no garbage. The profile "ci" of hypothesis draws the
+    same examples each time; `--hypothesis-profile=default` draws new ones.
     """
     if config.option.hypothesis_profile is None:
         settings.load_profile("ci")
     if config.option.markexpr == "long":
         os.environ[LONG] = "1"
+    gc.disable()
 
 
 @pytest.hookimpl(wrapper=True)
@@ -130,25 +133,40 @@ def _locked(file: IO[str]) -> bool:
 
 
 def pytest_xdist_auto_num_workers() -> int | None:
-    """Two more than there are cores: tests with ROS 2 wait more than they compute. With three DDS came too late."""
-    return None if "PYTEST_XDIST_AUTO_NUM_WORKERS" in os.environ else (os.cpu_count() or 1) + 2
+    """Three more than there are cores: two wait for tests over DDS, one for others in real time, and two compute."""
+    return None if "PYTEST_XDIST_AUTO_NUM_WORKERS" in os.environ else (os.cpu_count() or 1) + _AT_ONCE + 1
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Each worker first gets as many tests of the list as the others, in a row: some begin with those over DDS."""
+    """Each worker first gets as many tests of the list as the others, in a row: some begin with what takes longest."""
     workers = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
-    over_dds = [item for item in items if item.nodeid.startswith(OVER_DDS)]
-    others = [item for item in items if not item.nodeid.startswith(OVER_DDS)]
-    share, half = len(items) // workers, len(over_dds) // min(_AT_ONCE, workers)
-    between = max(0, share - half)
-    items[:] = [*over_dds[:half], *others[:between], *over_dds[half:], *others[between:]]
+    chains: list[list[pytest.Item]] = [[] for _ in range(min(_AT_ONCE, workers))]
+    over_dds = (item for item in items if item.nodeid.startswith(OVER_DDS))
+    for number, (_, module) in enumerate(groupby(over_dds, key=lambda item: item.path)):
+        chains[number % len(chains)] += module
+    if workers > len(chains):
+        chains.append([item for item in items if item.nodeid.startswith("tests/web/")])
+    first = {item for chain in chains for item in chain}
+    others = [item for item in items if item not in first]
+    share, ordered = len(items) // workers, list[pytest.Item]()
+    for chain in chains:
+        beside = max(0, share - len(chain))
+        ordered += [*chain, *others[:beside]]
+        others = others[beside:]
+    items[:] = [*ordered, *others]
 
 
 def pytest_collection_finish() -> None:
     """What was collected stays, and most tests leave few objects: looking for garbage takes an eighth of all time."""
-    gc.collect()
     gc.freeze()
+    gc.unfreeze()  # they are old ones now, and `gc_paused` can do the same for what is made later
     gc.set_threshold(20_000, 20, 20)
+    gc.enable()
+
+
+def pytest_sessionfinish() -> None:
+    """Nothing that tests have started goes on."""
+    forked.end()
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -108,14 +108,26 @@ def btc(line: str, folder: Path) -> subprocess.CompletedProcess[str]:
     if words[0] == "python3":
         return run(["-W", "error", *words[1:]], folder)
     assert words[0] == "btc", line
-    return run(["-m", "btlang", *words[1:]], folder)
+    if needs_own_process(line):
+        return run(["-m", "btlang", *words[1:]], folder)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        patch.setattr(sys, "stdin", io.StringIO())
+        code, printed = quick(line)
+    return subprocess.CompletedProcess(words, code, printed)
+
+
+def needs_own_process(line: str) -> bool:
+    """Whether a command imports modules of its folder, or runs in real time. Others start longer than they run."""
+    is_paced = line.startswith(("btc run", 'btc "')) and "--speed max" not in line
+    return is_paced or re.search(r"--(robot|keywords|groot|chaos)\b|^btc (test|robot|gesture|new)\b", line) is not None
 
 
 def quick(line: str) -> tuple[int, str]:
     """What a line `btc ...` returns and prints, in this process as it is quicker."""
     printed = io.StringIO()
     with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(printed):
-        code = main(shlex.split(line)[1:])
+        code = main(shlex.split(line, comments=True)[1:])
     return code, printed.getvalue()
 
 

@@ -11,6 +11,7 @@ import stat
 import sys
 import time
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from functools import cache
 from zlib import crc32
 
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
 _PROTOCOL = 5
 _MOST_IN_PROCESS = 16
 _in_process: dict[tuple[Any, ...], Any] = {}
-MOST_FILES = 20  # older ones are deleted
+MOST_FILES = 20  # those that were used longest ago are deleted
 _PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 _CODE = ("", "diagnostics", "robots", "text", "vocabulary")  # their modules make what is kept; "" holds the version
 _OTHERS_MAY_WRITE = stat.S_IWGRP | stat.S_IWOTH
@@ -119,9 +120,14 @@ def _loaded(path: str, key: bytes) -> Any:
                 return None
             data = file.read()
         head = _head(key, memoryview(data)[len(key) + 4 :])
-        return pickle.loads(memoryview(data)[len(head) :]) if data.startswith(head) else None
+        if not data.startswith(head):
+            return None
+        found = pickle.loads(memoryview(data)[len(head) :])
     except Exception:  # whatever a damaged pickle raises
         return None
+    with suppress(OSError):  # a folder that can only be read
+        os.utime(path)  # each command uses the words that ship: many files of users' own words must not displace them
+    return found
 
 
 def _head(key: bytes, body: bytes | memoryview) -> bytes:
@@ -141,12 +147,12 @@ def _write(path: str, key: bytes, made: object) -> None:
         except OSError:
             os.unlink(new)
             raise
-        _delete_oldest(os.path.dirname(path))
+        _delete_least_used(os.path.dirname(path))
     except (OSError, RecursionError):
         return
 
 
-def _delete_oldest(folder: str) -> None:
+def _delete_least_used(folder: str) -> None:
     with os.scandir(folder) as entries:
         files = sorted((entry for entry in entries if entry.is_file()), key=lambda entry: entry.stat().st_mtime_ns)
     for entry in files[:-MOST_FILES]:

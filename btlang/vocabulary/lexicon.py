@@ -27,11 +27,11 @@ from btlang.vocabulary.nouns import Features, with_plurals
 from btlang.vocabulary.pattern import Form, PatternError, Slot, forms, replaced, variants, ways
 from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.references import HOME
-from btlang.vocabulary.trie import TrieNode, add, collisions
+from btlang.vocabulary.trie import TrieNode, add, collisions, copied, unshare
 from btlang.vocabulary.value_type import PLACE, WORLD, ZONE, ValueType
 from btlang.vocabulary.values import Values
 from btlang.vocabulary.verbs import Frame, beginnings_of, parts_of, phrases_of
-from btlang.vocabulary.word_tree import NO_WORDS, SLOTS, VERBS, WordTree, tree_of
+from btlang.vocabulary.word_tree import VERBS, WordTree, tree_of, words_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -67,6 +67,9 @@ class Lexicon:
         folder: str = "",
     ) -> None:
         self._problems: list[Diagnostic] = []
+        self._added: TrieNode | None = None
+        """What `extended` adds."""
+        self._own_nodes: set[int] = set()
         self.trie: TrieNode = {}
         self.entries: dict[str, list[Entry]] = {}
         """By id. Entries of an id that has no words in this language have no phrases."""
@@ -188,6 +191,7 @@ class Lexicon:
         self._find_collisions()
         if self._problems:
             raise MissionError(self._problems)
+        self._before_accents = self.orthography
         self.orthography = self.orthography.with_words((*self.words(), *self.values.pronouns))
         self._is_made = True
 
@@ -205,6 +209,36 @@ class Lexicon:
         """The (first) entry of a node id."""
         found = self.entries.get(node_id)
         return found[0] if found else None
+
+    def extended(self, entries: Sequence[Entry]) -> Lexicon | None:
+        """These words and those of further entries, made in a tenth of the time, as both share what doesn't change.
+
+        None where these change what is known, or collide with it: then a lexicon must be made of all files.
+        """
+        trie, added = copied(self.trie), TrieNode()
+        made = self.replaced(
+            trie=trie, entries={**self.entries}, orthography=self._before_accents, _problems=[], _added=added,
+            _own_nodes={id(trie)},
+        )  # fmt: skip
+        own: list[Entry] = []
+        for entry in entries:
+            known = made.entries.get(entry.id, [])
+            changes = entry.replaces or entry.quantity or entry.denied or (known and known[0].measures)
+            if changes or not (known or entry.sort) or (entry.call and any(other.yields for other in known)):
+                return None
+            made.entries[entry.id] = [*known]
+            made._add_entry(entry)
+            if made._problems:
+                return None
+            own.append(made.entries[entry.id][-1])
+        for entry in own:
+            made._add_variants(entry)
+        made._find_collisions()
+        words = words_of(added)
+        accents = self.orthography.spellings.keys() - self._before_accents.spellings.keys()
+        if made._problems or not words.isdisjoint(accents) or not all(word.isascii() for word in words):
+            return None
+        return made.replaced(orthography=self.orthography, _added=None, _own_nodes=set())
 
     def with_names(self, names: Mapping[str, Sequence[str]], features: Features | None = None) -> Lexicon:
         """The same words, whose slots take further names by their types: the places, people and objects of a world.
@@ -277,17 +311,9 @@ class Lexicon:
 
     def words(self) -> frozenset[str]:
         """Every word that can be read, also those in names and values."""
-        words: set[str] = set(self.articles)
-        pending: list[TrieNode] = [self.trie, *self.measured, *self.values.word_trees()]
-        pending.append(self.values.phrases.tree)
-        pending += [self.values.names_tree(name) for name, kind in self.types.items() if kind.kind == "names"]
-        while pending:
-            for key, child in pending.pop().items():
-                if key == SLOTS:
-                    pending += [below for _, _, below in child]
-                elif key not in NO_WORDS:
-                    words.add(key)
-                    pending.append(child)
+        trees: list[TrieNode] = [self.trie, *self.measured, *self.values.word_trees(), self.values.phrases.tree]
+        trees += [self.values.names_tree(name) for name, kind in self.types.items() if kind.kind == "names"]
+        words = words_of(*trees) | self.articles
         said = self.values.role_words
         words.update(said.particles, said.fillers, said.speaker, *chain(*said.introducing.values()))
         words.update(self.values.modifiers.words())
@@ -408,6 +434,10 @@ class Lexicon:
             for verb in dict.fromkeys((*verbs, *chain(*(known.synonyms.get(verb, ()) for verb in verbs)))):
                 words, particle = parts_of(verb, known.particles)
                 node = self.trie
+                if self._added is not None:
+                    unshare(
+                        node, tuple(self.orthography.spellings.get(word, word) for word in words), {}, self._own_nodes
+                    )
                 for word in words:
                     node = node.setdefault(self.orthography.spellings.get(word, word), {})
                 frames = node.setdefault(VERBS, [])
@@ -505,6 +535,9 @@ class Lexicon:
 
     def _add_form(self, form: Form, meaning: Meaning, types: dict[str, str]) -> Meaning | None:
         own = {part.name: types.get(part.name, part.name) for part in form if isinstance(part, Slot)}
+        if self._added is not None:
+            unshare(self.trie, form, own, self._own_nodes)
+            add(self._added, form, own, meaning)
         return add(self.trie, form, own, meaning)
 
     def _add_variants(self, entry: Entry) -> None:
@@ -531,7 +564,7 @@ class Lexicon:
                 yield from (form for way in comparing_phrases(name, patterns) for form in self._forms(way))
 
     def _find_collisions(self) -> None:
-        for one, other in collisions(self.trie, self.values):
+        for one, other in collisions(self.trie, self.values, self._added):
             if one.role not in NOT_ALONE and other.role not in NOT_ALONE:
                 self._collide(one, other)
 

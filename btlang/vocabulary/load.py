@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.diagnostics.files import read_source
+from btlang.support.gc_pause import gc_paused
 from btlang.text.source import Source, Span
 from btlang.vocabulary.cache import cached, recent, stamp
 from btlang.vocabulary.entry import Entry
@@ -50,10 +51,9 @@ def vocabulary_with(
     """The same with a further keyword file, its text or what it declares. Raises MissionError (BT001, BT002, BT060 to
     BT065).
     """
-    folder, english = _folder(language), shipped("keywords", ENGLISH)
+    folder = _folder(language)
     paths, entries = _items(keywords)
-    known = None if folder == english else _words(english, (), ())
-    return _made([*keyword_files(folder), *paths], entries, folder, known, [file])
+    return _made(paths, entries, folder, [file])
 
 
 def _folder(language: str) -> str:
@@ -75,54 +75,84 @@ _own: dict[tuple[object, ...], tuple[Sequence[Entry], Lexicon]] = {}  # the entr
 
 def _words(folder: str, paths: Sequence[str], entries: Sequence[Entry]) -> Lexicon:
     """Made once in a process for the same files and entries."""
-    english = shipped("keywords", ENGLISH)
-    files = [*keyword_files(folder), *paths]
-    known = [] if folder == english else keyword_files(english)  # another language is made of these, too
-
-    def make() -> Lexicon:
-        return _made(files, entries, folder, _words(english, (), ()) if known else None)
-
-    if not entries:
-        return cached("words", [*known, *files], make)
+    if not paths and not entries:
+        return _kept(folder, ())
     try:
-        key = (*map(stamp, [*known, *files]), *map(id, entries))
+        key = (*map(stamp, [*_files(folder), *paths]), *map(id, entries))
     except OSError:
-        return make()
-    return recent(_own, key, lambda: (entries, make()))[1]
+        return _made(paths, entries, folder)
+    return recent(_own, key, lambda: (entries, _made(paths, entries, folder)))[1]
+
+
+def _files(folder: str) -> list[str]:
+    """The keyword files of a language; those of English are parts of another one."""
+    english = shipped("keywords", ENGLISH)
+    return [*(() if folder == english else keyword_files(english)), *keyword_files(folder)]
+
+
+def _kept(folder: str, paths: Sequence[str]) -> Lexicon:
+    """The vocabulary of files alone, from the cache if it has it."""
+    return cached("words", [*_files(folder), *paths], lambda: _made_of_all(folder, _read_all(paths, _kept_file), ()))
 
 
 def _made(
-    paths: Sequence[str],
-    entries: Iterable[Entry],
-    folder: str,
-    english: Lexicon | None,
-    further: Sequence[Source | KeywordFile] = (),
+    paths: Sequence[str], entries: Sequence[Entry], folder: str, further: Sequence[Source | KeywordFile] = ()
 ) -> Lexicon:
-    """The vocabulary of keyword files, those of a language among them, of further ones, and of entries."""
-    from btlang.vocabulary.keyword_file import read_keyword_file  # not where the cache has it
+    """The vocabulary of a language, of keyword files, those at paths and further ones, and of entries."""
+    try:
+        own = _read_all(paths, _kept_file)
+    except MissionError:
+        _read_all([*keyword_files(folder), *paths], _read_file)  # what is wrong with any of them, all at once
+        raise
+    own += (_read(file) if isinstance(file, Source) else file for file in further)
+    if all(file.shipped and not (file.types or file.names or file.language or file.nouns) for file in own):
+        added = [*(entry for file in _after_yielding(own, entries) for entry in file.entries), *entries]
+        made = _kept(folder, ()).extended(added)
+        if made is not None:
+            return made
+    return _made_of_all(folder, own, entries) if entries or further else _kept(folder, paths)
 
+
+def _made_of_all(folder: str, own: Sequence[KeywordFile], entries: Sequence[Entry]) -> Lexicon:
+    files = _read_all(keyword_files(folder), _read_file)
+    if not all(file.shipped for file in (*files, *own)):  # what no phrase says is a part of the language
+        files = [
+            file.replace(entries=tuple(e for e in file.entries if not (e.phrases or e.quantity or e.verbs)), nouns=())
+            for file in files
+        ]
+    english = shipped("keywords", ENGLISH)
+    known = None if folder == english else _kept(english, ())
+    with gc_paused:  # a vocabulary is a hundred thousand objects, none of them garbage
+        return Lexicon(_after_yielding([*files, *own], entries), entries, known, folder)
+
+
+def _read_all(paths: Iterable[str], read: Callable[[str], KeywordFile]) -> list[KeywordFile]:
+    """The keyword files at paths. Raises MissionError with what is wrong with all of them."""
     files: list[KeywordFile] = []
     problems = []
     for path in paths:
         try:
-            files.append(read_keyword_file(Source(read_source(path).text, shown_name(path))))
+            files.append(read(path))
         except MissionError as error:
             problems += error.diagnostics
     if problems:
         raise MissionError(problems)
-    files += (read_keyword_file(file) if isinstance(file, Source) else file for file in further)
-    if not all(file.shipped for file in files):  # what no phrase says is a part of the language
-        own = {shown_name(path) for path in keyword_files(folder)}
-        files = [
-            file.replace(
-                entries=tuple(entry for entry in file.entries if not (entry.phrases or entry.quantity or entry.verbs)),
-                nouns=(),
-            )
-            if file.source.name in own
-            else file
-            for file in files
-        ]
-    return Lexicon(_after_yielding(files, entries := list(entries)), entries, english, folder)
+    return files
+
+
+def _kept_file(path: str) -> KeywordFile:
+    """A file of users, from the cache if it has it; what ships is kept as one vocabulary."""
+    return cached("file", [path], lambda: _read_file(path))
+
+
+def _read_file(path: str) -> KeywordFile:
+    return _read(Source(read_source(path).text, shown_name(path)))
+
+
+def _read(source: Source) -> KeywordFile:
+    from btlang.vocabulary import keyword_file  # not where the cache has it
+
+    return keyword_file.read_keyword_file(source)
 
 
 def _after_yielding(files: Sequence[KeywordFile], entries: Iterable[Entry]) -> list[KeywordFile]:

@@ -51,6 +51,38 @@ def add(root: TrieNode, form: Form, types: Mapping[str, str], meaning: Meaning) 
     return before
 
 
+def unshare(root: TrieNode, form: Form, types: Mapping[str, str], own: set[int]) -> None:
+    """Copies the nodes below the root to which `add` would add a form, but those whose ids are the `own` ones."""
+    node = root
+    for part in form:
+        if isinstance(part, Slot):
+            edges = node.get(SLOTS, [])
+            at = next((at for at, edge in enumerate(edges) if edge[:2] == (part.name, types[part.name])), None)
+            if at is None:
+                return
+            name, kind, child = edges[at]
+            child = _own_copy(child, own)
+            edges[at] = name, kind, child
+        else:
+            if part not in node:
+                return
+            child = node[part] = _own_copy(node[part], own)
+        node = child
+
+
+def _own_copy(node: TrieNode, own: set[int]) -> TrieNode:
+    if id(node) in own:
+        return node
+    made = copied(node)
+    own.add(id(made))
+    return made
+
+
+def copied(node: TrieNode) -> TrieNode:
+    """A node with the same children, to which others can be added."""
+    return {key: [*below] if key in (SLOTS, VERBS) else below for key, below in node.items()}
+
+
 def resumed(root: TrieNode, text: Words, at: int, last: int, values: Iterable[SlotValue]) -> TrieNode | None:
     """Where the words `at` to `last` (exclusive) of a phrase lead that has these values."""
     taken = {value.first: value for value in values}
@@ -326,6 +358,10 @@ def collisions(root: TrieNode, values: Values, other: TrieNode | None = None) ->
     while pending:
         left, right = pending.pop()
         if (id(left), id(right)) in seen:
+            continue
+        if left is right and SLOTS not in left:  # most are: only words lead on
+            seen.add((id(left), id(left)))
+            pending += [(child, child) for word, child in left.items() if word not in NO_WORDS]
             continue
         seen |= {(id(left), id(right)), (id(right), id(left))}
         if left is not right and END in left and END in right:

@@ -44,3 +44,17 @@ def find(tree: WordTree, words: Sequence[str], at: int) -> tuple[Any, int] | Non
         at += 1
         if END in node:
             found = node[END], at
+
+
+def words_of(*trees: WordTree) -> set[str]:
+    """Every word of some trees, those behind slots among them."""
+    words: set[str] = set()
+    pending = [*trees]
+    while pending:
+        for key, child in pending.pop().items():
+            if key == SLOTS:
+                pending += [below for _, _, below in child]
+            elif key not in NO_WORDS:
+                words.add(key)
+                pending.append(child)
+    return words

@@ -187,7 +187,7 @@ def missions(draw: st.DrawFn) -> str:
     return "\n".join([*lines, _BEFORE, *rest])
 
 
-@searches(50, 4000, deadline=None)
+@searches(20, 4000, deadline=None)
 @given(missions())
 def test_random_missions_are_taken(text: str) -> None:
     try:

@@ -29,7 +29,7 @@ PARSERS = ("shunting-yard", "lark")
 CORPUS = sorted((Path(__file__).parents[1] / "corpus" / "good").glob("*.xml"))
 
 
-@searches(15, 3000)
+@searches(8, 3000)
 @given(trees())
 def test_any_tree_is_said_and_read_back(tree: Tree) -> None:
     vocabulary = world_vocabulary()

@@ -61,7 +61,7 @@ def test_missions_that_ship(path: Path, monkeypatch: pytest.MonkeyPatch) -> None
     assert (_BY_ID.search(said) is not None) == (path.stem in NOT_ALL_NATURAL), said
 
 
-@searches(20, 1500)
+@searches(8, 1500)
 @given(trees.missions())
 def test_missions_with_values(mission: ast.Program) -> None:
     text = said_and_read(lower_mission(mission, letters()), letters())

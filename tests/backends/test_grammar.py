@@ -81,10 +81,11 @@ def test_both_parsers_read_what_the_grammar_makes() -> None:
     count = amount(800, 10_000)
     sampler = Sampler(rules_of(), seed=20)
     found: Counter[str] = Counter()
-    for _ in range(count):
+    for number in range(count):
         text = sampler.sentence()
-        first, second = ([*dict.fromkeys(codes(text, parser))] for parser in PARSERS)
-        assert first == second, text
+        parsers = [*PARSERS][: 1 if number % amount(4, 1) else 2]
+        first, *others = ([*dict.fromkeys(codes(text, parser))] for parser in parsers)
+        assert all(other == first for other in others), text
         assert UNKNOWABLE.keys() >= set(first), text
         found.update(first)
     assert sum(found.values()) <= count / 20, found

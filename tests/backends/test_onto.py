@@ -100,7 +100,7 @@ def test_a_new_node_with_the_id_of_a_tree() -> None:
     assert _in_any_order(read_xml(Source(made))) == _in_any_order(after)
 
 
-@searches(10, 3000, deadline=None)
+@searches(5, 3000, deadline=None)
 @given(trees(), trees())
 def test_any_tree_onto_any_other(before: Tree, after: Tree) -> None:
     """Nothing that was written onto a file is lost, however much is edited at once."""
@@ -112,7 +112,7 @@ def test_any_tree_onto_any_other(before: Tree, after: Tree) -> None:
     assert write_onto(Source(made), after, WORDS) == made
 
 
-@searches(10, 1000, deadline=None)
+@searches(6, 1000, deadline=None)
 @given(trees(), st.data())
 def test_a_changed_value_changes_one_line(tree: Tree, data: st.DataObject) -> None:
     original = _written(tree)

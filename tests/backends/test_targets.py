@@ -77,7 +77,7 @@ def test_deep_trees_have_text(name: str) -> None:
     assert len(compile_to(deep().tree, deep().vocabulary, name)) > 40
 
 
-@cases("path", EXAMPLES, 14, ids=lambda path: path.stem)
+@cases("path", EXAMPLES, 7, ids=lambda path: path.stem)
 def test_examples_can_be_compiled_to_all(path: Path) -> None:
     tree = example(path)
     for name in ("json", "dot", "python", "keywords", "tree", "py_trees"):

@@ -40,7 +40,7 @@ def run(text: str | Path, robot: Any, world: str | None = None, **options: Any) 
     return outcome, events
 
 
-@cases("example", examples(), 11, ids=lambda example: example.name)
+@cases("example", examples(), 6, ids=lambda example: example.name)
 def test_examples_run_unchanged_over_devices(example: Any) -> None:
     world = str(SHIPPED / "worlds" / Path(example.world).name) if example.world else None
     path = SHIPPED / f"{example.name}.txt"

@@ -16,10 +16,11 @@ from btlang.frontends.btcpp.origin import XmlOrigin
 from btlang.frontends.btcpp.reader import read_xml
 from btlang.text.source import Source
 from tests.corpus.same import content, written
+from tests.profiles import amount
 
 Made = TypeVar("Made")
 GOOD = sorted((Path(__file__).parent / "good").glob("*.xml"))
-ROUNDS = 40
+ROUNDS = amount(15, 400)
 _PIECES = (
     "<",
     ">",
@@ -67,6 +68,7 @@ def made_or_told(make: Callable[[], Made]) -> tuple[Made | None, set[str]]:
         return None, {problem.code for problem in error.diagnostics}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("path", GOOD, ids=lambda path: path.stem)
 def test_mistakes(path: Path) -> None:
     draw = random.Random(path.stem)

@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from btlang.cli import main
@@ -15,6 +15,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic, fix_line, rend
 from btlang.text.output import has_colour
 from btlang.text.source import Source, Span
 from tests.diagnostics.samples import sample_diagnostics, told
+from tests.profiles import searches
 
 ROOT = Path(__file__).parent.parent.parent
 VARIABLES = ("NO_COLOR", "FORCE_COLOR", "CLICOLOR_FORCE", "CLICOLOR", "TERM")
@@ -160,7 +161,7 @@ LINES = sorted(
 )
 
 
-@settings(max_examples=200, deadline=None)
+@searches(60, 4000, deadline=None)
 @given(st.sampled_from(LINES), st.integers(0, 200), st.sampled_from(["", "x", ",", ")", '"', " "]))
 def test_a_fix_takes_its_message_away(line: str, at: int, put: str) -> None:
     """Of lines of the examples in which a character is replaced."""

@@ -224,13 +224,13 @@ def check(text: str, edit: Edit) -> bool:
     return True
 
 
-@searches(60, 3000)
+@searches(30, 3000)
 @given(data=st.data(), text=texts())
 def test_any_edit(data: st.DataObject, text: str) -> None:
     check(text, data.draw(edits(len(ways(tree_of(text))))))
 
 
-@searches(15, 800)
+@searches(8, 800)
 @given(data=st.data(), text=texts())
 def test_many_edits_one_after_the_other(data: st.DataObject, text: str) -> None:
     editor_text, done = text, 0

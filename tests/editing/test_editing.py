@@ -20,7 +20,7 @@ from btlang.text.source import Source
 from tests.language.letters import ENTRIES, letters
 from tests.language.sentences import broken_missions, english, missions
 from tests.printer import trees
-from tests.profiles import searches
+from tests.profiles import amount, searches
 
 LETTERS: Any = RobotWords(ENTRIES)  # type: ignore[arg-type]
 SHIPPED = RobotWords()
@@ -60,7 +60,7 @@ def places(data: object) -> list[tuple[int, int]]:
     return [place for part in data for place in places(part)] if isinstance(data, list | tuple) else []
 
 
-@searches(80, 800, deadline=None)
+@searches(40, 800, deadline=None)
 @given(_texts, st.data())
 def test_any_text_has_an_answer_within_it(text: str, data: st.DataObject) -> None:
     shown = document(Source(text, roots=()), LETTERS)
@@ -72,7 +72,7 @@ def test_any_text_has_an_answer_within_it(text: str, data: st.DataObject) -> Non
     palette(Source(text, roots=()), LETTERS)
 
 
-@searches(30, 400, deadline=None)
+@searches(15, 400, deadline=None)
 @given(trees.missions())
 def test_nodes_are_those_of_the_tree(mission: Any) -> None:
     source = Source(printed(mission, letters()))
@@ -88,6 +88,7 @@ def test_nodes_are_those_of_the_tree(mission: Any) -> None:
     assert children == [[child.id for child in node.children] for node in walked]
 
 
+@searches(20, 400)
 @given(st.data())
 def test_messages_before_a_document_change_nothing_but_its_time(data: st.DataObject) -> None:
     texts = ("wave\n", "wavee\n", "<a/>", TEA)
@@ -209,6 +210,7 @@ def test_completions_end_at_their_place() -> None:
     assert complete(Source(TREE), SHIPPED) == {"completions": []}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("world", [None, BARN])
 def test_all_of_the_palette_can_be_put_in(world: str | None) -> None:
     words = RobotWords(world_text=world or "")
@@ -219,7 +221,7 @@ def test_all_of_the_palette_can_be_put_in(world: str | None) -> None:
     assert own["items"][2]["insert"] == 'do "quick"'
     assert {"motion", "power", "repeating"} <= {each["topic"] for each in others}
     for topic in topics:
-        for item in topic["items"]:
+        for item in topic["items"][:: 1 if world is None else amount(5, 1)]:
             before = text + ("check " if item["sort"] == "condition" else "")
             words.mission(Source(before + item["insert"]))
     going = next(item for topic in others for item in topic["items"] if item["words"].startswith("go to {place}"))

@@ -35,7 +35,7 @@ say "patrol"
 """.replace("the person", "Alice")
 
 
-@searches(25, 400, deadline=None)
+@searches(8, 400, deadline=None)
 @given(trees.missions(), st.data())
 def test_a_name_and_back(mission: Any, data: st.DataObject) -> None:
     text = english(mission, letters())

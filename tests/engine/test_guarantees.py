@@ -77,7 +77,7 @@ def test_a_halt_stops_nothing_that_does_not_run() -> None:
 # On random trees, where leaves raise exceptions and interrupts wherever they are called
 
 
-@searches(200, 15000)
+@searches(100, 15000)
 @given(BUSY | TREES, letters("ttttthpe", 3, 10), letters("................xi", 1, 12))
 def test_leaves_are_used_as_they_must_be(shape: Node, orders: str, trouble: str) -> None:
     """Started before they are ticked, halted once and only while they run, none next to what excludes it.

@@ -122,7 +122,7 @@ class Twins:
 ORDERS = letters("ttttth", 3, 12)
 
 
-@searches(200, 5000)
+@searches(100, 5000)
 @given(trees(actions(0), "Sequence Fallback"), ORDERS)
 def test_trees_that_ask_once(shape: Node, orders: str) -> None:
     twins = Twins(shape)
@@ -131,7 +131,7 @@ def test_trees_that_ask_once(shape: Node, orders: str) -> None:
         assert ours == theirs
 
 
-@searches(300, 10000)
+@searches(100, 10000)
 @given(trees(actions(1), "Sequence Fallback ReactiveSequence ReactiveFallback"), ORDERS)
 def test_trees_with_reactive_nodes(shape: Node, orders: str) -> None:
     """Here the halts of a tick come before the starts, there after them; otherwise all is the same."""

@@ -30,7 +30,7 @@ LEFT_RUNNING = n("LoopString", n("RateController", Node("F:k"), hz=0.4), queue="
 
 
 @example(LEFT_RUNNING, "ttt", False, True)
-@searches(300, 20000)
+@searches(150, 20000)
 @given(TREES | BUSY, letters("ttttthperm", 3, 12), st.booleans(), st.booleans())
 def test_engine_equals_reference(shape: Node, orders: str, watched: bool, fused: bool) -> None:
     drawn, world = Drawn(shape), World()

@@ -291,7 +291,7 @@ WORDS = "1 0.5 0x1F 1e9 'a' '' x @y RED true ' . é \\"
 PIECES = (*SIGNS.split(), *WORDS.split(), " ", "\n")
 
 
-@searches(250, 15000)
+@searches(100, 15000)
 @given(st.one_of(st.text(max_size=30), st.lists(st.sampled_from(PIECES), max_size=25).map("".join)))
 @example("+6e66>6666.6+66\r6>6;6e62=6+6e66>66666'; en';o';o'; en'; \x7fn\x7fr;6.6+66.H>6+6\x80")
 def test_any_text_runs_or_tells_why_not(code: str) -> None:

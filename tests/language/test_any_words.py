@@ -27,7 +27,7 @@ _text = st.lists(
 ).map(" ".join)
 
 
-@searches(400, 100000)
+@searches(200, 100000)
 @given(_text)
 @example("u u \n repeat everything , forever otherwise v")
 @example("if p : \n  flarp \n v . Otherwise w")

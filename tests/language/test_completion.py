@@ -46,7 +46,7 @@ def places(text: str) -> list[int]:
     return [match.start() for match in re.finditer(r"[a-z]+", text)]
 
 
-@searches(60, 3000, deadline=None)
+@searches(30, 3000, deadline=None)
 @given(missions.map(english), st.data())
 def test_what_is_accepted_is_offered(text: str, data: st.DataObject) -> None:
     assume(is_sound(text))
@@ -57,7 +57,7 @@ def test_what_is_accepted_is_offered(text: str, data: st.DataObject) -> None:
     assert word in units_and_rounds or word in {option.split()[0] for option in found}
 
 
-@searches(4, 800, deadline=None)
+@searches(2, 800, deadline=None)
 @given(st.one_of(missions, broken_missions()).map(english), st.data())
 def test_what_is_offered_is_accepted(text: str, data: st.DataObject) -> None:
     at = data.draw(st.sampled_from([*places(text), len(text)]))

@@ -34,7 +34,7 @@ def reading(text: str, parser: str, is_mixed: bool = False) -> ast.Program | tup
         return tuple(problem.code for problem in error.diagnostics)
 
 
-@searches(150, 30000)
+@searches(80, 30000)
 @given(st.one_of(missions, broken_missions()), st.booleans())
 @example("a repeat until p NL", False)
 @example("not ( p ) NL", False)
@@ -47,7 +47,7 @@ def test_parsers_agree(words: str, is_mixed: bool) -> None:
         assert all(span[0] < span[1] for span in _spans(shunted))
 
 
-@searches(100, 5000)
+@searches(60, 5000)
 @given(missions, st.sampled_from([".", ";", "!", " ."]))
 @example("a NL otherwise b NL", ".")
 @example("if p : NL IN a NL DE NL otherwise : NL IN b NL DE NL", ".")
@@ -107,7 +107,7 @@ _command = st.recursive(
 )
 
 
-@searches(120, 10000)
+@searches(80, 10000)
 @given(_command)
 def test_each_parser_takes_all_that_the_matching_stage_may_write(kinds: str) -> None:
     """Also token streams that no sentence was drawn for."""
@@ -187,7 +187,7 @@ def ours(node: ast.Ast | None) -> object:
     return (kind, *map(ours, ast.parts(node)))
 
 
-@searches(150, 30000)
+@searches(80, 30000)
 @given(st.one_of(missions, broken_missions()), st.booleans())
 @example("a and ( c and e ) NL", True)
 @example("a then b and d , and e NL", True)

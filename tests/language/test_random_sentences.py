@@ -25,7 +25,7 @@ def _texts(draw: st.DrawFn) -> str:
     return " ".join([*first[:begin], *between, *second[draw(st.integers(0, len(second) - 1)) :]])
 
 
-@searches(150, 20_000)
+@searches(80, 20_000)
 @given(_texts())
 @example("robot, is the kitchen door open? then pick it up")
 @example("if the 3 attempts, otherwise wave")

@@ -84,13 +84,13 @@ def with_brackets(text: str) -> Iterator[str]:
         yield f"{text[:start]}({text[start:end]}){text[end:]}"
 
 
-@searches(50, 1500, deadline=None)
+@searches(25, 1500, deadline=None)
 @given(trees(), st.sampled_from(["clear", "all"]))
 def test_what_is_said_with_more_brackets_has_one_reading(mission: object, brackets: str) -> None:
     assert read(english(mission, letters(), brackets=brackets)).warnings == []  # type: ignore[arg-type]
 
 
-@searches(120, 4000, deadline=None)
+@searches(60, 4000, deadline=None)
 @given(missions.map(text_of))
 @example("u after v and w")
 @example("u and v after w")
@@ -106,7 +106,7 @@ def test_the_sentence_has_the_first_one(text: str) -> None:
             assert root(other) is not None
 
 
-@searches(120, 4000, deadline=None)
+@searches(60, 4000, deadline=None)
 @given(st.one_of(crowded, missions.map(text_of)))
 def test_the_fix_keeps_the_tree_and_ends_the_warning(text: str) -> None:
     found = found_in(text)
@@ -119,7 +119,7 @@ def test_the_fix_keeps_the_tree_and_ends_the_warning(text: str) -> None:
             assert shown(warning) not in [shown(other) for other in mended.warnings if other.span == warning.span]
 
 
-@searches(100, 3000, deadline=None)
+@searches(50, 3000, deadline=None)
 @given(st.one_of(crowded, commands.map(text_of)))
 @example("u then v and w")
 @example("u after v and w")

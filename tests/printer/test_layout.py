@@ -85,7 +85,7 @@ def check_layout(text: str, vocabulary: Lexicon) -> None:
     assert not done.endswith("\n\n")
 
 
-@searches(60, 3000)
+@searches(30, 3000)
 @given(mangled())
 @example('u then(say"a"then say"b" );v.w')
 @example("if p:\n        # deep\n    u\n  # between\n    v\n# out\nw")

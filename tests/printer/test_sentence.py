@@ -57,7 +57,7 @@ def _placed(fact: ast.Fact) -> tuple[object, ...]:
     return fact.name, fact.x, fact.y, fact.facing
 
 
-@searches(40, 3000)
+@searches(20, 3000)
 @given(st.one_of(sentences.missions, sentences.broken_missions()), st.booleans())
 @example("repeat a until p 3t NL", False)
 @example("try try a 3t otherwise b NL", True)
@@ -75,7 +75,7 @@ def test_sentences_keep_their_tree(words: str, is_mixed: bool) -> None:
     keeps_its_tree(mission, letters(is_mixed))
 
 
-@searches(20, 3000)
+@searches(8, 3000)
 @given(trees.missions(), st.booleans())
 @example(
     ast.Program(ast.Every("5", ast.Repeat("1", trees.phrase("u"), trees.SPAN), "", trees.SPAN), (), trees.SPAN), False
@@ -92,7 +92,7 @@ def test_syntax_trees_keep_their_tree(mission: ast.Program, is_mixed: bool) -> N
     keeps_its_tree(mission, vocabulary)
 
 
-@searches(20, 2000)
+@searches(10, 2000)
 @given(trees.missions(), st.sampled_from([1, 20, 50]), st.sampled_from(BRACKETS))
 def test_blocks_keep_the_tree(mission: ast.Program, width: int, brackets: str) -> None:
     tree = compile_mission(mission, letters())
@@ -125,9 +125,10 @@ def _subclasses(kind: type[ast.Ast]) -> Iterator[type[ast.Ast]]:
 
 def test_no_connective_stands_in_the_code() -> None:
     """The words come from the vocabulary: with other words other sentences."""
-    loud = load_vocabulary([Entry("action", "U", ("u",)), Entry("condition", "P", ("p",))])
-    mission = read_mission(Source("if p, (u then u) 3 times otherwise u"), loud).mission
-    loud.roles.update({"if": ["falls"], "then": ["danach"], "otherwise": ["sonst"], "count": ["{count} mal"]})
+    words = load_vocabulary([Entry("action", "U", ("u",)), Entry("condition", "P", ("p",))])
+    mission = read_mission(Source("if p, (u then u) 3 times otherwise u"), words).mission
+    said = {"if": ["falls"], "then": ["danach"], "otherwise": ["sonst"], "count": ["{count} mal"]}
+    loud = words.replaced(roles={**words.roles, **said})
     assert english(mission, loud) == "falls p, (u danach u) 3 mal sonst u"
 
 

@@ -53,7 +53,7 @@ def test_names_of_the_session_are_offered() -> None:
     assert (offer.text, offer.start) == ("bow", 10)
 
 
-@searches(15, 1000, deadline=None)
+@searches(6, 1000, deadline=None)
 @given(broken_missions().map(english))
 def test_any_text_has_a_preview(text: str) -> None:
     seen = preview(SESSION, text)

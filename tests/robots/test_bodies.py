@@ -19,6 +19,7 @@ from btlang.robots.simulation.robot import SimulatedRobot
 from btlang.robots.worlds.world import World
 from btlang.text.source import Source
 from btlang.vocabulary.shipped import BODIES, shipped
+from tests.profiles import cases
 
 EMPTY = World(start=Pose(0.0, 0.0))
 
@@ -122,7 +123,7 @@ ENDS = {"roaming": btlang.Status.IDLE, "waiting": btlang.Status.FAILURE}
 """What examples come to that do not succeed: one goes on for ever, one waits for somebody who does not come."""
 
 
-@pytest.mark.parametrize("example", examples(), ids=lambda example: example.name)
+@cases("example", examples(), 8, ids=lambda example: example.name)
 def test_examples_on_the_small_robot(example: Example) -> None:
     source = read_source(shipped("examples", f"{example.name}.txt"))
     mission = btlang.parse_tree(source, world=shipped("examples", example.world) if example.world else None)

@@ -13,6 +13,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from tests.forked import Process, popen
+
 REPOSITORY = Path(__file__).parents[2]
 ROOM = Path(__file__).parent / "room.toml"
 LONG = 20.0
@@ -27,12 +29,12 @@ def wait_until(condition: Callable[[], object], what: str, seconds: float = LONG
         time.sleep(0.005)
 
 
-STARTED: list[subprocess.Popen[Any]] = []
+STARTED: list[Process] = []
 
 
-def start(*command: str, **options: Any) -> subprocess.Popen[Any]:
+def start(*command: str, **options: Any) -> Process:
     """A process in a group of its own, which ends with the test, or with the module where that shares it."""
-    process: subprocess.Popen[Any] = subprocess.Popen(command, start_new_session=True, **options)
+    process = popen(command, start_new_session=True, **options)
     STARTED.append(process)
     return process
 
@@ -46,7 +48,7 @@ def end_all(first: int) -> None:
         process.wait()
 
 
-def group_is_alive(process: subprocess.Popen[Any]) -> bool:
+def group_is_alive(process: Process) -> bool:
     """Whether a process of its group is left, a zombie that nobody has waited for included."""
     process.poll()
     try:

@@ -32,6 +32,8 @@ class Lab:
     def misbehave(self, faults: str = "") -> None:
         self._faults.publish(String(data=faults))
         self.peer.expect(f"faults {faults}".rstrip())
+        for _ in range(15):  # what was sent before has arrived behind these, too
+            self.joints.next()
 
     def run(self, mission: str, keywords: str = "", limit: float = 20.0, stopped: str = "") -> str:
         """Why it failed, "" where it did not. It ended, with a zero, and the robot heard nothing but numbers."""
@@ -39,7 +41,7 @@ class Lab:
         self.peer.told.clear()
         file = self._folder / "words.toml"
         file.write_text(keywords, encoding="utf-8")
-        made = btlang.parse_tree(mission, keywords=[str(file)])
+        made = btlang.parse_tree(mission, keywords=[str(file)] if keywords else [])
         outcome = self._session.prepare(made, time_limit=limit, sinks=[self._hear]).execute()
         assert outcome.stopped == stopped
         assert outcome.failure is None or outcome.failure.exception is None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import http.client
+import io
 import json
 import os
 import re
@@ -13,31 +14,26 @@ import sys
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import closing, contextmanager, suppress
+from contextlib import closing, contextmanager, redirect_stderr, redirect_stdout, suppress
 from pathlib import Path
 from typing import Any
 
+import pytest
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
+from btlang.cli import main
 from btlang.task.layer import TaskLayer
+from tests.forked import ROOT, Process, popen
 from tests.task.layers import LONG, robot_up
 
-_WITH_PAGE = """
-import sys
-from pathlib import Path
-from btlang.server.page import local_page
-local_page.PAGE = Path(__import__("btlang").__file__)
-from btlang.cli import main
-sys.exit(main(sys.argv[1:]))
-"""  # whether the page is built or not
 PASSWORD = "correct horse battery"
 
 
 class Program:
     """A command of btlang in a process of its own. Each line that is printed is kept once it has ended."""
 
-    process: subprocess.Popen[str]
+    process: Process
     lines: list[str]
 
     def __init__(self, environment: dict[str, str], *words: str) -> None:
@@ -45,7 +41,7 @@ class Program:
 
     def start(self, beginning: str) -> None:
         """Until its first line, which has to begin so. Also again, after its end."""
-        self.process = subprocess.Popen(
+        self.process = popen(
             self._command, env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
         )
         assert self.process.stdout is not None
@@ -90,12 +86,7 @@ class Door(Program):
 
     def user(self, *words: str, password: str = PASSWORD) -> str:
         """What `btc user` prints."""
-        done = subprocess.run(
-            [sys.executable, "-m", "btlang", "user", *words], env=self.environment, input=f"{password}\n",
-            capture_output=True, text=True, timeout=LONG,
-        )  # fmt: skip
-        assert done.returncode == 0, done.stderr
-        return done.stdout.strip()
+        return btc(self.environment, "user", *words, typed=f"{password}\n").strip()
 
     def connection(self) -> http.client.HTTPConnection:
         if self.tls is None:
@@ -132,8 +123,9 @@ class LocalDoor(Door):
 
     def __init__(self, folder: Path, *words: str, **environment: str) -> None:
         self.folder, self.tls = folder, None
-        self.environment = {**os.environ, "XDG_RUNTIME_DIR": str(folder), "TMPDIR": str(folder), **environment}
-        self._command = [sys.executable, "-c", _WITH_PAGE, *words]
+        folders = {"XDG_RUNTIME_DIR": str(folder), "TMPDIR": str(folder), "PYTHONPATH": str(ROOT)}
+        self.environment = {**os.environ, **folders, **environment}
+        self._command = [sys.executable, "-m", "tests.server.with_page", *words]
         self.start("")
         address = re.search(r"http://127\.0\.0\.1:(\d+)(?:/login#token=(\S+))?", self.lines[0])
         assert address is not None, self.lines
@@ -155,6 +147,18 @@ class Reply:
     @property
     def data(self) -> Any:
         return json.loads(self.body)
+
+
+def btc(environment: dict[str, str], *words: str, typed: str = "") -> str:
+    """What a command prints that ends well. It runs in this process: to start one takes longer than the command."""
+    printed, errors = io.StringIO(), io.StringIO()
+    with pytest.MonkeyPatch.context() as patch, redirect_stdout(printed), redirect_stderr(errors):
+        for name in ("XDG_DATA_HOME", "XDG_RUNTIME_DIR"):
+            patch.setenv(name, environment[name])
+        patch.setattr(sys, "stdin", io.StringIO(typed))
+        code = main(words)
+    assert code == 0, errors.getvalue()
+    return printed.getvalue()
 
 
 @contextmanager

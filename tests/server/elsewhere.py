@@ -14,6 +14,8 @@ from typing import Any
 
 from websockets.sync.client import ClientConnection
 
+from tests.forked import popen
+from tests.server import doors
 from tests.server.doors import Door, Reply, child_of
 from tests.task.layers import LONG, wait_until
 
@@ -29,7 +31,7 @@ class Elsewhere:
             "XDG_RUNTIME_DIR": str(self.folder),
         }
         words = ["robot", "up", "--join", f"wss://127.0.0.1:{port}", *(["--code", code] if code else [])]
-        self.process = subprocess.Popen(
+        self.process = popen(
             [sys.executable, "-m", "btlang", *words], env=self.environment, text=True,
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
         )  # fmt: skip
@@ -56,11 +58,7 @@ class Elsewhere:
 
 
 def btc(door: Door, *words: str) -> str:
-    done = subprocess.run(
-        [sys.executable, "-m", "btlang", *words], env=door.environment, capture_output=True, text=True, timeout=LONG
-    )
-    assert done.returncode == 0, done.stderr
-    return done.stdout
+    return doors.btc(door.environment, *words)
 
 
 def invited(door: Door, name: str) -> str:

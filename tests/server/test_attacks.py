@@ -290,7 +290,7 @@ def test_requests_that_are_none(door: Door, request_: bytes) -> None:
     assert door.ask("GET", "/live").body == b"live"
 
 
-@searches(30, 1500, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@searches(15, 1500, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=commands())
 def test_no_command_is_too_much(door: Door, data: dict[str, Any]) -> None:
     """An administrator sends anything but what ends the robot's process."""

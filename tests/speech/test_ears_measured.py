@@ -111,7 +111,7 @@ def signs(said: Sequence[str], wanted: str, decibels: float, expected: Expected)
 @pytest.mark.parametrize("decibels", [30.0, 20.0, 10.0] if amount(0, 1) else [20.0])
 def test_no_answer_is_taken_for_the_contrary(decibels: float) -> None:
     """200 answers by five voices in a long run; also where a robot waits for a yes alone."""
-    count = amount(3, 20)
+    count = amount(2, 20)
     right, refused = signs(NO[:count], "no", decibels, yes_or_no())
     more, agreed = signs(YES[:count], "yes", decibels, yes_or_no())
     alone = answers(("yes",), Body("ears", 0.2, ears=EarsSpec(3.0)))

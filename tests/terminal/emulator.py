@@ -20,6 +20,8 @@ from typing import Any
 
 import pyte
 
+from btlang.support.user_dirs import user_dir
+
 REPOSITORY = Path(__file__).parent.parent.parent
 BTC = (sys.executable, "-m", "btlang")
 
@@ -54,6 +56,7 @@ class Terminal:
             "LANG": "C.UTF-8",
             "PS1": "$ ",
             "SHELL": "/bin/sh",
+            "XDG_CACHE_HOME": str(Path(user_dir("cache")).parent),  # words are read once, not in each home
         }
         clean |= {"PYTHONPATH": str(REPOSITORY), "TERM": "xterm-256color"} | dict(environment or {})
         self._screen = _Screen(width, height, self._answer)

@@ -156,14 +156,25 @@ def code_of(package: Path, monkeypatch: pytest.MonkeyPatch) -> str:
         lambda data: data[:2000] + b"\0" * len(data),
     ],
 )
-def test_a_damaged_file_is_written_anew(damage: Callable[[bytes], bytes], folder: Path) -> None:
-    load_vocabulary()
+def test_a_damaged_file_is_written_anew(damage: Callable[[bytes], bytes], folder: Path, pack: Path) -> None:
+    made: list[list[str]] = []
+
+    def make() -> list[str]:
+        made.append([str(number) for number in range(2_000)])
+        return made[-1]
+
+    def found() -> list[str]:
+        return cache.cached("numbers", [str(pack)], make)
+
+    found()
     [file] = folder.iterdir()
     whole = file.read_bytes()
     file.write_bytes(damage(whole))
-    assert is_read(load_vocabulary)
+    assert found() == made[0]
+    assert len(made) == 2
     assert file.read_bytes() == whole
-    assert not is_read(load_vocabulary)
+    assert found() == made[0]
+    assert len(made) == 2
 
 
 @pytest.mark.skipif(os.name == "nt", reason="permissions are another matter there")
@@ -207,15 +218,26 @@ def test_the_number_of_files_is_bounded(folder: Path, tmp_path: Path) -> None:
     assert len(list(folder.iterdir())) == cache.MOST_FILES
 
 
+def test_what_is_used_outlives_what_is_made_once(monkeypatch: pytest.MonkeyPatch, folder: Path, tmp_path: Path) -> None:
+    monkeypatch.setattr(cache, "MOST_FILES", 3)
+    packs = [tmp_path / f"{number}.toml" for number in range(8)]
+    for pack in packs:
+        pack.write_text("")
+        assert cache.cached("number", [str(pack)], lambda: True)
+        assert cache.cached("number", [str(packs[0])], lambda: not packs[1].exists())
+        for file in folder.iterdir():
+            os.utime(file, ns=(0, file.stat().st_mtime_ns - 1_000_000_000))
+
+
 def test_writers_at_the_same_time(folder: Path) -> None:
     code = (
-        "from btlang.vocabulary import cache, load\n"
+        "from btlang.vocabulary import cache\n"
         f"cache.user_dir = lambda kind: {str(folder)!r}\n"
-        "for _ in range(5):\n"
-        "    cache._write(cache.os.path.join(cache.own_folder(), 'words-x'), b'key', load.load_vocabulary())\n"
-        "    assert cache._loaded(cache.os.path.join(cache.own_folder(), 'words-x'), b'key') is not None\n"
+        "made = [str(number) for number in range(100_000)]\n"
+        "for _ in range(10):\n"
+        "    cache._write(cache.os.path.join(cache.own_folder(), 'words-x'), b'key', made)\n"
+        "    assert cache._loaded(cache.os.path.join(cache.own_folder(), 'words-x'), b'key') == made\n"
     )
     processes = [subprocess.Popen([sys.executable, "-c", code]) for _ in range(4)]
     assert [process.wait(60) for process in processes] == [0] * 4
-    assert len(list(folder.iterdir())) == 2
-    assert not is_read(load_vocabulary)
+    assert [file.name for file in folder.iterdir()] == ["words-x"]

@@ -60,7 +60,7 @@ def test_what_can_be_said_follows_words_that_are_said_too() -> None:
 _WORDS = st.lists(st.sampled_from(["every", "2", "rooms", "red", "#", "and", '"'])).map(" ".join)
 
 
-@searches(60, 5000)
+@searches(25, 5000)
 @given(st.text(max_size=20) | _WORDS)
 def test_any_search_gets_an_answer(search: str) -> None:
     assert list_words(HOUSE, search)

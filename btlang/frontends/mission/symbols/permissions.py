@@ -5,7 +5,7 @@ A robot need not do what it may do, so such a statement, or end of one, is left 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from functools import lru_cache
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.text.words import Words, statements
@@ -29,8 +29,8 @@ class Permissions:
         self._asking = frozenset(word for role in ("if", "once", "arrival_at") for word in _firsts(vocabulary, role))
         self._joining = {word for role in ("then", "and") for word in _firsts(vocabulary, role)}
         self._fronts = self._asking | self._joining
-        self._either = frozenset(_firsts(vocabulary, "or"))
-        self._polite = frozenset(_firsts(vocabulary, "politeness"))
+        self._either = _firsts(vocabulary, "or")
+        self._polite = _firsts(vocabulary, "politeness")
         self._at = frozenset(words[0] for words in vocabulary.values.role_words.introducing.get("location", ()))
         for _, first, last in statements(text, {*self._allowing, *self._staying}):
             self._look(text, first, last)
@@ -103,6 +103,12 @@ class Permissions:
         return not self._either.isdisjoint(text.words[first:last])
 
 
-def _firsts(vocabulary: Lexicon, role: str) -> Iterator[str]:
+def _firsts(vocabulary: Lexicon, role: str) -> frozenset[str]:
     """The first words of what says a role."""
-    return (words.split()[0] for words in ways(vocabulary.roles[role], vocabulary.articles))
+    return _first_words(tuple(vocabulary.roles[role]), vocabulary.articles)
+
+
+@lru_cache(64)
+def _first_words(patterns: tuple[str, ...], articles: frozenset[str]) -> frozenset[str]:
+    """The first words of patterns: to write out all their ways takes longer than to read a short mission."""
+    return frozenset(words.split()[0] for words in ways(patterns, articles))
