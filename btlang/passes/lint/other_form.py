@@ -64,8 +64,12 @@ def find_in_form(node: ast.If | ast.Try, vocabulary: Lexicon) -> Iterator[Attach
 
 
 def find_in_pace(node: ast.Every, vocabulary: Lexicon) -> Iterator[Attachment]:
-    """Find `A 3 times every 10 s`: the number could be that of each round."""
-    start, body = node.span.start, node.body.span
+    """Find `A 3 times every 10 s`: the number could be that of each round; and `every 10 s, A until C`."""
+    start, body, each = node.span.start, node.body.span, node.body
+    ends = isinstance(each, ast.While) and each.negated and each.body.span.start == body.start > start
+    if ends and not node.rounds and "\n" not in node.span.text and not is_in_brackets(body):
+        yield Attachment(PACED, start, partial(_until_outside, node))
+        return
     if not node.rounds or body.start != start:
         return  # as nearly always
     behind = node.span.source.text[body.end : node.span.end]
@@ -180,6 +184,14 @@ def _repeat_inside(node: ast.Every, behind: Span, at: int) -> Readings:
     rounds, pace = behind.text[:at].strip(), behind.text[at:]
     other = node.replace(body=ast.Repeat(node.rounds, node.body, node.span), rounds="")
     return Readings(node, other, node.span, (behind, f" {pace} {rounds}"))
+
+
+def _until_outside(node: ast.Every) -> Readings:
+    """Make the reading of `every 10 s, A until C` in which C ends all rounds."""
+    each = node.body
+    assert isinstance(each, ast.While)
+    other = each.replace(body=node.replace(body=each.body), span=node.span)
+    return Readings(node, other, node.span, add_brackets(each.span))
 
 
 def _once_at_most(node: ast.For, repeat: str) -> Readings:

@@ -7,7 +7,7 @@
 - `not` before one of two conditions: `not C or D`;
 - a list beside `and`: `go to the lobby and the lab and wave`;
 - `after` behind two commands: `A then B after C`;
-- a number before a pace: `A 3 times every 10 s`;
+- a number before a pace: `A 3 times every 10 s`; a condition behind one: `every 10 s, A until C`;
 - two sentences that could exclude one another: `if C, A. If D, B. Otherwise E`;
 - a search for a time: `look for Alice for 5 min`;
 - what follows a command that is tried: `try to A, then B`;

@@ -171,7 +171,8 @@ def _note_end(node: ast.Every | ast.Repeat, vocabulary: Lexicon) -> Diagnostic:
     inner, text = Span(node.span.source, first, body.span.end), node.span.source.text
     pace = text[node.span.start : inner.start] + text[inner.end : node.span.end]
     fixed = f"{pace.strip(' ,:')}, {word} {inner.text[:1].lower()}{inner.text[1:]}"
-    if "\n" in node.span.text:
+    paces = {words.split()[0] for role in ("every", "every_day") for words in vocabulary.roles[role]}
+    if "\n" in node.span.text or paces.isdisjoint(pace.lower().split()):  # `every 10 min, A until 6 pm`
         return diagnostic("BT175", node.span, word=word, fixed=f"{word} ...")
     note = diagnostic("BT175", node.span, word=word, fixed=fixed)
     return note.replace(readings=((node.span, fixed),))  # type: ignore[no-any-return]

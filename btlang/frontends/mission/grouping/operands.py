@@ -134,7 +134,7 @@ def loop(scan: Scan, token: Token) -> None:
 
 def front_amount(scan: Scan, token: Token) -> None:
     """`for 10 min, A`: as behind the command."""
-    (loop if scan.raw[scan.at + 1].kind == "comma" else no_operand)(scan, token)
+    (loop if scan.raw[scan.at + 1].kind in ("comma", "colon") else no_operand)(scan, token)
 
 
 def fronted(scan: Scan, token: Token) -> None:
