@@ -47,7 +47,7 @@ def test_politeness_changes_nothing(text: str) -> None:
         ("whree is the cup?", "where is the cup?"),
         ("wave at Allice", "wave at Alice"),
         ("pick up the bookk", "pick up the book"),
-        ("go home", None),
+        ("go upstairs", None),
         ("say 'hello world' at Bob", None),
     ],
 )

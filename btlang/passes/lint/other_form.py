@@ -32,9 +32,13 @@ _WORD = re.compile(r"\w+")
 
 def find_in_form(node: ast.If | ast.Try, vocabulary: Lexicon) -> Iterator[Attachment]:
     """Find an `otherwise` that both this form and one at the end of its body could have, and another `if` there."""
-    if node.otherwise is not None or node.body.span.start <= node.span.start:
-        return
     body = node.body
+    if node.otherwise is None and isinstance(body, ast.Every | ast.UntilTime) and body.span.start == node.span.start:
+        if isinstance(node, ast.If) and not is_in_brackets(body.span) and "\n" not in node.span.text:
+            yield Attachment(FORMS, node.span.start, partial(_in_each_round, node))
+        return
+    if node.otherwise is not None or body.span.start <= node.span.start:
+        return
     if isinstance(node, ast.Try) and _is_tried(node, vocabulary) and _is_joined_by_then(body, vocabulary):
         yield Attachment(TRIED, node.span.start, partial(_try_first, node))
     joins = isinstance(body, ast.Chain) and body.operator in ("sequence", "parallel") and not body.bracketed
@@ -102,13 +106,26 @@ def find_in_sentences(chain: ast.Chain, vocabulary: Lexicon) -> Iterator[Attachm
         if "\n" in _between(first, second) or _WORD.search(_between(first, second)):
             continue
         if second.otherwise is None:
-            if _brings_about(first.body, second.condition):
+            if _brings_about(first.body, second.condition) or _denies(first, second):
                 gap = Span(first.span.source, first.span.end, second.span.start)
                 yield Attachment(SENTENCES, first.span.start, partial(_as_otherwise, first, second, gap, f". {then} "))
         elif _SENTENCE_END.search(_between(second.body, second.otherwise)):
             gap = Span(first.span.source, second.body.span.end, second.otherwise.span.start)
             words = f", {_WORD.findall(gap.text)[0].lower()} " if _WORD.search(gap.text) else gap.text
             yield Attachment(SENTENCES, first.span.start, partial(_as_otherwise, first, second, gap, words))
+
+
+def _denies(first: ast.If, second: ast.If) -> bool:
+    """Whether the second sentence asks if what the first asks is not so: `if C, A. If not C, B`."""
+    asked = second.condition
+    return not first.negated and isinstance(asked, ast.Not) and _same(asked.condition, first.condition)
+
+
+def _same(one: ast.Ast, other: ast.Ast) -> bool:
+    """Whether two conditions ask the same."""
+    if not isinstance(one, ast.Phrase) or not isinstance(other, ast.Phrase):
+        return False
+    return (one.entry, one.arguments) == (other.entry, other.arguments)
 
 
 def _is_before(node: ast.If) -> bool:
@@ -184,6 +201,18 @@ def _repeat_inside(node: ast.Every, behind: Span, at: int) -> Readings:
     rounds, pace = behind.text[:at].strip(), behind.text[at:]
     other = node.replace(body=ast.Repeat(node.rounds, node.body, node.span), rounds="")
     return Readings(node, other, node.span, (behind, f" {pace} {rounds}"))
+
+
+def _in_each_round(node: ast.If) -> Readings:
+    """Make the reading of `A every 10 s unless C` in which C is asked in each round."""
+    loops, body = list[ast.Every | ast.UntilTime](), node.body
+    while isinstance(body, ast.Every | ast.UntilTime):
+        loops.append(body)
+        body = body.body
+    other: ast.Ast = node.replace(body=body)
+    for loop in reversed(loops):
+        other = loop.replace(body=other)
+    return Readings(node, other, node.span, add_brackets(node.body.span))
 
 
 def _until_outside(node: ast.Every) -> Readings:

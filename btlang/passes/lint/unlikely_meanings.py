@@ -155,12 +155,12 @@ def find_ended_rounds(compilation: Compilation) -> Iterator[Diagnostic]:
     """Report the first endless loop at a pace, or at times of day, that a failure of a round would end."""
     for body in ast.bodies(compilation.mission):
         for node in compilation.syntax(body):
-            if isinstance(node, ast.Every | ast.Repeat) and _goes_on(node) and _may_fail(node.body):
+            if isinstance(node, ast.Every | ast.Repeat | ast.UntilTime) and _goes_on(node) and _may_fail(node.body):
                 yield _note_end(node, compilation.vocabulary)
                 return
 
 
-def _note_end(node: ast.Every | ast.Repeat, vocabulary: Lexicon) -> Diagnostic:
+def _note_end(node: ast.Every | ast.Repeat | ast.UntilTime, vocabulary: Lexicon) -> Diagnostic:
     """Make BT175 with the same words, and those for a try before the commands of each round."""
     word = next((words for words in vocabulary.roles["try"] if " " in words), vocabulary.word("try"))
     body = node.body
@@ -171,15 +171,17 @@ def _note_end(node: ast.Every | ast.Repeat, vocabulary: Lexicon) -> Diagnostic:
     inner, text = Span(node.span.source, first, body.span.end), node.span.source.text
     pace = text[node.span.start : inner.start] + text[inner.end : node.span.end]
     fixed = f"{pace.strip(' ,:')}, {word} {inner.text[:1].lower()}{inner.text[1:]}"
-    paces = {words.split()[0] for role in ("every", "every_day") for words in vocabulary.roles[role]}
+    paces = {words.split()[0] for role in ("every", "every_day", "until_time") for words in vocabulary.roles[role]}
     if "\n" in node.span.text or paces.isdisjoint(pace.lower().split()):  # `every 10 min, A until 6 pm`
         return diagnostic("BT175", node.span, word=word, fixed=f"{word} ...")
     note = diagnostic("BT175", node.span, word=word, fixed=fixed)
     return note.replace(readings=((node.span, fixed),))  # type: ignore[no-any-return]
 
 
-def _goes_on(node: ast.Every | ast.Repeat) -> bool:
+def _goes_on(node: ast.Every | ast.Repeat | ast.UntilTime) -> bool:
     """Whether a loop is made for more rounds than anybody waits for: `every 10 min, A`, `every day at noon, A`."""
+    if isinstance(node, ast.UntilTime):
+        return isinstance(node.body, ast.Chain)
     if isinstance(node, ast.Every):
         return node.rounds in ("", _ENDLESS)
     inner = node.body.items[0] if isinstance(node.body, ast.Chain) else node.body

@@ -270,5 +270,8 @@ def _misplaced_condition(scan: Scan, token: Token) -> None:
         journey = f", or how to get to {place}" if place[0].isalnum() else ""
         scan.fail("BT028", scan.span(token), words=words, advice=f"Say what is done there{journey}.")
         return
+    if scan.at and scan.raw[scan.at - 1].kind in ("before", "after"):  # a check would be a step of its own
+        scan.fail("BT028", scan.span(token), words=words, advice="A command must stand there.")
+        return
     fix, advice = word_before(scan, token, "check"), check_advice(scan, words)
     scan.fail("BT028", scan.span(token), fix, words=words, advice=advice)

@@ -141,6 +141,10 @@ class Calls:
                 return False
             self._make_round(choice, token, slots[0])
             return True
+        return self.has_set(token, choice)
+
+    def has_set(self, token: Token, choice: Choice) -> bool:
+        """Whether a command is done with a set of the same things."""
         members = self._vocabulary.values.likenesses.members
         return any(of.text == choice.text or (members(of) or ()) == members(choice) for of in _sets_of(token))
 

@@ -117,6 +117,10 @@ class Outcomes(Limits):
         form = len(tokens) - (3 if denied else 2)
         if form < 1 or tokens[form].kind not in _ASKING:
             return end
+        if denied and tokens[form].kind == "if" and tokens[form - 1].kind == "comma":
+            at = asked_about(tokens, form, lambda token: self._is_settled(token, asked))
+            if at is not None and at + 1 < run_start(tokens, form, JOINTS):  # `when you find it, A, if you don't, B`
+                tokens[form - 1].kind = "semi"
         if denied and tokens[form].kind == "if" and tokens[form - 1].kind in ("semi", "newline"):
             at = asked_about(tokens, form, lambda token: self._is_settled(token, asked))
             is_free = BRANCHES.isdisjoint(self._statement(form - 1)[1])
@@ -159,7 +163,7 @@ class Outcomes(Limits):
     def _is_settled(self, token: Token, asked: Token) -> bool:
         """Whether a command, or what is waited for, is what a condition asks."""
         if token.kind == "command":
-            return _achieves(token, asked) or misses(token, asked)
+            return _achieves(token, asked) or (misses(token, asked) and not self._is_event(asked))
         somebody = self._vocabulary.negative_subjects
         return token.value == asked.value or all(_is_presence(each.value, somebody) for each in (token, asked))
 

@@ -154,6 +154,8 @@ class Places(SentenceReader):
             value = tokens[-1].value = placed
         if self._goes_there(journey, len(tokens) - 1):
             return journey.last
+        if self._goes_round(journey, len(tokens) - 1):
+            return journey.last
         if self._repeats(journey, len(tokens)):
             return 0
         said = tokens.pop()
@@ -252,6 +254,17 @@ class Places(SentenceReader):
             del tokens[last]
             here = tokens[first].start
             tokens[first:first] = [Token("repeat", here, here), pace, Token("colon", here, here)]
+        return True
+
+    def _goes_round(self, journey: Match, end: int) -> bool:
+        """Whether the journey before some token is to the same set some times, with BT151: done each time, or then."""
+        tokens, choice = self._tokens, choice_of(journey.values[0].group)
+        behind = run_start(tokens, end, JOINTS)
+        if choice is None or behind < 2 or tokens[behind - 1].kind != "count":
+            return False
+        if tokens[behind - 2].kind != "command" or not self._calls.has_set(tokens[behind - 2], choice):
+            return False
+        self._doubt_times(tokens[behind - 2], tokens[behind - 1], journey.last)
         return True
 
     @staticmethod

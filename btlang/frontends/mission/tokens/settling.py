@@ -145,7 +145,7 @@ def with_rounds(tokens: list[Token]) -> None:
 def with_either_end(tokens: list[Token]) -> None:
     """Make `A for 5 min or until C` the same as `for up to 5 min, A until C`, and `wait 5 min or until C` likewise."""
     at = 0
-    while at + 1 < len(tokens):
+    while at + 2 < len(tokens):
         at += 1
         if tokens[at].kind != "or" or tokens[at].value is not None or tokens[at + 1].kind != "until":
             continue
