@@ -97,9 +97,11 @@ def with_sightings(tokens: list[Token], vocabulary: Lexicon, source: Source) -> 
     """
     seen = vocabulary.entry(_SEEN)
     for at in reversed(range(len(tokens)) if seen is not None else ()):
+        if seen is None or not _is_whoever(tokens[at]):
+            continue  # as nearly always
         end = tokens[at + 1].start if at + 1 < len(tokens) else len(source.text)
         said = source.text[tokens[at].start : end].lower().replace(",", " ").replace(".", " ").split()
-        if seen is None or not _is_whoever(tokens[at]) or vocabulary.subjects.isdisjoint(said):
+        if vocabulary.subjects.isdisjoint(said):
             continue
         token, start = tokens[at], tokens[at].start
         condition, comma = Token("condition", start, start, Called(seen, ())), Token("comma", start, start)
@@ -138,7 +140,7 @@ def _is_behind_journey(tokens: Sequence[Token], joint: int, at: int, behind: int
 def _is_whoever(token: Token) -> bool:
     """Whether a command is about whoever the robot sees: anyone, or everyone."""
     value = token.value
-    if token.kind != "command" or not isinstance(value, Called):
+    if token.kind != "command" or not isinstance(value, Called) or not value.arguments:
         return False
     people = [text for name, text in value.arguments if value.entry.slot(name).type == PERSON]
     choice = choice_of(people[0]) if people else None
