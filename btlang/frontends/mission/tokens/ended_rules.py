@@ -13,6 +13,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.token import (
     JOINTS,
     LINES,
+    STATEMENT_ENDS,
     WAITING,
     Called,
     Listed,
@@ -29,7 +30,8 @@ from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.value_type import PLACE
 
 _EXAMPLE = "it is after 6 pm"
-_OPEN = "OpenZone"
+_HEADS = frozenset(("every", "every_day", "at", "delay"))
+_OPEN, _GO = "OpenZone", "GoTo"
 _NOT_DONE = "a definition is done once, and this holds all the time"
 _IN_THE_MISSION = "Write it as a sentence of the mission."
 _ENDS = frozenset(("newline", "semi", "stop", "dedent", "close"))
@@ -56,9 +58,10 @@ def with_ends(tokens: list[Token], vocabulary: Lexicon, span: Callable[[int, int
     while at + 1 < len(tokens):
         until = tokens[at + 1]
         begins = _begins(tokens, at)
-        constraint = constraint_of(tokens[at]) if begins and until.kind in _ENDING else None
+        is_next = until.kind in WAITING and _is_next(tokens, at)
+        constraint = constraint_of(tokens[at]) if (begins or is_next) and until.kind in _ENDING else None
         if constraint is not None and constraint.kind == "keep in" and until.kind in WAITING:
-            _wait(tokens, at)
+            _wait(tokens, at, vocabulary)
         elif constraint is not None and until.kind != "until":
             forbidden, whole = span(tokens[at].start, tokens[at].end).text, span(tokens[at].start, until.end)
             example = f"{forbidden} {vocabulary.word('until')} {_EXAMPLE}"
@@ -188,14 +191,49 @@ def _opened(closing: Token, opening: Entry) -> Called | Listed:
     return Called(opening, values[0]) if len(values) == 1 else Listed(opening, values, "and")
 
 
-def _wait(tokens: list[Token], at: int) -> None:
-    """Puts `stay in the hall until C` into brackets: what comes behind isn't confined."""
+def _is_next(tokens: list[Token], at: int) -> bool:
+    """Whether who stays somewhere does so after the command before: `go to the hall and stay in it for 5 min`.
+
+    Or behind the head of a form: `every hour, stay in the hall for 5 min`.
+    """
+    joint = run_start(tokens, at, JOINTS)
+    if 0 < joint < at and tokens[joint - 1].kind in _HEADS:
+        return True
+    before = tokens[joint - 1] if 0 < joint < at else None
+    if before is None or before.kind != "command" or constraint_of(tokens[at]) is None:
+        return False
+    return any(token.kind == "then" for token in tokens[joint:at]) or _leads_there(before, tokens[at])
+
+
+def _leads_there(journey: Token, stay: Token) -> bool:
+    """Whether a command drives to the zone in which the robot is to stay."""
+    value, zones = journey.value, stay.value
+    if not isinstance(value, Called | Listed) or value.entry.id != _GO or not isinstance(zones, Called | Listed):
+        return False
+    return set(texts_of(zones)) <= set(texts_of(value))
+
+
+def _wait(tokens: list[Token], at: int, vocabulary: Lexicon) -> None:
+    """Puts `stay in the hall until C` into brackets: what comes behind isn't confined. It goes there first."""
     until, start = tokens[at + 1], tokens[at].start
     last, _ = _condition_end(tokens, at + 2) if until.kind == "until" else (at + 2, at + 2)
     end = tokens[last - 1].end
     tokens[last:last] = [Token("close", end, end)]
     waiting = Token(WAITING[until.kind], until.start, until.end, until.value)
-    tokens[at : at + 2] = [Token("open", start, start), tokens[at], Token("and", until.start, until.start), waiting]
+    stay, goes = tokens[at], vocabulary.entry(_GO)
+    tokens[at : at + 2] = [Token("open", start, start), stay, Token("and", until.start, until.start), waiting]
+    before = run_start(tokens, at, JOINTS | STATEMENT_ENDS)
+    if before and _leads_there(tokens[before - 1], stay):
+        tokens[before:at] = (
+            [Token("then", start, start)] if before < at and tokens[at - 1].kind in JOINTS else tokens[before:at]
+        )
+    elif (
+        goes is not None
+        and isinstance(stay.value, Called)
+        and stay.value.arguments[0][1] in vocabulary.values.listed(PLACE)
+    ):
+        journey = Called(goes, ((_slot_of(goes), stay.value.arguments[0][1]),))
+        tokens[at:at] = [Token("command", start, start, journey), Token("then", start, start)]
 
 
 def _condition_end(tokens: list[Token], at: int) -> tuple[int, int]:
