@@ -16,7 +16,7 @@ from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import SlotValue
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.references import ALL
-from btlang.vocabulary.value_type import ValueType
+from btlang.vocabulary.value_type import PERSON, ValueType
 
 _MOST_NAMES = 12  # that a message lists
 KIND_NAMES = {"kinds": "kind"}
@@ -66,6 +66,10 @@ def unnamed(span: Span, kinds: Sequence[ValueType], understood: str, vocabulary:
     known = list(dict.fromkeys(name for kind in kinds for name in vocabulary.values.said_names(kind.name)))
     said = joined(list(dict.fromkeys(KIND_NAMES.get(kind.name, kind.name) for kind in kinds)), "or")
     words = span.text.lower()
+    people = vocabulary.values.said_names(PERSON)
+    if words in vocabulary.values.role_words.speaker and people and any(kind.name == PERSON for kind in kinds):
+        hint = f"I can't tell who you are. Write your name, for example: {people[0]}"
+        return diagnostic("BT013", span, type=PERSON, words=span.text, help=understood + hint)
     near = nearest(words, known)
     if correct_words(vocabulary.word_list).issuperset(words.split()):  # `bedroom` is no slip of `door`
         near = [name for name in near if is_respelling(words, name.lower(), vocabulary)]
