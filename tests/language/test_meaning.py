@@ -73,6 +73,7 @@ def test_numbers_that_are_said(sentence: str, tree: str) -> None:
         ("wait in the hall, then go to the lab", "BT012"),
         ("wait in the hall. If nobody comes, go to the lab", "BT012"),
         ("wait. Then wave", "BT012"),
+        ("wait 5 s). If nobody comes, wave", "BT024"),
         ("go to the lab, charge first", "BT151"),
         ("careful is avoid the kitchen while Bob is there\ncareful", "BT152"),
         ("go to the lab, but stay out of the kitchen if Bob is in the kitchen", "BT151"),

@@ -51,7 +51,9 @@ class Limits(GoingOn):
         tokens = self._tokens
         last = run_start(tokens, form, STATEMENT_ENDS) - 1
         if tokens[last].kind == "close" and tokens[last - 1].kind == "wait":  # `wait 5 min at the door`
-            begin = next(at for at in reversed(range(last)) if tokens[at].kind == "open")
+            begin = next((at for at in reversed(range(last)) if tokens[at].kind in ("open", "close")), 0)
+            if tokens[begin].kind != "open":
+                return None
             del tokens[last], tokens[begin]
             last -= 2
         wait, here = tokens[last], tokens[last].end
