@@ -127,11 +127,9 @@ def _reply(items: list[ast.Ast], asking: int | None, item: ast.Ast) -> None:
         items[asking:] = _with_silence(items[asking:], item)
         return
     if asking is not None and isinstance(item, ast.If) and item.otherwise is not None and _is_reply(item):
-        chained = item
-        while len(items) > asking + 1 and _excludes(items[-1], chained):
+        while len(items) > asking + 1 and isinstance(item, ast.If) and _excludes(items[-1], item):
             before = items.pop()
-            chained = before.replace(otherwise=item, span=Span(item.span.source, before.span.start, item.span.end))
-            item = chained
+            item = before.replace(otherwise=item, span=Span(item.span.source, before.span.start, item.span.end))
     items.append(item)
 
 

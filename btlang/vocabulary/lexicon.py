@@ -300,6 +300,10 @@ class Lexicon:
         found = self.context.read(kind, text, 0)
         return found[0] if found and found[1] >= len(text.words) - 2 else None
 
+    def says_event(self, words: str) -> bool:
+        """Whether the words of a condition say that something happens: `somebody comes`."""
+        return not set(self.asking["events"]).isdisjoint(words.lower().split())
+
     def first(self, role: str) -> str:
         """The pattern of a role that messages and canonical English use: the first in its list that means it."""
         return next((phrase for phrase in self.roles[role] if phrase not in self.meanings), self.roles[role][0])

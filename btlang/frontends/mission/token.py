@@ -204,6 +204,13 @@ def run_start(tokens: Sequence[Token], end: int, kinds: Container[str]) -> int:
     return end
 
 
+def run_end(tokens: Sequence[Token], at: int, kinds: Container[str]) -> int:
+    """Where the tokens of some kinds end that begin at a place; the place itself if none does."""
+    while at < len(tokens) and tokens[at].kind in kinds:
+        at += 1
+    return at
+
+
 def arguments_of(said: Called | Listed) -> tuple[tuple[tuple[str, str], ...], ...]:
     """The arguments of a phrase, or those for each value of a list."""
     return (said.arguments,) if isinstance(said, Called) else said.arguments

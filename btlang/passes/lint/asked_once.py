@@ -70,7 +70,7 @@ def _sentence_before(items: Sequence[ast.Ast], at: int) -> Sequence[ast.Ast]:
 
 def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> Iterator[Diagnostic]:
     """Report a condition that decides about the journey before it, or watches what happens on it."""
-    asked = node.condition.condition if isinstance(node.condition, ast.Not) else node.condition
+    asked = _asked(node)
     is_front = node.body.span.start > node.condition.span.start
     timed = before[-1] if before and is_front else None
     while isinstance(timed, ast.UntilTime | ast.For) and isinstance(timed.body, ast.Every):
@@ -114,6 +114,11 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
         yield diagnostic("BT068", node.span, words=words, advice=advice)
 
 
+def _asked(node: ast.If) -> ast.Ast:
+    """Return what a form asks, also where it denies it."""
+    return node.condition.condition if isinstance(node.condition, ast.Not) else node.condition
+
+
 def _leads_through(journey: ast.Phrase, asked: ast.Phrase) -> bool:
     """Return whether a condition asks if the door is closed of the place to which a journey leads: `kitchen door`."""
     if asked.entry.id != _CLOSED:
@@ -145,7 +150,7 @@ def _too_early(node: ast.If, vocabulary: Lexicon) -> Iterator[Diagnostic]:
     """Report `go to the lab if Alice is there`: a condition behind a journey that is about its end, or what it
     chooses.
     """
-    asked = node.condition.condition if isinstance(node.condition, ast.Not) else node.condition
+    asked = _asked(node)
     if not isinstance(asked, ast.Phrase) or asked.span.start < node.body.span.start:
         return
     phrases = [each for each in ast.parents_first(node.body) if isinstance(each, ast.Phrase)]
@@ -162,9 +167,8 @@ def _too_early(node: ast.If, vocabulary: Lexicon) -> Iterator[Diagnostic]:
 
 def _is_event(condition: ast.Ast, vocabulary: Lexicon) -> bool:
     """Whether a condition says that something happens: `somebody comes`. An answer has been given by then."""
-    events = vocabulary.asking["events"]
     is_phrase = isinstance(condition, ast.Phrase) and condition.entry.id not in ABOUT_ANSWERS
-    return is_phrase and not set(events).isdisjoint(condition.span.text.lower().split())
+    return is_phrase and vocabulary.says_event(condition.span.text)
 
 
 def _find_things(phrase: ast.Phrase) -> set[str]:
@@ -228,5 +232,5 @@ def _asked_once(node: ast.If, words: str, other: str, vocabulary: Lexicon) -> Di
 
 def _is_answered(node: ast.If) -> bool:
     """Whether a condition is about an answer: `when she has answered`. The question is over by then."""
-    asked = node.condition.condition if isinstance(node.condition, ast.Not) else node.condition
+    asked = _asked(node)
     return isinstance(asked, ast.Phrase) and asked.entry.id in ABOUT_ANSWERS

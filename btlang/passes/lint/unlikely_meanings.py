@@ -170,13 +170,13 @@ def _note_end(node: ast.Every | ast.Repeat | ast.UntilTime, vocabulary: Lexicon)
     first = min(each.span.start for each in phrases if each.entry.sort == "action")
     inner, text = Span(node.span.source, first, body.span.end), node.span.source.text
     pace = text[node.span.start : inner.start] + text[inner.end : node.span.end]
-    said = f"{inner.text[:1].lower()}{inner.text[1:]}"
-    fixed = (
-        f"{pace.strip(' ,:')}, {word} {said if len(done) == 1 and not isinstance(done[0], ast.Chain) else f'({said})'}"
-    )
     paces = {words.split()[0] for role in ("every", "every_day", "until_time") for words in vocabulary.roles[role]}
     if "\n" in node.span.text or paces.isdisjoint(pace.lower().split()):  # `every 10 min, A until 6 pm`
         return diagnostic("BT175", node.span, word=word, fixed=f"{word} ...")
+    said = f"{inner.text[:1].lower()}{inner.text[1:]}"
+    if len(done) > 1 or isinstance(done[0], ast.Chain):
+        said = f"({said})"
+    fixed = f"{pace.strip(' ,:')}, {word} {said}"
     note = diagnostic("BT175", node.span, word=word, fixed=fixed)
     return note.replace(readings=((node.span, fixed),))  # type: ignore[no-any-return]
 

@@ -20,6 +20,7 @@ from btlang.frontends.mission.token import (
     Token,
     begins_condition,
     constraint_of,
+    run_end,
     run_start,
     statement_start,
     texts_of,
@@ -224,24 +225,19 @@ def _wait(tokens: list[Token], at: int, vocabulary: Lexicon) -> None:
     tokens[at : at + 2] = [Token("open", start, start), stay, Token("and", until.start, until.start), waiting]
     before = run_start(tokens, at, JOINTS | STATEMENT_ENDS)
     if before and _leads_there(tokens[before - 1], stay):
-        tokens[before:at] = (
-            [Token("then", start, start)] if before < at and tokens[at - 1].kind in JOINTS else tokens[before:at]
-        )
-    elif (
-        goes is not None
-        and isinstance(stay.value, Called)
-        and stay.value.arguments[0][1] in vocabulary.values.listed(PLACE)
-    ):
-        journey = Called(goes, ((_slot_of(goes), stay.value.arguments[0][1]),))
-        tokens[at:at] = [Token("command", start, start, journey), Token("then", start, start)]
+        if before < at and tokens[at - 1].kind in JOINTS:
+            tokens[before:at] = [Token("then", start, start)]
+    elif goes is not None and isinstance(stay.value, Called):
+        zone = stay.value.arguments[0][1]
+        if zone in vocabulary.values.listed(PLACE):
+            journey = Called(goes, ((_slot_of(goes), zone),))
+            tokens[at:at] = [Token("command", start, start, journey), Token("then", start, start)]
 
 
 def _condition_end(tokens: list[Token], at: int) -> tuple[int, int]:
     """Where a condition ends, and where the command begins that may stand behind it, after words that join them."""
     while at < len(tokens) and tokens[at].kind not in _ENDS:
-        behind = at
-        while behind < len(tokens) and tokens[behind].kind in JOINTS:
-            behind += 1
+        behind = run_end(tokens, at, JOINTS)
         if behind > at and tokens[behind : behind + 1] and tokens[behind].kind not in _IN_CONDITIONS:
             return at, behind
         at = max(behind, at + 1)

@@ -40,8 +40,7 @@ class Limits(GoingOn):
 
     def _is_event(self, asked: Token) -> bool:
         """Whether a condition says that something happens: `somebody comes`."""
-        words = self._text.source.text[asked.start : asked.end].lower().split()
-        return not set(self._vocabulary.asking["events"]).isdisjoint(words)
+        return self._vocabulary.says_event(self._text.source.text[asked.start : asked.end])
 
     def _wait_before(self, form: int, asked: Token, end: int) -> int | None:
         """`wait at the door. If nobody comes within 5 min, A`, `wait 5 min. If nobody comes, A`: it waits for that.

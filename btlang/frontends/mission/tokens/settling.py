@@ -18,6 +18,7 @@ from btlang.frontends.mission.token import (
     Token,
     constraint_of,
     drives,
+    run_end,
     run_start,
     statement_end,
     statement_start,
@@ -72,9 +73,7 @@ def settle(tokens: list[Token], at: int) -> str:
     whether the rest belongs to the command. A statement before the command ends there.
     """
     end = run_start(tokens, len(tokens), STATEMENT_ENDS)
-    first, behind = statement_start(tokens, at), at + 1
-    while behind < end and tokens[behind].kind in MEASURES:
-        behind += 1
+    first, behind = statement_start(tokens, at), run_end(tokens, at + 1, MEASURES)
     start = at - 1 if tokens[at].kind == "condition" else at
     before, rest = tokens[first:start], tokens[behind:end]
     is_tried = before[:1] != [] and before[0].kind == "try"
@@ -199,9 +198,7 @@ def find_brief_stays(tokens: Sequence[Token], vocabulary: Lexicon, source: Sourc
     waiting = vocabulary.asking["waiting"]
     for at, token in enumerate(tokens):
         if token.role == STAYS and first_word(token, source) in waiting:
-            wait, behind = Span(source, token.start, token.end), at + 1
-            while behind < len(tokens) and tokens[behind].kind in JOINTS | STATEMENT_ENDS:
-                behind += 1
+            wait, behind = Span(source, token.start, token.end), run_end(tokens, at + 1, JOINTS | STATEMENT_ENDS)
             leaves = behind < len(tokens) and tokens[behind].kind == "command" and drives(tokens[behind].value)
             if leaves or (token.kind == "nothing" and wait.text.lower() in waiting):
                 yield lasting(wait, vocabulary)

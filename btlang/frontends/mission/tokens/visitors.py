@@ -11,6 +11,7 @@ from btlang.frontends.mission.token import (
     Listed,
     Token,
     drives,
+    run_end,
     run_start,
     statement_start,
     texts_of,
@@ -107,7 +108,7 @@ def with_sightings(tokens: list[Token], vocabulary: Lexicon, source: Source) -> 
         condition, comma = Token("condition", start, start, Called(seen, ())), Token("comma", start, start)
         is_there = any(PLACE in vocabulary.values.pronouns.get(word, ()) for word in said)
         joint = run_start(tokens, at, JOINTS)
-        behind = next((i for i in range(at + 1, len(tokens)) if tokens[i].kind not in JOINTS), len(tokens))
+        behind = run_end(tokens, at + 1, JOINTS)
         is_one = is_there and not any(map(_goes_to_several, tokens[statement_start(tokens, at) : joint]))
         if not is_one and _is_behind_journey(tokens, joint, at, behind):
             if behind > at + 1:
