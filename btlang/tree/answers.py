@@ -79,7 +79,7 @@ def _ask_until(node: ast.Ast) -> ast.Ast:
 
 def _gather(node: ast.Ast, problems: list[Diagnostic]) -> ast.Ast:
     """Return a sequence in which commands that depend on an answer stand where it is given."""
-    if not isinstance(node, ast.Chain) or node.operator != "sequence" or not any(map(_depends, node.items)):
+    if not isinstance(node, ast.Chain) or node.operator == "fallback" or not any(map(_depends, node.items)):
         return node
     made: list[ast.Ast] = []
     asking: int | None = None

@@ -39,6 +39,7 @@ UNKNOWABLE = {
     "BT068": "a condition behind `when` is checked once",
     "BT151": "`make sure the door is closed` could close it",
     "BT156": "`when you've reached the dock` needs a journey that leads there",
+    "BT059": "a rule may be among the commands that `start over` repeats",
     "BT160": "16:45 is in no morning",
     "BT163": "half turns are counted",
     "BT169": "a time comes on the next day",

@@ -44,9 +44,11 @@ def find_asked_once(compilation: Compilation) -> Iterator[Diagnostic]:
             if type(node) is ast.If:
                 yield from _too_early(node, vocabulary)
             if type(node) is ast.If and not node.negated and node.otherwise is None:
-                sentence = _sentence_before(*before.get(id(node), ((), 0)))
+                items, at = before.get(id(node), ((), 0))
+                sentence = _sentence_before(items, at)
                 if _is_statement(node, vocabulary):
-                    warnings = list(_warn(node, sentence[-1] if sentence else None, vocabulary))
+                    is_first = not sentence and at + 1 < len(items)
+                    warnings = list(_warn(node, sentence[-1] if sentence else None, vocabulary, is_first))
                     yield from warnings or _too_late(node, sentence, vocabulary)
                 elif sentence and "\n" not in node.span.text:
                     before_it = sentence[-1] if type(node.body) is ast.Fail else None  # `A, and abort if C`
@@ -194,7 +196,8 @@ def _is_statement(node: ast.If, vocabulary: Lexicon) -> bool:
     return starts and "\n" not in span.text and (halts or ends)
 
 
-def _warn(node: ast.If, before: ast.Ast | None, vocabulary: Lexicon) -> Iterator[Diagnostic]:
+def _warn(node: ast.If, before: ast.Ast | None, vocabulary: Lexicon, is_first: bool = False) -> Iterator[Diagnostic]:
+    """Report a condition that is asked once, behind a command or, if it `is_first`, before all others."""
     source, condition = node.span.source, node.condition.span
     if node.body.span.start < condition.start:
         if before is not None and node.body.span.text.lower() in vocabulary.halting and "\n" not in before.span.text:
@@ -205,6 +208,12 @@ def _warn(node: ast.If, before: ast.Ast | None, vocabulary: Lexicon) -> Iterator
         elif before is not None and (type(node.body) is ast.Fail or _is_event(node.condition, vocabulary)):
             each = f"{vocabulary.word('whenever')} {condition.text}, {node.body.span.text}"
             advice = f"'{before.span.text}' is over by then. To do it meanwhile, write: {each}"
+            yield diagnostic("BT068", node.span, words=node.span.text, advice=advice).replace(
+                readings=((node.span, each),)
+            )
+        elif is_first and node.body.span.text.lower() in vocabulary.halting:  # `stop when C. A`
+            each = f"{vocabulary.word('whenever')} {condition.text}, {node.body.span.text.lower()}"
+            advice = f"To do it whenever it is true, write: {each}"
             yield diagnostic("BT068", node.span, words=node.span.text, advice=advice).replace(
                 readings=((node.span, each),)
             )

@@ -17,6 +17,7 @@ from btlang.passes.lint.other_readings import (
 )
 from btlang.text.source import Span
 from btlang.tree import ast
+from btlang.tree.answers import ABOUT_ANSWERS
 from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.lexicon import Lexicon
 
@@ -116,8 +117,13 @@ def find_in_sentences(chain: ast.Chain, vocabulary: Lexicon) -> Iterator[Attachm
 
 
 def _denies(first: ast.If, second: ast.If) -> bool:
-    """Whether the second sentence asks if what the first asks is not so: `if C, A. If not C, B`."""
+    """Whether the second sentence asks if what the first asks is not so: `if C, A. If not C, B`.
+
+    An answer stays what it was.
+    """
     asked = second.condition
+    if isinstance(first.condition, ast.Phrase) and first.condition.entry.id in ABOUT_ANSWERS:
+        return False
     return not first.negated and isinstance(asked, ast.Not) and _same(asked.condition, first.condition)
 
 

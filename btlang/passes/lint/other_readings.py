@@ -98,14 +98,14 @@ def balance_brackets(span: Span) -> Span:
 
 
 class Readings(Record):
-    """Two readings. `span` is what they are about; `fix` is a change of the text that leaves only the one that was
-    taken.
+    """Two readings. `span` is what they are about; `fix` is a change of the text, if one is short enough, that leaves
+    only the one that was taken.
     """
 
     taken: ast.Ast
     other: ast.Ast
     span: Span
-    fix: tuple[Span, str]
+    fix: tuple[Span, str] | None
 
 
 class Attachment(Record):

@@ -41,6 +41,8 @@ from btlang.vocabulary.value_type import PERSON
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from typing import TypeGuard
+
     from btlang.printer.printer import Printer
     from btlang.vocabulary.entry import Entry
     from btlang.vocabulary.lexicon import Lexicon
@@ -113,8 +115,8 @@ def make_printer(compilation: Compilation) -> Printer:
 def make_warning(found: Readings, printer: Printer) -> Diagnostic:
     """Make BT050 with both readings."""
     taken, other = printer.statement(found.taken), printer.statement(found.other)
-    fix = None if "\n" in found.fix[0].text else found.fix
-    fixed = taken if fix is None or "\n" in found.span.text else _change_text(found.span, *found.fix)
+    fix = None if found.fix is None or "\n" in found.fix[0].text else found.fix
+    fixed = taken if fix is None or "\n" in found.span.text else _change_text(found.span, *fix)
     readings = () if "\n" in found.span.text else ((found.span, fixed), (found.span, other))
     problem = diagnostic("BT050", found.span, (), fix, taken=taken, other=other, fixed=fixed)
     return problem.replace(readings=readings)  # type: ignore[no-any-return]
@@ -130,14 +132,36 @@ def find_conditional_alternatives(compilation: Compilation) -> Iterator[Diagnost
     vocabulary = compilation.vocabulary
     for body in ast.bodies(compilation.mission):
         for node in compilation.syntax(body):
+            if isinstance(node, ast.If) and _is_alternative(node.body) and _is_behind(node):
+                yield make_warning(_listed_readings(node, node.body), make_printer(compilation))
             if not isinstance(node, ast.Chain) or node.operator != "fallback":
                 continue
             last = node.items[-1]
-            if not isinstance(last, ast.If) or last.otherwise is not None or last.body.span.start != last.span.start:
+            if not isinstance(last, ast.If) or last.otherwise is not None:
                 continue
             gap = Gaps(node.items, vocabulary).text(len(node.items) - 2)
             if "," in gap and gap.strip(" ,").lower() in vocabulary.roles["or"]:
                 yield make_warning(_alternative_readings(node, last), make_printer(compilation))
+
+
+def _is_alternative(node: ast.Ast) -> TypeGuard[ast.Chain]:
+    """Return whether a command is a list of alternatives without brackets, but no search of several places."""
+    if not isinstance(node, ast.Chain) or node.operator != "fallback":
+        return False
+    if any(isinstance(item, ast.Phrase) and item.entry.first for item in node.items):
+        return False
+    return not node.span.source.text[: node.span.start + 1].rstrip().endswith("(")
+
+
+def _is_behind(node: ast.If) -> bool:
+    """Return whether the condition is behind the command, without an `otherwise`."""
+    return node.otherwise is None and node.body.span.end <= node.condition.span.start
+
+
+def _listed_readings(node: ast.If, listed: ast.Chain) -> Readings:
+    """Read `go to the lab, or the hall if C` as: if C, go to the hall, otherwise go to the lab."""
+    other = _alternative_readings(listed, node.replace(body=listed.items[-1])).other
+    return Readings(node, other, balance_brackets(node.span), None)
 
 
 def _alternative_readings(chain: ast.Chain, last: ast.If) -> Readings:
@@ -146,11 +170,15 @@ def _alternative_readings(chain: ast.Chain, last: ast.If) -> Readings:
     before = items[0] if len(items) == 1 else chain.replace(items=items, bracketed=True)
     body, otherwise = (before, last.body) if last.negated else (last.body, before)
     other = last.replace(negated=False, body=body, otherwise=otherwise)
-    return Readings(chain, other, balance_brackets(chain.span), add_brackets(last.span))
+    fix = add_brackets(last.span) if last.body.span.start == last.span.start else None
+    return Readings(chain, other, balance_brackets(chain.span), fix)
 
 
 def find_rules_at_goals(compilation: Compilation) -> Iterator[Diagnostic]:
-    """Report `go to the door. Whenever somebody comes near, wave`: the rule ends at the door, or the robot stays."""
+    """Report `go to the door. Whenever somebody comes near, wave`: the rule ends at the door, or the robot stays.
+
+    The same for `go to the door and wave whenever somebody comes near`.
+    """
     body, vocabulary = compilation.mission.body, compilation.vocabulary
     items = sort_by_place(body.items) if isinstance(body, ast.Chain) else ()
     rule = next((item for item in reversed(items) if isinstance(item, ast.Whenever)), None)
@@ -161,12 +189,16 @@ def find_rules_at_goals(compilation: Compilation) -> Iterator[Diagnostic]:
     is_about_people = isinstance(asked, ast.Phrase) and _is_about_people(asked.entry, vocabulary)
     if MOVES not in journey.entry.resources or not is_about_people:
         return
-    whole = Span(journey.span.source, journey.span.start, rule.span.end)
+    doing, condition, said = rule.body.span, asked.span, rule.span.text
+    is_behind = doing.start < condition.start
+    whole = Span(journey.span.source, journey.span.start, condition.end if is_behind else rule.span.end)
     between = whole.source.text[journey.span.end : rule.span.start]
-    if "\n" in whole.text or _SENTENCE_END.search(between) is None:
+    if "\n" in whole.text or (_SENTENCE_END.search(between) is None and not is_behind):
         return
-    taken = f"{rule.span.text}. {journey.span.text}"
-    other = f"{journey.span.text}, {vocabulary.word('then')} {vocabulary.word('wait_forever')}. {rule.span.text}"
+    if is_behind:
+        said = f"{vocabulary.word('whenever')} {condition.text}, {doing.text}"
+    taken = f"{said}. {journey.span.text}"
+    other = f"{journey.span.text}, {vocabulary.word('then')} {vocabulary.word('wait_forever')}. {said}"
     problem = diagnostic("BT050", whole, taken=taken, fixed=taken, other=other)
     yield problem.replace(readings=((whole, taken), (whole, other)))
 

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from typing import Any
 
 _ENDLESS = "-1"
+_PACES = ("every", "every_day", "weekly", "on_days", "at", "until_time")
+"""The roles of the words that say when the rounds of a loop begin."""
 _HALF_DAY = 12 * 3600
 _HALF, _WHOLE = "TurnAround", "TurnOnceAround"
 _BACKWARD, _FORWARD = "MoveBackward", "MoveForward"
@@ -165,12 +167,12 @@ def _note_end(node: ast.Every | ast.Repeat | ast.UntilTime, vocabulary: Lexicon)
     word = next((words for words in vocabulary.roles["try"] if " " in words), vocabulary.word("try"))
     body = node.body
     items = body.items if isinstance(body, ast.Chain) else (body,)
-    done = [item for item in items if not isinstance(item, ast.WaitTime)]
+    done = [item for item in items if not _waits(item)]
     phrases = (each for item in done for each in ast.parents_first(item) if isinstance(each, ast.Phrase))
     first = min(each.span.start for each in phrases if each.entry.sort == "action")
     inner, text = Span(node.span.source, first, body.span.end), node.span.source.text
     pace = text[node.span.start : inner.start] + text[inner.end : node.span.end]
-    paces = {words.split()[0] for role in ("every", "every_day", "until_time") for words in vocabulary.roles[role]}
+    paces = {words.split()[0] for role in _PACES for words in vocabulary.roles[role]}
     if "\n" in node.span.text or paces.isdisjoint(pace.lower().split()):  # `every 10 min, A until 6 pm`
         return diagnostic("BT175", node.span, word=word, fixed=f"{word} ...")
     said = f"{inner.text[:1].lower()}{inner.text[1:]}"
@@ -182,13 +184,19 @@ def _note_end(node: ast.Every | ast.Repeat | ast.UntilTime, vocabulary: Lexicon)
 
 
 def _goes_on(node: ast.Every | ast.Repeat | ast.UntilTime) -> bool:
-    """Whether a loop is made for more rounds than anybody waits for: `every 10 min, A`, `every day at noon, A`."""
+    """Whether a loop goes on for long, or at several times of day: `every 10 min, A`, `at 9 am and at 8 pm, A`."""
     if isinstance(node, ast.UntilTime):
         return isinstance(node.body, ast.Chain)
     if isinstance(node, ast.Every):
         return node.rounds in ("", _ENDLESS)
-    inner = node.body.items[0] if isinstance(node.body, ast.Chain) else node.body
-    return node.rounds == _ENDLESS and isinstance(inner, ast.WaitTime)
+    return _waits(node.body.items[0] if isinstance(node.body, ast.Chain) else node.body)
+
+
+def _waits(node: ast.Ast) -> bool:
+    """Whether a command waits for a time of day, on some days alone or on any."""
+    if isinstance(node, ast.Retry) and isinstance(node.body, ast.Chain):
+        return isinstance(node.body.items[0], ast.WaitTime)
+    return isinstance(node, ast.WaitTime)
 
 
 def _may_fail(node: ast.Ast) -> bool:

@@ -218,8 +218,11 @@ class AddressedTexts(SentenceReader):
         return likewise[1] if likewise is not None else named[1]
 
     def _end_before_command(self, value: SlotValue) -> int:
-        """Where a clause ends before `and` and a command, whose verb can't go on with it; 0 if it doesn't."""
+        """Where a clause ends before a reply, or before `and` and a command whose verb can't go on with it; else 0."""
         text, joints, context = self._text, self._vocabulary.roles["and"], self._context.with_references()
+        replies = (at for at in range(value.first + 1, value.last) if find(self._vocabulary.replies, text.words, at))
+        if at := next(replies, 0):
+            return at - (text.words[at - 1] == ",")
         context.latest = dict.fromkeys(context.types, "")  # `and bring him the cup`: who is asked isn't known yet
         for at in range(value.first + 1, value.last - 1):
             if text.words[at] in joints:

@@ -5,9 +5,10 @@ from __future__ import annotations
 from functools import cached_property
 
 from btlang.diagnostics.diagnostic import diagnostic
-from btlang.frontends.mission.token import BEFORE_CONDITIONS, Called, Listed, Token, run_start, statement_start
+from btlang.frontends.mission.token import BEFORE_CONDITIONS, JOINTS, Called, Listed, Token, run_start, statement_start
 from btlang.frontends.mission.tokens.addressed_texts import AddressedTexts
 from btlang.frontends.mission.tokens.sentence_reader import is_question
+from btlang.frontends.mission.tokens.silent_words import begins
 from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of
 from btlang.tree.answers import ABOUT_ANSWERS, ANSWERED, ASK, EXAMPLE, OF_WHICH, UNANSWERED, asking_verbs
 from btlang.vocabulary.match import Match
@@ -33,6 +34,7 @@ class Answers(AddressedTexts):
         """Begins a command that is done if a condition is so, or isn't."""
         start, end = condition.start, condition.end
         self._tokens.append(Token("if", start, start))
+        self._end_reply(condition, is_denied=not is_so)
         if not is_so:
             self._tokens.append(Token("not", start, start))
         self._tokens += [condition, Token("comma", end, end)]
@@ -64,11 +66,17 @@ class Answers(AddressedTexts):
 
     def reply(self, at: int, role: str) -> int:
         """`ask Alice "Tea?". If so, A`: a command that depends on the answer, not on whether there was one."""
-        found = find(self._vocabulary.replies, self._text.words, at)
-        entry = self._vocabulary.entry(ANSWERED) if found is not None and self._may_ask else None
-        if found is None or entry is None or not self._is_asked(right_before=role == "otherwise"):
+        found = find(self._vocabulary.replies, self._text.words, at) if self._may_ask else None
+        entry = self._vocabulary.entry(ANSWERED) if found is not None else None
+        behind, is_first = run_start(self._tokens, len(self._tokens), ("comma",)), begins(self._tokens)
+        if found is None or entry is None or self._question(behind, right_before=role == "otherwise") is None:
             return 0
         start, end = self._text.starts[at], self._text.ends[found[1] - 1]
+        if not is_first:
+            if self._text.words[at] not in self._vocabulary.joining:
+                return 0
+            del self._tokens[behind:]
+            self._tokens.append(Token("and", start, self._text.ends[at]))
         yes = Called(entry, ((entry.slots[0].name, self._vocabulary.asking["answers"][0]),))
         self.note_answerer()
         self._if(Token("condition", start, end, yes), found[0])
@@ -85,12 +93,15 @@ class Answers(AddressedTexts):
             problem = diagnostic("BT144", words, words=words.text, problem=OF_WHICH, example=EXAMPLE)
             self._calls.problems.append(problem)
         is_joined = any(text.words[last] in self._vocabulary.roles[role] for role in ("or", "and"))
-        is_reply = is_joined if self._is_asked(right_before=True) else self._is_asked(right_before=False)
+        behind = run_start(self._tokens, len(self._tokens), ("comma",))
+        is_reply = is_joined if self._question(behind, right_before=True) else self._is_asked(right_before=False)
         if entry is None or not is_reply:
             return 0
         has_comma = text.words[last - 1] == ","
         start, end = text.starts[at], text.ends[last - 1 - has_comma]
         asked = Token("condition", start, end, Called(entry, ()))
+        if text.words[at] in self._vocabulary.roles["and"]:
+            self._tokens.append(Token("and", start, text.ends[at]))
         self._tokens.append(Token("if", start, start))
         self._end_reply(asked)
         self.note_answerer()
@@ -142,16 +153,19 @@ class Answers(AddressedTexts):
         else:
             self._calls.note_nearest()
 
-    def _end_reply(self, token: Token) -> None:
+    def _end_reply(self, token: Token, is_denied: bool = False) -> None:
         """`if he says yes, A, and if he says no, B`: the second answer ends what is done for the first."""
         tokens = self._tokens
         last = run_start(tokens, len(tokens) - 1, ("and", "comma"))
         first = statement_start(tokens, last)
-        asked = [each.value for each in (*tokens[first : first + 2], token) if isinstance(each.value, Called)]
-        if last == len(tokens) - 1 or tokens[-1].kind != "if" or tokens[first].kind != "if" or len(asked) != 2:
-            return
-        are_replies = all(value.entry.id in ABOUT_ANSWERS for value in asked) and asked[0] != asked[1]
         kinds = [each.kind for each in tokens[first:last]]
+        begin = first + kinds.index("if") if "if" in kinds else last
+        if begin > first and self._question(run_start(tokens, begin, JOINTS), right_before=True) is None:
+            return
+        asked = [each.value for each in (*tokens[begin : begin + 2], token) if isinstance(each.value, Called)]
+        if last == len(tokens) - 1 or tokens[-1].kind != "if" or len(asked) != 2:
+            return
+        are_replies = all(value.entry.id in ABOUT_ANSWERS for value in asked) and (is_denied or asked[0] != asked[1])
         if are_replies and kinds.count("open") == kinds.count("close") and kinds.count("if") == 1:
             tokens[last:-1] = [Token("semi", tokens[last].start, tokens[last].start)]
 
@@ -253,7 +267,9 @@ class Answers(AddressedTexts):
             asks_anew = tokens[first].kind == "repeat" and tokens[last - 1].kind == "count"
             if (tokens[last - 1].kind == "command" or asks_anew) and values and values[-1].entry.id == ASK:
                 return values[-1]
-            if right_before or tokens[first].kind != "if" or not values or values[0].entry.id not in ABOUT_ANSWERS:
+            begin = next((i for i in range(first, last) if tokens[i].kind == "if"), last)
+            asked = [each.value for each in tokens[begin:last] if isinstance(each.value, Called)][:1]
+            if right_before or not asked or asked[0].entry.id not in ABOUT_ANSWERS:
                 return None
-            last = first
+            last = run_start(tokens, begin, JOINTS) if begin > first else first
         return None

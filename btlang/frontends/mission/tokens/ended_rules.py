@@ -32,7 +32,7 @@ from btlang.vocabulary.value_type import PLACE
 
 _EXAMPLE = "it is after 6 pm"
 _HEADS = frozenset(("every", "every_day", "at", "delay"))
-_OPEN, _GO = "OpenZone", "GoTo"
+_OPEN, GO = "OpenZone", "GoTo"
 _NOT_DONE = "a definition is done once, and this holds all the time"
 _IN_THE_MISSION = "Write it as a sentence of the mission."
 _ENDS = frozenset(("newline", "semi", "stop", "dedent", "close"))
@@ -73,6 +73,8 @@ def with_ends(tokens: list[Token], vocabulary: Lexicon, span: Callable[[int, int
             if at > 0 and tokens[at - 1].kind == "define":
                 whole = span(tokens[at].start, tokens[_condition_end(tokens, at + 2)[0] - 1].end)
                 problems.append(diagnostic("BT152", whole, words=whole.text, reason=_NOT_DONE, advice=_IN_THE_MISSION))
+            elif (further := _otherwise_behind(tokens, at)) is not None:
+                problems.append(_what_then(further, tokens, at, vocabulary, span))
             elif begins and opening is not None:
                 _say_where(tokens, at, vocabulary, span)
                 _close_while(tokens, at, opening)
@@ -151,6 +153,24 @@ def _denied(condition: list[Token], start: int, end: int) -> list[Token]:
     return [denial, Token("open", start, start), *condition, Token("close", end, end)]
 
 
+def _otherwise_behind(tokens: list[Token], at: int) -> Token | None:
+    """The `otherwise` right behind a rule that closes a zone while a condition holds, which is no `if`."""
+    behind = run_end(tokens, _condition_end(tokens, at + 2)[0], JOINTS | STATEMENT_ENDS)
+    is_so = behind < len(tokens) and tokens[behind].kind == "otherwise" and tokens[behind].value is None
+    return tokens[behind] if is_so else None
+
+
+def _what_then(
+    further: Token, tokens: list[Token], at: int, vocabulary: Lexicon, span: Callable[[int, int], Span]
+) -> Diagnostic:
+    """Return the error for `avoid the hall while C. Otherwise A`: A once, or each time that C ends."""
+    words, word = span(further.start, further.end), vocabulary.word
+    condition = span(tokens[at + 2].start, tokens[_condition_end(tokens, at + 2)[0] - 1].end).text
+    one = f"{word('unless')} {condition}, ..."
+    other = f"{word('as_soon_as')} {word('not')} {condition}, ..."
+    return diagnostic("BT151", words, words=words.text, one=one, other=other)
+
+
 def _say_where(tokens: list[Token], at: int, vocabulary: Lexicon, span: Callable[[int, int], Span]) -> None:
     """Make `avoid the hall while Bob is there` ask whether he is in the hall, where the robot isn't."""
     said = tokens[at].value
@@ -209,7 +229,7 @@ def _is_next(tokens: list[Token], at: int) -> bool:
 def _leads_there(journey: Token, stay: Token) -> bool:
     """Whether a command drives to the zone in which the robot is to stay."""
     value, zones = journey.value, stay.value
-    if not isinstance(value, Called | Listed) or value.entry.id != _GO or not isinstance(zones, Called | Listed):
+    if not isinstance(value, Called | Listed) or value.entry.id != GO or not isinstance(zones, Called | Listed):
         return False
     return set(texts_of(zones)) <= set(texts_of(value))
 
@@ -221,7 +241,7 @@ def _wait(tokens: list[Token], at: int, vocabulary: Lexicon) -> None:
     end = tokens[last - 1].end
     tokens[last:last] = [Token("close", end, end)]
     waiting = Token(WAITING[until.kind], until.start, until.end, until.value)
-    stay, goes = tokens[at], vocabulary.entry(_GO)
+    stay, goes = tokens[at], vocabulary.entry(GO)
     tokens[at : at + 2] = [Token("open", start, start), stay, Token("and", until.start, until.start), waiting]
     before = run_start(tokens, at, JOINTS | STATEMENT_ENDS)
     if before and _leads_there(tokens[before - 1], stay):

@@ -141,9 +141,12 @@ class GoingOn(SentenceReader):
         return role
 
     def turns(self, otherwise: Token) -> None:
-        """`A. If that fails, B. Otherwise C`: C is done if A works; see `turn_branches`."""
+        """`A. If that fails, B. Otherwise C`: C is done if A works; see `turn_branches`. In a bracket it is for that."""
         kinds = self._statement(len(self._tokens) - 1)[1]
-        if FAILS in kinds and WORKS not in kinds and kinds.isdisjoint(FORMS):
+        form = next((at for at in reversed(range(len(self._tokens))) if self._tokens[at].value == FAILS), 0)
+        brackets = [token.kind for token in self._tokens[form:] if token.kind in ("open", "close")]
+        is_beside = brackets.count("open") == brackets.count("close")
+        if FAILS in kinds and WORKS not in kinds and kinds.isdisjoint(FORMS) and is_beside:
             otherwise.role = TURNED
 
     def _ask_alone(self) -> None:

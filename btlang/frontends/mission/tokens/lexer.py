@@ -18,7 +18,7 @@ from btlang.frontends.mission.tokens.settling import (
     with_rounds,
     with_stays,
 )
-from btlang.frontends.mission.tokens.visitors import with_sightings
+from btlang.frontends.mission.tokens.visitors import with_meetings, with_sightings
 from btlang.frontends.mission.tokens.word_reader import WordReader
 from btlang.text.source import Source, Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, split
@@ -51,6 +51,7 @@ class Lexer:
         self.problems += [diagnostic("BT003", span, characters=span.text[:20]) for span in self.text.unreadable]
         _drop_words_of_turns(self.text, vocabulary)
         _drop_still(self.text, vocabulary)
+        _drop_commas(self.text, vocabulary)
         self.problems += _drop_untold_sizes(self.text, vocabulary)
         self.names = Names(self.text, vocabulary, load, known)
         self.problems += self.names.problems
@@ -65,6 +66,7 @@ class Lexer:
         with_either_end(self.tokens)
         with_stays(self.tokens, source, vocabulary.asking["standing_verbs"])
         self.problems += find_brief_stays(self.tokens, vocabulary, source) if explain else ()
+        with_meetings(self.tokens, vocabulary)
         with_sightings(self.tokens, vocabulary, source)
         with_rules_inside(self.tokens)
         self.problems += with_ends(self.tokens, self.vocabulary, partial(Span, source))
@@ -143,6 +145,14 @@ def _drop_still(text: Words, vocabulary: Lexicon) -> None:
             first = max((i + 1 for i in range(first, at) if words[i] == ","), default=first)
             if any(word in vocabulary.before_conditions for word in words[first:at]):
                 text.drop(at, at + 1)
+
+
+def _drop_commas(text: Words, vocabulary: Lexicon) -> None:
+    """Take out the comma between a word that joins and one before a condition: `wave and, if bumped, nod`."""
+    words, joints = text.words, vocabulary.joining.difference(vocabulary.roles["or"])
+    for at in reversed([at for at in range(1, len(words) - 1) if words[at] == ","]):
+        if words[at - 1] in joints and words[at + 1] in vocabulary.before_conditions:
+            text.drop(at, at + 1)
 
 
 def _drop_untold_sizes(text: Words, vocabulary: Lexicon) -> Iterator[Diagnostic]:

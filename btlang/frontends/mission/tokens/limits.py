@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from btlang.frontends.mission.token import JOINTS, STATEMENT_ENDS, Token, run_start
+from btlang.frontends.mission.token import IN_CONDITIONS, JOINTS, STATEMENT_ENDS, Token, run_start
 from btlang.frontends.mission.tokens.going_on import GoingOn
 from btlang.frontends.mission.tokens.sentence_reader import hears, searches
 from btlang.frontends.mission.tokens.settling import FAILS, MEASURES, STAYS, asked_about, lasting
@@ -29,6 +29,34 @@ class Limits(GoingOn):
             tokens.insert(at, Token("retry", tokens[at].start, tokens[at].start))
             return limit.last
         return self._limit(tokens[at], end) if role == FAILS or searches(tokens[at]) else end
+
+    def _limit_wait(self) -> None:
+        """`wait at the door until C, but no longer than 5 min`: it waits so long, the way there left out.
+
+        The same with `or until 5 min have passed`.
+        """
+        tokens, limit = self._tokens, self._tokens[-1]
+        is_end = limit.kind == "for" and tokens[-2:-1] != [] and tokens[-2].kind == "or"
+        behind = len(tokens) - 2 if is_end else run_start(tokens, len(tokens) - 1, JOINTS)
+        begin = run_start(tokens, behind, IN_CONDITIONS) - 1
+        if not 0 <= begin < behind - 1 or (limit.kind == "for" and not is_end):
+            return
+        if tokens[begin].kind == "wait_until":
+            tokens[begin].kind, tokens[begin].value = "wait_up_to", limit.value
+            del tokens[behind:]
+        elif tokens[begin].kind == "until" and is_end:
+            limit.kind = "up_to"
+            del tokens[behind]
+
+    def _make_fail(self, at: int) -> None:
+        """Let a wait for the condition at a place fail when its time is over; alone it works in any case."""
+        tokens = self._tokens
+        wait = tokens[at - 1]
+        if tokens[at].kind == "condition" and wait.kind == "wait_up_to":
+            tokens.insert(at + 1, Token("within", wait.start, wait.end, wait.value))
+            wait.kind, wait.value = "wait_until", None
+        elif tokens[at].kind == "condition" and at + 1 < len(tokens) and tokens[at + 1].kind in ("for", "up_to"):
+            tokens[at + 1].kind = "within"
 
     def _may_ask_again(self, at: int, form: int, end: int) -> bool:
         """Whether a condition behind `wait up to 5 min until C` asks what is so then."""

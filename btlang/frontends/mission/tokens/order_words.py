@@ -24,6 +24,7 @@ from btlang.frontends.mission.token import (
 )
 from btlang.frontends.mission.tokens.clock_words import ClockWords
 from btlang.frontends.mission.tokens.journey_words import JourneyWords
+from btlang.frontends.mission.tokens.rule_words import RuleWords
 from btlang.frontends.mission.tokens.rules_inside import ON_WAY
 from btlang.frontends.mission.tokens.sentence_reader import leads_to
 from btlang.frontends.mission.tokens.settling import FAILS, MEASURES
@@ -32,16 +33,12 @@ from btlang.vocabulary.entry import THEME
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.word_tree import find
 
-_DONE = frozenset(("command", "name", "wait", "wait_time", "condition", "close"))
 BEFORE_ASIDE = JOINTS | {"otherwise", "or"}
 """Raw kinds behind which words may say that the robot goes on with what it did."""
 
 
-class OrderWords(ClockWords, JourneyWords):
+class OrderWords(ClockWords, JourneyWords, RuleWords):
     """Those of one text."""
-
-    _lasting = -1
-    """Where `always` stands that was read last."""
 
     def read(self, match: Match, at: int) -> int:
         """Reads the words of one of these roles, where they say something."""
@@ -108,6 +105,8 @@ class OrderWords(ClockWords, JourneyWords):
         """What the words that were read last, of a role, are where they stand."""
         if role == "start_over":
             self._start_over()
+        elif role in RULES:
+            self._split_rule(len(self._tokens) - 1)
         elif role in WAITING:
             self._waits(role)
             self._until()
@@ -128,75 +127,6 @@ class OrderWords(ClockWords, JourneyWords):
         kinds = {token.kind for token in tokens[statement_start(tokens, first) : first]}
         if first < last and kinds and FORMS.isdisjoint(kinds) and kinds.isdisjoint(("repeat", "colon")):
             tokens[first:last] = [Token("semi", tokens[first].start, tokens[first].start)]
-
-    def aside(self, at: int) -> int:
-        """`whenever A, interrupt, B, then continue`: what a standing rule does by itself.
-
-        With these words `if A` behind other commands is a rule, too.
-        """
-        tokens, words = self._tokens, self._text.words
-        interrupting, resuming = self._vocabulary.asides
-        if words[at] not in interrupting and words[at] not in resuming:
-            return 0  # as nearly always
-        first = statement_start(tokens, len(tokens))
-        found = find(resuming, words, at)
-        if found is not None and (end := self._go_on(first, at, found[1])):
-            return end
-        if not tokens or tokens[first].kind not in (*RULES, "if"):
-            return 0
-        if found is not None and self._is_end(found[1]) and any(token.kind in _DONE for token in tokens[-3:]):
-            while tokens[-1].kind in JOINTS:
-                tokens.pop()
-            if any(token.kind in ("command", "name") for token in tokens[:first]):
-                self._watch(tokens[first])
-            return found[1]
-        found = find(interrupting, words, at) if tokens[-1].kind == "comma" else None
-        if found is None or tokens[-2].kind != "condition":
-            return 0
-        self._watch(tokens[first])
-        behind = found[1] + (words[found[1]] == ",")
-        joint = self._phrase(behind)
-        if joint is not None and joint.meaning.role in ("and", "then"):
-            return joint.last
-        return behind if behind > found[1] else 0
-
-    def _go_on(self, first: int, at: int, end: int) -> int:
-        """`otherwise carry on`, `if that fails, skip it and go on`: nothing is done in place of what comes then."""
-        tokens, text = self._tokens, self._text
-        last = run_start(tokens, len(tokens), JOINTS)
-        if not last or not (self._is_end(end) or text.words[end] in (",", *self._vocabulary.roles["and"])):
-            return 0
-        if tokens[last - 1].kind == "otherwise" or tokens[last - 1].value == FAILS:
-            tokens.append(Token("nothing", text.starts[at], text.ends[end - 1]))
-            return end
-        is_branch = any(token.kind == "otherwise" or token.value == FAILS for token in tokens[first:last])
-        if not is_branch or last == len(tokens) or not self._is_end(end):
-            return 0
-        del tokens[last:]
-        return end
-
-    @staticmethod
-    def _watch(form: Token) -> None:
-        """Makes `if` a standing rule."""
-        form.kind = "whenever" if form.kind == "if" else form.kind
-
-    def lasts(self, at: int) -> None:
-        """`always stop when C`, `A, and always charge if C`: a rule of its own, from that word on."""
-        forms = {phrase.split()[0] for phrase in self._vocabulary.roles["if"]}
-        if not any(self._text.words[i] in forms for i in range(at, self._end_of_statement(at))):
-            return
-        tokens, start = self._tokens, self._text.starts[at]
-        joint = run_start(tokens, len(tokens), JOINTS)
-        if 0 < joint < len(tokens):
-            tokens[joint:] = [Token("semi", start, start)]
-        self._lasting = start
-
-    def rule_of(self, form: Token) -> None:
-        """Makes `if` a standing rule behind `always` in its statement."""
-        first = statement_start(self._tokens, len(self._tokens))
-        if form.kind == "if" and self._tokens[first].start >= self._lasting >= 0:
-            if first == 0 or self._tokens[first - 1].start <= self._lasting:
-                self._watch(form)
 
     def is_doing(self, at: int) -> bool:
         """Whether the form of a verb stands at a word: `keep going back and forth`."""
@@ -222,17 +152,6 @@ class OrderWords(ClockWords, JourneyWords):
         if is_later and tokens[-2].kind == "and":  # `go to the lab and wave afterwards`
             tokens[-2].kind = "then"
         return is_later
-
-    def _any_time(self, end: int, role: str = "") -> int:
-        """`if the battery is low at any time, A`: whenever it is."""
-        for token in reversed(self._tokens):
-            if token.kind in BEGINS and token.kind != "comma":
-                break
-            if token.kind == "if":
-                self._watch(token)
-                token.role = role
-                return end
-        return 0
 
     def _instead(self, match: Match, at: int) -> int:
         """`otherwise wave instead`; elsewhere it is open what isn't done."""

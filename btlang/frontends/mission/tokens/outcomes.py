@@ -25,6 +25,7 @@ from btlang.frontends.mission.tokens.limits import Limits
 from btlang.frontends.mission.tokens.sentence_reader import may_fail, searches
 from btlang.frontends.mission.tokens.settling import (
     FAILS,
+    MEASURES,
     WAITS,
     WORKS,
     asked_about,
@@ -57,13 +58,18 @@ class Outcomes(Limits):
 
     def connect(self, match: Match, role: str, at: int) -> int:
         """What the token of words about how it went is where it stands. Returns where to go on."""
-        token, said = self._tokens[-1], match.meaning.role
+        tokens, token, said = self._tokens, self._tokens[-1], match.meaning.role
         if role == "then" and len(self._tokens) > 1:
             self.found(match, at)
         if said == "once" and len(self._tokens) > 1:
             if self._text.words[match.last] in (",", *self._vocabulary.roles["and"]):
                 self._tokens.pop()  # `go to every room once and wave in each one`
                 return match.last
+        if role == WORKS and self._text.words[at] in self._vocabulary.joining and tokens[-2:-1] != []:
+            if tokens[-2].kind not in (*JOINTS, *STATEMENT_ENDS):
+                tokens.insert(-1, Token("comma", token.start, token.start))  # `pick it up and if that works, wave`
+        if role in ("for", "up_to"):
+            self._limit_wait()
         if role == "until" and len(self._tokens) > 1 and self._tokens[-2].role == LIMIT:
             self._doubt_count(self._tokens[-2], match, at)
         if role == ONE_FAILS and not self._in_round():
@@ -71,6 +77,9 @@ class Outcomes(Limits):
             self._calls.problems.append(diagnostic("BT067", words, words=words.text))
         if role == "delay":
             self._ask_later()
+        if role in (FAILS, WORKS) and len(tokens) > 2:
+            last = run_start(tokens, len(tokens) - 1, JOINTS | STATEMENT_ENDS | MEASURES) - 1
+            self._make_fail(last)
         if role in (WORKS, "otherwise") and find(self._vocabulary.replies, self._text.words, at) is not None:
             self._ask_alone()
         if role in (FAILS, ONE_FAILS, "if_unanswered", "otherwise"):
@@ -173,13 +182,7 @@ class Outcomes(Limits):
         del tokens[form:]
         go_on(tokens)
         command = tokens[at]
-        if command.kind == "condition":  # `wait up to 5 min until C` alone works in any case
-            wait = tokens[at - 1]
-            if wait.kind == "wait_up_to":
-                tokens.insert(at + 1, Token("within", wait.start, wait.end, wait.value))
-                wait.kind, wait.value = "wait_until", None
-            elif at + 1 < len(tokens) and tokens[at + 1].kind in ("for", "up_to"):
-                tokens[at + 1].kind = "within"
+        self._make_fail(at)
         role = self._settle_command(at)
         if not role:
             self._unclear(Span(self._text.source, start, stop))

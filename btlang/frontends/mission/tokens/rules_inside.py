@@ -13,11 +13,13 @@ from btlang.frontends.mission.token import (
     Called,
     Listed,
     Token,
+    constraint_of,
     drives,
     run_start,
     statement_end,
     statement_start,
 )
+from btlang.frontends.mission.tokens.settling import STAYS
 from btlang.vocabulary.value_type import PERSON, PLACE
 
 ON_WAY = "on_way"
@@ -70,7 +72,12 @@ def _front(tokens: list[Token], rule: int) -> None:
         return
     done, here = tokens[rule - 1], tokens[rule].start
     made = [tokens[rule], *condition, Token("comma", here, here), done]
-    tokens[first:end] = _made(tokens[first:end], tokens[first:joint], made)
+    command = tokens[first:joint]
+    constraint = constraint_of(command[0])
+    keeps_in = constraint is not None and constraint.kind == "keep in" and len(command) == 1
+    if keeps_in or command[-1].role == STAYS:  # `stand at the door and wave whenever C`
+        command += [Token("semi" if keeps_in else "then", here, here), Token("wait_forever", here, here)]
+    tokens[first:end] = _made(tokens[first:end], command, made)
 
 
 def _journey_before(tokens: Sequence[Token], form: int) -> Called | Listed | None:

@@ -16,6 +16,8 @@ from btlang.frontends.mission.token import (
     statement_start,
     texts_of,
 )
+from btlang.frontends.mission.tokens.ended_rules import GO
+from btlang.frontends.mission.tokens.journey_words import COMES
 from btlang.frontends.mission.tokens.rules_inside import ON_WAY
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.frontends.mission.tokens.settling import STAYS
@@ -89,6 +91,25 @@ class Visitors(SentenceReader):
         found = match_of(text, places, other, (self._vocabulary.trie,), self._context)
         is_event = found is not None and found.meaning.role == "condition"
         return relocated(found, places) if found is not None and is_event else None
+
+
+def with_meetings(tokens: list[Token], vocabulary: Lexicon) -> None:
+    """Make `wait for Alice in the lab for 5 min` go to the lab first: she needn't be there yet."""
+    goes = vocabulary.entry(GO)
+    for at in reversed(range(len(tokens))):
+        said, start, end = tokens[at].value, tokens[at].start, tokens[at].end
+        if goes is None or not isinstance(said, Called) or said.entry.id != COMES:
+            continue
+        who = choice_of(said.arguments[0][1])
+        parts = dict(who.parts) if who is not None else {}
+        if parts.keys() == {"inside", "named"}:
+            goal = next(slot.name for slot in goes.slots if slot.type == PLACE)
+            journey = Token("command", start, start, Called(goes, ((goal, parts["inside"]),)))
+            wait = said.replace(arguments=((said.arguments[0][0], parts["named"]), *said.arguments[1:]))
+            tokens[at].value = wait
+            tokens[at : at + 1] = [
+                Token("open", start, start), journey, Token("then", start, start), tokens[at], Token("close", end, end),
+            ]  # fmt: skip
 
 
 def with_sightings(tokens: list[Token], vocabulary: Lexicon, source: Source) -> None:

@@ -219,7 +219,7 @@ class WordReader:
         if end := self._outcomes.read(at) or self._order.hours(at):
             return end
         is_first = begins(tokens)
-        if is_first and (end := self._requests.reply(at, role)):
+        if end := self._requests.reply(at, role):
             return end
         if match is not None and role == "if_unanswered" and (end := self._requests.silence(match, at)):
             return self._outcomes.unanswered(end)
