@@ -40,7 +40,8 @@ ASKING = (
     "journey", "search", "whereabouts", "whether", "any_place", "searching", "making_sure", "counting", "asking_be",
     "asking_do", "answers", "silence", "any_answer", "feeling", "there", "very", "states", "subject", "been", "towards",
     "going", "coming", "letting", "hours", "time_is", "finding_out", "inspecting", "telling", "lasting", "whole",
-    "located", "wishing", "wished", "fetching", "begging", "home", "pleading", "saying_that", "plea", "reminding",
+    "located", "wishing", "wished", "fetching", "picturing", "begging", "contents", "home", "pleading",
+    "saying_that", "plea", "reminding",
     "reminder", "addressed", "informing", "informed", "staying", "resuming", "interrupting", "and_back",
     "if_yes", "if_no", "told_of", "standing", "able", "unable", "reaching", "finishing", "waiting", "apiece",
     "between_joint",    "standing_verbs", "events", "duties", "reasons", "performing", "naming", "named_as", "in_turn",
@@ -53,8 +54,8 @@ QUESTIONS = ("ask_value", "ask_where", "ask_how_many")
 """The roles of words that begin questions; "there_are" are words that may end one."""
 
 ORDER = (
-    "arrival", "arrival_at", "on_way", "on_way_to", "start_at", "wait_at", "back_and_forth", "rounds_of", "any_time",
-    "tries",
+    "arrival", "arrival_at", "on_way", "on_way_to", "start_at", "wait_at", "back_and_forth", "rounds_of", "pictures_of",
+    "any_time", "tries",
     "at_most", "up_to_times", "stop_after", "try_again", "weekly", "on_days", "instead", "between_times",
 )  # fmt: skip
 """The roles of words about the order of commands."""
@@ -85,7 +86,7 @@ ROLES = {
     **dict.fromkeys(_NO_SLOT, ""),
     **dict.fromkeys(("every", "delay", "for", "held", "up_to", "apart", "within", "wait", "wait_up_to"), "duration"),
     **dict.fromkeys(("without_entering", "without_leaving"), "zone"),
-    **dict.fromkeys(("count", "tries", "at_most", "up_to_times", "stop_after", "rounds_of"), "count"),
+    **dict.fromkeys(("count", "tries", "at_most", "up_to_times", "stop_after", "rounds_of", "pictures_of"), "count"),
     **dict.fromkeys(("more", "at_least_of"), "count"),
     **dict.fromkeys(("arrival_at",), "place"),
     **dict.fromkeys(("weekly", "on_days"), "days time_of_day"),
@@ -191,6 +192,7 @@ TABLES: dict[str, tuple[Callable[[object], bool], str]] = {
     "prepositions": (_words, "a list of phrases"),
     "synonyms": (_words, "a list of verbs"),
     "everyone": (_words, "a list of words"),
+    "other_names": (_words, "a list of names"),
     "pronouns": (_words, "a list of types"),
     "meanings": (_between, "one of " + ", ".join(CONNECTIVES)),
     "nodes": (_is_text, "the words of a node"),
@@ -273,6 +275,7 @@ _LANGUAGE: dict[str, Any] = {
     "doing": {},
     "third_person": {}, "direct": {}, "perfect": {},
     "negative_subjects": {}, "plurals": {}, "asking": {}, "plural_endings": {}, "nouns": {}, "everyone": {},
+    "other_names": {},
     "pronouns": {}, "nodes": {}, "meanings": {}, "numbers": {}, "multipliers": {}, "fractions": {}, "times": {},
     "parts_of_day": {}, "clock": {},
 }  # fmt: skip

@@ -128,6 +128,9 @@ class Lexicon:
         """The words of remarks: how somebody feels, that there is something, and what may be felt."""
         self.been = tree_of((words, True) for words in self.asking["been"])
         """The words of a journey that is behind somebody: `have been in`."""
+        self.contents = tree_of((words, True) for words in self.asking["contents"])
+        """What may be in a thing: `water`."""
+        self.content_words = frozenset(language["qualities"].get("content", ())[:1])
         self.staying = tree_of((words, True) for words in self.asking["staying"])
         """What does nothing where it stands alone: `stay here`."""
         self.in_turn = tree_of((words, True) for words in self.asking["in_turn"])
@@ -183,6 +186,7 @@ class Lexicon:
         self.negative_subjects: dict[str, list[str]] = language["negative_subjects"]
         self._plurals: dict[str, list[str]] = language["plurals"]
         self._endings: dict[str, str] = language["plural_endings"]
+        self._other_names = [{name, *others} for name, others in language["other_names"].items()]
         self._add_roles()
         for entry in (*(e for f in files for e in f.entries), *entries):
             self._add_entry(entry)
@@ -251,8 +255,9 @@ class Lexicon:
             home = next((name for name, parts in (features or {}).get(PLACE, ()) if HOME in parts), "")
             if home:
                 pairs[PLACE] = [*pairs[PLACE], *((words, home) for words in self.asking["home"])]
-            colors = self._colors(pairs)
-            pairs = with_plurals({kind: [*own, *colors.get(kind, ())] for kind, own in pairs.items()}, self._endings)
+            colors, others = self._colors(pairs), self._others(pairs)
+            further = {kind: [*own, *colors.get(kind, ()), *others[kind]] for kind, own in pairs.items()}
+            pairs = with_plurals(further, self._endings)
             values = self.values.with_names(pairs, features)
             words = (word for pair in chain(*pairs.values()) for word in pair[0].lower().split())
             written = self.orthography.with_words(word for word in words if not word.isascii())
@@ -271,6 +276,20 @@ class Lexicon:
             own = [pair for pair in colors if sum(f"{name} ".startswith(f"{pair[0]} ") for name in names) == 1]
             made[kind] = own + [(f"{color} {one}", name) for color, name in own for one in self._heads]
         return made
+
+    def _others(self, named: dict[str, list[tuple[str, str]]]) -> dict[str, list[tuple[str, str]]]:
+        """Other words for the same, `the hallway` for the hall, where nothing else has that name, or one of these."""
+        taken = {words.lower() for pairs in named.values() for words, _ in pairs}
+        return {
+            kind: [
+                (other, name)
+                for words, name in pairs
+                for group in self._other_names
+                if group & taken == {words.lower()}
+                for other in sorted(group - taken)
+            ]
+            for kind, pairs in named.items()
+        }
 
     def _bare(self, words: str) -> str:
         """Articles do not matter in names either."""

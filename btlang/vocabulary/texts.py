@@ -145,11 +145,14 @@ class Texts:
         return f"{asked[0].upper()}{asked[1:]}?"
 
     def _said(self, text: Words, first: int, last: int) -> list[str]:
-        """Words as they are written, but what is theirs is yours for whom is asked."""
-        return [
-            self._addressed if text.words[at] in self._owners else text.source.text[text.begin(at) : text.ends[at]]
-            for at in range(first, last)
-        ]
+        """Words as they are written, or in the place of those; but what is theirs is yours for whom is asked."""
+        said = []
+        for at in range(first, last):
+            word, written = text.words[at], text.source.text[text.begin(at) : text.ends[at]]
+            said.append(
+                self._addressed if word in self._owners else written if written.lower().endswith(word) else word
+            )
+        return said
 
     def end_of_clause(self, text: Words, at: int) -> int:
         """Where the clause ends that begins at a word, 0 where it is one word."""

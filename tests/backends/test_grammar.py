@@ -112,7 +112,7 @@ def test_every_role_that_can_stand_in_one_line_has_a_rule() -> None:
         "giving",  # only words of others have outputs
         "may", "or_stay",  # what is permitted is left out
         "needs_world", "needs_words", "politeness", "times_of_day", "never",
-        "on_way", "on_way_to", "start_at", "wait_at", "back_and_forth", "rounds_of",
+        "on_way", "on_way_to", "start_at", "wait_at", "back_and_forth", "rounds_of", "pictures_of",
         "arrival", "arrival_at",  # about journeys, which no rule tells from others
         "any_time", "tries", "at_most", "up_to_times", "stop_after", "try_again", "if_unanswered",
         "if_one_fails", "instead", "between_times",

@@ -183,6 +183,9 @@ charge [to {percent}]
           charge/recharge yourself
           charge/recharge fully
           charge/recharge completely
+          go/get back to charging
+          return to charging
+          start charging
     {percent}: a number and one of %; 100% if left out
     needs: base
     node: Charge

@@ -28,7 +28,7 @@ from btlang.vocabulary.word_tree import END, SLOTS, find
 # A line that starts with one of these compares; it defines nothing.
 _STARTS_NO_NAME = frozenset((
     "if", "unless", "while", "until", "whenever", "first_time", "as_soon_as", "otherwise", "then", "check",
-    "wait_until", "at", "every_day", "until_time", "once",
+    "wait_until", "at", "every_day", "until_time", "once", "if_fails", "if_one_fails", "if_unanswered", "if_works",
 ))  # fmt: skip
 _WEAK = DEFINING[-1]
 _NOT_IN_A_NAME = frozenset((*CONNECTIVES, "if", "unless", "while", "until", "otherwise", "provided"))

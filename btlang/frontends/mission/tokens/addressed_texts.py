@@ -102,6 +102,8 @@ class AddressedTexts(SentenceReader):
         words: list[str] = []
         for at in words_of(text, asked[0]):
             pronoun = find(pronouns, text.words, at)
+            if pronoun is not None and PLACE in self._context.pronouns[pronoun[0]]:
+                pronoun = None  # `if she isn't there, tell me`
             if pronoun is not None and (len(named) != 1 or named[0][:1] == "{"):
                 return ""
             words.append(named[0] if pronoun is not None else self._written(at))
@@ -151,6 +153,7 @@ class AddressedTexts(SentenceReader):
         last = end or value.last
         is_speaker = text.words[at - 2] in values.role_words.speaker
         asked = self._of_speaker(at, last) if is_speaker else text
+        asked = self._with_thing(asked, at, last)
         about = asked if asked is not text or not is_speaker else None  # `ask me if she wants tea`
         question = values.texts.direct(about, at, last, self._joining_things(at, last)) if about is not None else None
         self._note_asked(at, last)
@@ -175,6 +178,24 @@ class AddressedTexts(SentenceReader):
                 text = text.with_word(at, asking["spoken_of"][0])
             elif text.words[at] in owners.own:
                 text = text.with_word(at, min(owners.other_owners))
+        return text
+
+    def _with_thing(self, text: Words, first: int, last: int) -> Words:
+        """`look for the cup. If that fails, ask Bob where it is`: the words with the cup, which he can't know."""
+        names, pronouns = self._vocabulary.values.names_tree(OBJECT), self._context.pronouns
+        asking = self._vocabulary.asking
+        for at in range(first, last):
+            if OBJECT not in pronouns.get(text.words[at], ()) or text.words[at] in self._vocabulary.values.ones:
+                continue
+            is_somewhere = text.words[at + 1] in asking["asking_be"] and text.words[at + 2] in asking["located"]
+            is_where = text.words[at - 1] in self._vocabulary.roles["ask_where"]
+            if not (is_where or is_somewhere or at == last - 1):
+                continue  # `if it is raining`
+            meant = self._context.latest.get(OBJECT)
+            named = ((place, find(names, text.words, place)) for place in reversed(range(first)))
+            thing = next(((place, found[1]) for place, found in named if found is not None and found[0] == meant), None)
+            if thing is not None:
+                text = text.with_word(at, " ".join(map(self._written, range(*thing))))
         return text
 
     def _note_asked(self, at: int, last: int) -> None:

@@ -166,8 +166,14 @@ class Answers(AddressedTexts):
         if last == len(tokens) - 1 or tokens[-1].kind != "if" or len(asked) != 2:
             return
         are_replies = all(value.entry.id in ABOUT_ANSWERS for value in asked) and (is_denied or asked[0] != asked[1])
-        if are_replies and kinds.count("open") == kinds.count("close") and kinds.count("if") == 1:
-            tokens[last:-1] = [Token("semi", tokens[last].start, tokens[last].start)]
+        start, here = tokens[begin].start, tokens[last].start
+        if not are_replies or kinds.count("if") != 1:
+            return
+        if kinds.count("open") == kinds.count("close"):
+            tokens[last:-1] = [Token("semi", here, here)]
+        elif "open" not in kinds[begin - first :] and "close" not in kinds[begin - first :]:
+            tokens.insert(last, Token("close", here, here))
+            tokens.insert(begin, Token("open", start, start))
 
     def _hear(self, token: Token, at: int) -> None:
         """`wait until she says stop` where nobody is asked is what is heard; `she says nothing` is silence."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from btlang.frontends.mission.token import JOINTS, Called, OnDays, Token, constraint_of, statement_start
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
+from btlang.frontends.mission.tokens.settling import STAYS
 from btlang.frontends.mission.tokens.silent_words import BEGINS
 from btlang.text.time_of_day import WEEKDAYS
 from btlang.vocabulary.match import Match, SlotValue
@@ -81,6 +82,9 @@ class ClockWords(SentenceReader):
         asked = Token("condition", start, end, Called(entry, _times(match.values[0].text, last[0])))
         if tokens and tokens[-1].kind == "every":
             return self._in_each_round(asked, last[1])
+        first = statement_start(tokens, len(tokens))
+        if len(tokens) > first and tokens[-1].kind not in BEGINS:
+            return self._within_hours(match, asked, last) if self._is_end(last[1]) else 0
         if words[last[1]] != ",":
             return 0
         lasts = words[at] in self._vocabulary.roles["start_at"] or self._is_repeated(last[1])
@@ -89,6 +93,21 @@ class ClockWords(SentenceReader):
         tokens += [  # `from 7 am to 10 am, A`, `between 7 am and 10 am, A every 5 min`: also begun within that time
             Token("wait_until", start, start), asked, Token("then", end, end), Token("until_time", start, end, last[0]),
         ]  # fmt: skip
+        return last[1]
+
+    def _within_hours(self, match: Match, asked: Token, last: tuple[str, int]) -> int:
+        """`patrol A and B from 10 pm to 6 am`, `stand at the door from 9 am to 5 pm`: as if it stood in front."""
+        tokens, start, end = self._tokens, asked.start, asked.end
+        first = statement_start(tokens, len(tokens))
+        is_from = self._text.words[match.values[0].first - 1] in self._vocabulary.roles["start_at"]
+        if not is_from or any(token.kind not in _SIMPLE for token in tokens[first:]):
+            return 0
+        begin = [Token("wait_until", start, start), asked, Token("then", end, end)]
+        if tokens[-1].role == STAYS:
+            tokens += [Token("then", end, end), Token("wait_time", start, end, last[0])]
+        else:
+            begin += [Token("until_time", start, end, last[0]), Token("comma", end, end)]
+        tokens[first:first] = begin
         return last[1]
 
     def _in_each_round(self, asked: Token, end: int) -> int:

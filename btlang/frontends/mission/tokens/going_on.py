@@ -141,7 +141,7 @@ class GoingOn(SentenceReader):
         return role
 
     def turns(self, otherwise: Token) -> None:
-        """`A. If that fails, B. Otherwise C`: C is done if A works; see `turn_branches`. In a bracket it is for that."""
+        """`A. If that fails, B. Otherwise C`: C is done if A works; see `turn_branches`. Not so in a bracket of B."""
         kinds = self._statement(len(self._tokens) - 1)[1]
         form = next((at for at in reversed(range(len(self._tokens))) if self._tokens[at].value == FAILS), 0)
         brackets = [token.kind for token in self._tokens[form:] if token.kind in ("open", "close")]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from btlang.frontends.mission.token import JOINTS, RULES, Token, run_start, statement_start
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.frontends.mission.tokens.settling import STAYS
-from btlang.frontends.mission.tokens.silent_words import BEGINS, begins_item
+from btlang.frontends.mission.tokens.silent_words import BEGINS, begins, begins_item
 from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.language_tables import NOT_ALONE
@@ -34,11 +34,24 @@ class JourneyWords(SentenceReader):
         return joint.last if joint is not None and joint.meaning.role in ("and", "then") else behind
 
     def _start_of_leg(self, at: int) -> int:
-        """`go from the lab to the hall`, by the verb at a word."""
+        """`go from the lab to the hall`, `go from room to room`, by the verb at a word."""
         if self._text.words[at] not in self._vocabulary.journey_verbs:
             return 0
         match = self._phrase(at + 1)
+        if match is not None and match.meaning.role == "start_at" and (end := self._from_each(at, match.last)):
+            return end
         return self._start(at, match.last) if match is not None and match.meaning.role == "start_at" else 0
+
+    def _from_each(self, at: int, first: int) -> int:
+        """`go from room to room`, where the noun at a word stands twice: to every room."""
+        text, every = self._text, self._vocabulary.roles["all_names"][0]
+        if text.words[first] != text.words[first + 2] or first in text.articles:
+            return 0
+        journey = self._partial.with_front(at, first + 2, [*self._vocabulary.asking["journey"], every])
+        if journey is None or journey.last != first + 3:
+            return 0
+        self._partial.append(journey, at)
+        return journey.last
 
     def _back(self, at: int) -> int:
         """`go to the lab and back`: to where the journey before it ended, else to where the mission began."""
@@ -80,16 +93,26 @@ class JourneyWords(SentenceReader):
         self._partial.append(journey, at)
         return journey.last
 
-    def _rounds_of(self, match: Match, at: int) -> int:
-        """`do three rounds through the lab and the hall`: to each of them, so many times."""
-        journey = self._with_front(at, match.last, "journey")
-        if journey is None:
+    def rounds(self, match: Match, at: int) -> int:
+        """`five times, A and B`: both, so many times."""
+        text, last = self._text, match.last
+        if not begins(self._tokens) or text.words[last] not in (",", ":"):
+            return 0
+        self._tokens.append(Token("repeat", text.starts[at], text.starts[at]))
+        self._tokens += [self._calls.token(match, at), Token("colon", text.starts[last], text.ends[last])]
+        return last + 1
+
+    def _so_many(self, match: Match, at: int, front: str) -> int:
+        """`do three rounds through the lab and the hall`, `take three pictures`: the same, so many times."""
+        words = self._vocabulary.asking[front]
+        command = self._partial.with_front(at, match.last, words, is_whole=front != "journey")
+        if command is None:
             return 0
         start, end = self._text.starts[at], self._text.ends[match.last - 1]
         number = self._calls.token(match, at)
-        self._partial.append(journey, at)
+        self._partial.append(command, at)
         self._tokens.append(Token("count", start, end, number.value))
-        return journey.last
+        return max(command.last, match.last)
 
     def _go_and_see(self, at: int) -> int:
         """`go and see if Bob is in the lab`: there, and then what is asked."""

@@ -24,7 +24,7 @@ from btlang.text.source import Source, Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, split
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import Known, ReadingContext
-from btlang.vocabulary.value_type import PLACE, TEXT, ZONE
+from btlang.vocabulary.value_type import OBJECT, PLACE, TEXT, ZONE
 from btlang.vocabulary.word_tree import find
 
 
@@ -53,6 +53,7 @@ class Lexer:
         _drop_still(self.text, vocabulary)
         _drop_commas(self.text, vocabulary)
         self.problems += _drop_untold_sizes(self.text, vocabulary)
+        self.problems += _drop_untold_contents(self.text, vocabulary)
         self.names = Names(self.text, vocabulary, load, known)
         self.problems += self.names.problems
         self.vocabulary = self.names.vocabulary
@@ -176,4 +177,32 @@ def _drop_untold_sizes(text: Words, vocabulary: Lexicon) -> Iterator[Diagnostic]
         ):
             span = text.span(at, end)
             text.drop(at, end)
+            yield diagnostic("BT158", span, words=span.text)
+
+
+def _drop_untold_contents(text: Words, vocabulary: Lexicon) -> Iterator[Diagnostic]:
+    """Take out what is in a thing where nothing is known of that: `a cup of tea` is the cup."""
+    words, values = text.words, vocabulary.values
+    contents, joints = vocabulary.contents, vocabulary.content_words
+    if text.distinct.isdisjoint(contents) or text.distinct.isdisjoint(joints):
+        return
+    if any(part == "content" for _, parts in values.likenesses.features.get(OBJECT, ()) for part, _ in parts):
+        return
+    names = (values.names_tree(OBJECT), values.names_tree("kind"))
+    entries = [entry for same in vocabulary.entries.values() for entry in same]
+    says = {
+        phrase.split()[0]
+        for entry in entries
+        if any(slot.type == TEXT for slot in entry.slots)
+        for phrase in (*entry.phrases, *(verb for verbs, _ in entry.verbs for verb in verbs))
+    }
+    for at in reversed([at for at in range(1, len(words)) if words[at] in joints]):
+        inside = find(contents, words, at + 1)
+        begins = range(max(at - 3, 0), at)
+        is_thing = any((found := find(tree, words, first)) and found[1] == at for tree in names for first in begins)
+        is_name = any((found := find(names[0], words, first)) and found[1] > at for first in begins)
+        is_said = inside is not None and not says.isdisjoint(words[text.earlier(at)[1] : at])
+        if inside is not None and is_thing and not (is_name or is_said):
+            span = text.span(at, inside[1])
+            text.drop(at, inside[1])
             yield diagnostic("BT158", span, words=span.text)

@@ -60,7 +60,9 @@ class OrderWords(ClockWords, JourneyWords, RuleWords):
         if role == "between_times":
             return self._between(match, at)
         if role == "rounds_of":
-            return self._rounds_of(match, at)
+            return self._so_many(match, at, "journey")
+        if role == "pictures_of":
+            return self._so_many(match, at, "picturing")
         return self._back_and_forth(at, match.last) if role == "back_and_forth" else self._arrival(match, at)
 
     def _arrival(self, match: Match, at: int) -> int:

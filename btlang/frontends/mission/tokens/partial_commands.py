@@ -72,18 +72,24 @@ class PartialCommands:
         return doing(self._text, at, self._vocabulary.doing, self._tries, self._context)
 
     def with_front(
-        self, at: int, end: int, words: Sequence[str], trie: TrieNode | None = None, left_out: range = range(0)
+        self,
+        at: int,
+        end: int,
+        words: Sequence[str],
+        trie: TrieNode | None = None,
+        left_out: range = range(0),
+        is_whole: bool = False,
     ) -> Match | None:
         """The phrase that `words` (`go to`) make of the name behind the words from one on: `on the way to the lab`.
 
-        Some words may be left out of it.
+        Some words may be left out of it. `is_whole`: `words` alone are one, too.
         """
         if not words:
             return None
         places = [*[at] * len(words), *(place for place in rest_of(self._text, end) if place not in left_out)]
         tries = self._tries[:1] if trie is None else (trie,)
         match = match_of(self._text, places, dict(enumerate(words)), tries, self._context)
-        return relocated(match, places) if match is not None and match.last > len(words) else None
+        return relocated(match, places) if match is not None and match.last + is_whole > len(words) else None
 
     def in_order(self, places: Sequence[int]) -> Match | None:
         """The phrase that words of the text make in another order; `last` is the place behind its latest word."""

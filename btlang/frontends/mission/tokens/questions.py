@@ -97,9 +97,13 @@ class Questions(Answers):
         slot = next(slot.name for slot in said.entry.slots if slot.type == TEXT)
         if text.words[first] in self._vocabulary.asking["whether"]:
             return self._say_whether(at, first + 1, said, slot)
+        if end := self._tell_when(at, first, said, slot):
+            return end
         if text.words[first] in self._vocabulary.roles["if"]:
-            self._doubt(said.entry, first, _DEPENDS)  # `tell me if the door is open`
-            return first + self._length(first) + 1
+            end = first + self._length(first) + 1
+            self._doubt_if(at, first, said.entry)
+            self._tokens.append(Token("unknown", text.starts[at], text.ends[end - 1]))
+            return end
         measured = self._measured(first)
         if measured is not None and self._ends(measured.last):  # `tell Bob what she said`
             command = Token("command", text.starts[at], text.ends[measured.last - 1], said)
@@ -111,6 +115,42 @@ class Questions(Answers):
         if asked is None or read is None:
             return 0
         return read(at, asked.last, Token("command", text.starts[at], text.ends[asked.last - 1], said), slot)
+
+    def _doubt_if(self, at: int, first: int, entry: Entry) -> None:
+        """BT151 for `tell me if the door is open`: whether it is, or only if it is."""
+        text, asked = self._text, self._phrase(first + 1)
+        if asked is None or asked.meaning.entry is None:
+            self._doubt(entry, first, _DEPENDS)
+            return
+        whole = text.span(at, asked.last)
+        condition = text.source.text[text.begin(first + 1) : whole.end]
+        told, form = text.span(at, first).text, text.span(first, first + 1).text
+        one = f"{told} {self._vocabulary.asking['whether'][0]} {condition}"
+        other = f"{form} {condition}, {told[:1].lower()}{told[1:]}"
+        self._calls.problems.append(diagnostic("BT151", whole, words=whole.text, one=one, other=other))
+
+    def _tell_when(self, at: int, first: int, said: Called, slot: str) -> int:
+        """`let me know when Bob arrives`, `tell Alice as soon as the door is open`: waits until then, and says it."""
+        text, when = self._text, self._phrase(first)
+        role = when.meaning.role if when is not None else ""
+        if when is None or not (role in ("as_soon_as", "once") or text.words[first] in self._vocabulary.asked_once):
+            return 0
+        begin = when.last if role == "as_soon_as" else first + 1
+        asked = self._phrase(begin)
+        if asked is None or asked.meaning.role not in ("condition", "negated") or not self._ends(asked.last):
+            return 0
+        tokens, start, end = self._tokens, text.starts[at], text.ends[asked.last - 1]
+        count, denied = len(tokens), asked.meaning.role == "negated"
+        condition = self._calls.token(asked, begin)
+        condition.kind = "condition"
+        form = Token("as_soon_as", text.starts[first], text.ends[begin - 1])
+        tokens += [form, *([Token("not", start, start)] if denied else []), condition]
+        command = Token("command", start, end, said)
+        self._set_text(command, slot, self._asked_of())
+        form.kind = "wait_until"
+        tokens.insert(count, Token("open", start, start))
+        tokens += [Token("then", end, end), command, Token("close", end, end)]
+        return asked.last
 
     def _say_whether(self, at: int, first: int, said: Called, slot: str) -> int:
         """Says yes or no for the condition that begins at `first`."""

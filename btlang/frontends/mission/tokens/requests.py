@@ -76,8 +76,9 @@ class Requests(Questions):
         asked = self._phrase(first)
         if asked is not None and asked.meaning.role == "ask_how_many":
             return self._how_many(at, asked.last, command, value.name)
-        if entry.id == TELL and text.words[first] in self._vocabulary.roles["and"]:
-            return self._inform(at)  # `tell Bob and wave`
+        is_timed = asked is not None and asked.meaning.role == "as_soon_as"
+        if entry.id == TELL and (is_timed or text.words[first] in self._vocabulary.roles["and"]):
+            return self._inform(at)  # `tell Bob and wave`, `tell Bob as soon as the door is open`
         asking = self._vocabulary.asking
         if entry.id == TELL and text.words[first - 1] in (*asking["pleading"], *asking["asking_for"]):
             return self._plead(entry, value, at, command)

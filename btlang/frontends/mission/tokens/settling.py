@@ -130,10 +130,15 @@ def turn_branches(tokens: list[Token]) -> None:
 def with_rounds(tokens: list[Token]) -> None:
     """Make `go to the lab every hour and wave` into `every hour, go to the lab and wave`: a task has no end else."""
     for at, token in enumerate(tokens):
-        if token.kind != "every" or tokens[at + 1 : at + 2] == [] or tokens[at + 1].kind != "and":
+        behind = run_end(tokens, at + 1, JOINTS)
+        if token.kind != "every" or all(each.kind != "and" for each in tokens[at + 1 : behind]):
             continue
         first, end = statement_start(tokens, at), run_start(tokens, statement_end(tokens, at), STATEMENT_ENDS)
-        if first == at or any(each.kind not in _SIMPLE for each in (*tokens[first:at], *tokens[at + 1 : end])):
+        if first == at or any(each.kind not in _SIMPLE for each in tokens[first:at]):
+            continue
+        if any(each.kind not in _SIMPLE for each in tokens[behind:end]) and tokens[behind].kind != "if":
+            continue
+        if any(each.kind in ("every", "open", "colon") for each in tokens[behind:end]):
             continue
         value = tokens[at - 1].value
         if isinstance(value, Called | Listed) and not value.entry.accompaniment:
@@ -175,6 +180,8 @@ def with_stays(tokens: list[Token], source: Source, standing: Container[str]) ->
         return  # as nearly always
     depth, outside = 0, list[int]()
     for at, token in enumerate(tokens):
+        if token.kind == "command" and not token.role and first_word(token, source) in standing:
+            token.role = STAYS
         depth += (token.kind == "indent") - (token.kind == "dedent")
         begins = at == 0 or tokens[at - 1].kind in STATEMENT_ENDS
         if depth == 0 and begins and token.kind not in ("define", *STATEMENT_ENDS):
@@ -187,7 +194,7 @@ def with_stays(tokens: list[Token], source: Source, standing: Container[str]) ->
     constraint = constraint_of(tokens[commands[-1]])
     if last.kind == "nothing" and last.role == STAYS:
         last.kind = "wait_forever"
-    elif last.role == STAYS or first_word(last, source) in standing:
+    elif last.role == STAYS:
         tokens[end:end] = [Token("then", last.end, last.end), Token("wait_forever", last.end, last.end)]
     elif constraint is not None and constraint.kind == "keep in" and end == commands[-1] + 1:
         tokens[end:end] = [Token("semi", last.end, last.end), Token("wait_forever", last.end, last.end)]

@@ -338,6 +338,8 @@ class WordReader:
             return self._places.in_place_of_command(match, at)
         if role == "at":
             return self._order.times(match, at)
+        if role == "count":
+            return self._order.rounds(match, at)
         if role == "retry":
             return self._tries.retry(match, at)
         if role == "check":
