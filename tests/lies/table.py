@@ -17,13 +17,13 @@ from tests.lies.test_lies import mission, scene
 PAGE = Path(__file__).parents[2] / "docs" / "lies.md"
 HEAD = """# Wrong sensors
 
-A sensor begins to lie after the robot has driven 0.3 m at 0.5 m/s; wheels and joints lie from the start. The table has
-the metres and seconds from then until the robot was really at rest, the exit code of `btc run`, and the reason that it
-gave. [The guard](guard.md) explains the reasons. `python -m tests.lies.table` writes this page.
+The robot drives at 0.5 m/s. Sensors begin to lie after 0.3 m, wheels and joints at the start. From then on, the table
+counts the metres and seconds until the robot was really at rest. Then come the exit code of `btc run` and its reason,
+which [the guard](guard.md) explains. `python -m tests.lies.table` writes this page.
 
-Where the lie only hides a wall or is harmless, the robot rightly drives on: to the wall, 1.5 m ahead, or to its goal.
+If a lie is harmless or only hides a wall, the robot rightly continues: to its goal, or to the wall 1.5 m ahead.
 
-| lie | told by | m | s | exit | reason |
+| lie | platform | m | s | exit | reason |
 |---|---|---|---|---|---|
 """
 
