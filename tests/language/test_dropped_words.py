@@ -33,5 +33,5 @@ def test_a_name_of_the_world_is_itself(tmp_path: Path) -> None:
     places = '[{ name = "hall", x = 1, y = 1 }, { name = "corridor", x = 2, y = 1 }]'
     world.write_text(f"start = {{ x = 0, y = 0 }}\nplaces = {places}\n", encoding="utf-8")
     assert in_one_line(btlang.parse_tree("go to the corridor", world=world)) == "GoTo place=corridor"
-    with pytest.raises(btlang.ParseError, match="hallway"):  # the hall, or the corridor
+    with pytest.raises(btlang.MissionError, match="hallway"):  # the hall, or the corridor
         btlang.parse_tree("go to the hallway", world=world)
