@@ -112,7 +112,7 @@ WORD_LISTS = frozenset((
     "relative_denials", "particles", "fillers", "speaker", "subjects", "purpose", "determiners", "others",
     "denials",
     "possessive_endings", "ones", "directions", "clause_openers", "clause_words", "question_words", "inverting",
-    "sayings", "of_persons", "colored",
+    "sayings", "of_persons", "colored", "shapes",
 ))  # fmt: skip
 
 
@@ -268,7 +268,7 @@ _LANGUAGE: dict[str, Any] = {
     "relations_to_self": {},
     "determiners": [], "others": [], "denials": [], "possessive_endings": [], "ones": [], "directions": [],
     "clause_openers": [], "clause_words": [], "question_words": [], "inverting": [], "sayings": [], "of_persons": [],
-    "colored": [],
+    "colored": [], "shapes": [],
     "possessives": {"speaker": [], "others": []},
     "prepositions": {}, "synonyms": {}, "particles": [], "fillers": [], "speaker": [], "subjects": [], "purpose": [],
     "roles": {}, "contractions": {}, "about": {}, "comparisons": {}, "ordinals": {}, "counts": {}, "negations": {},

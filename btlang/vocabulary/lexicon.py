@@ -107,6 +107,7 @@ class Lexicon:
                     self.values.add_name(kind, self._bare(words), name)
         nouns = chain(*(language["nouns"].get(kind, (kind,)) for kind in (PLACE, ZONE)))
         self._heads = sorted({*self.values.ones, *nouns})
+        self._shapes: list[str] = language["shapes"]
         own = {kind: [(name, name) for name in self.values.listed(kind)] for kind in WORLD if kind in self.types}
         for kind, pairs in self._colors(own).items():
             for color, name in pairs:
@@ -267,14 +268,18 @@ class Lexicon:
         return recent(self._with_names, known, made)
 
     def _colors(self, named: dict[str, list[tuple[str, str]]]) -> dict[str, list[tuple[str, str]]]:
-        """`the green`, `the green one` and `the green area` for the green room, where no other name has that color."""
+        """`the green`, `the green one`, `the green square` for the green room, where no other name has that color."""
         names = {name.lower() for pairs in named.values() for _, name in pairs}
         made = {}
         for kind in (PLACE, ZONE):
             firsts = [(words.lower().partition(" ")[0], name) for words, name in named.get(kind, ()) if " " in words]
             colors = [(color, name) for color, name in firsts if self.values.takes_word("color", color)]
             own = [pair for pair in colors if sum(f"{name} ".startswith(f"{pair[0]} ") for name in names) == 1]
-            made[kind] = own + [(f"{color} {one}", name) for color, name in own for one in self._heads]
+            made[kind] = own + [
+                (f"{color} {one}", name) for color, name in own for one in (*self._heads, *self._shapes)
+            ]
+            rests = ((f"{color} {{}}{name[len(color) :]}", name) for color, name in own)  # `the green square room`
+            made[kind] += [(words.format(shape), name) for words, name in rests for shape in self._shapes]
         return made
 
     def _others(self, named: dict[str, list[tuple[str, str]]]) -> dict[str, list[tuple[str, str]]]:

@@ -35,3 +35,12 @@ def test_a_name_of_the_world_is_itself(tmp_path: Path) -> None:
     assert in_one_line(btlang.parse_tree("go to the corridor", world=world)) == "GoTo place=corridor"
     with pytest.raises(btlang.MissionError, match="hallway"):  # the hall, or the corridor
         btlang.parse_tree("go to the hallway", world=world)
+
+
+@pytest.mark.parametrize("parser", PARSERS)
+@pytest.mark.parametrize("sentence", ["go to the green square", "go to the green rectangular room", "go to the green"])
+def test_shapes_of_places_with_a_color(sentence: str, parser: str, tmp_path: Path) -> None:
+    world = tmp_path / "world.toml"
+    places = '[{ name = "green room", x = 1, y = 1 }, { name = "blue room", x = 2, y = 1 }]'
+    world.write_text(f"start = {{ x = 0, y = 0 }}\nplaces = {places}\n", encoding="utf-8")
+    assert in_one_line(btlang.parse_tree(sentence, world=world, parser=parser)) == 'GoTo place="green room"'
