@@ -176,6 +176,8 @@ _ALL = (
          "Ask once, and say right after it what depends on the answer, for example: {example}"),
     Code("BT145", "'{words}' goes on with a question, but the command right before it isn't one.",
          "Say first what is done if somebody answers, for example: {example}"),
+    Code("BT149", "'{words}' asks from where the robot is then.", "To go to {person} first, write: {fixed}", "note",
+         "asks from afar"),
     Code("BT150", "'{words}' doesn't fit here: {reason}.", "Write for example: {example}"),
     Code("BT151", "'{words}' can be read in two ways.", "Write what you mean: {one}\nOr: {other}"),
     Code("BT152", "'{words}' doesn't fit here: {reason}.", "{advice}"),

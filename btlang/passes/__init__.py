@@ -20,7 +20,13 @@ from btlang.passes.lint.two_readings import (
     find_rules_at_goals,
     find_two_readings,
 )
-from btlang.passes.lint.unlikely_meanings import find_ended_rounds, find_half_turns, find_next_day, find_restarts
+from btlang.passes.lint.unlikely_meanings import (
+    find_distant_questions,
+    find_ended_rounds,
+    find_half_turns,
+    find_next_day,
+    find_restarts,
+)
 from btlang.passes.lower import lower_names
 from btlang.passes.scope import order_names
 from btlang.tree.ast import Program
@@ -46,6 +52,7 @@ PASSES = (
     Pass("next day", find_next_day, needs_text=True),
     Pass("starts again", find_restarts, needs_text=True),
     Pass("rounds end", find_ended_rounds, needs_text=True),
+    Pass("asks from afar", find_distant_questions, needs_text=True),
     Pass("only rules", find_rules_only, needs_text=True),
     Pass("unused", find_unused, needs_text=True),
     Pass("never runs", find_unreachable),

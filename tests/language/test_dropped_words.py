@@ -16,7 +16,7 @@ from tests.language.test_meaning import PARSERS, in_one_line
     [
         ("bring Bob a cup of tea", "Bring object=cup person=Bob", ["BT158"]),
         ("take the bottle of cold water to the lab", "Take object=bottle place=lab", ["BT158"]),
-        ("ask Bob if he wants a cup of tea", 'Ask person=Bob question="Do you want a cup of tea?"', []),
+        ("ask Bob if he wants a cup of tea", 'Ask person=Bob question="Do you want a cup of tea?"', ["BT149"]),
         ("go to the hallway", "GoTo place=hall", []),
         ("go to the lounge", 'GoTo place="living room"', []),
         ("go to the charging station", "GoTo place=dock", []),

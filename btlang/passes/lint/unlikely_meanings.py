@@ -1,10 +1,12 @@
-"""Lints on commands that mean something else than most people expect (BT163, BT169, BT170, BT175, BT050).
+"""Lints on commands that mean something else than most people expect (BT149, BT163, BT169, BT170, BT175,
+BT050).
 
 - `turn around three times` are half turns, as most people mean whole turns;
 - `turn around and drive back 1 m`: backwards, or the way back that the robot faces then;
 - `A until 5 pm. At 5 pm, B`, and `... At 4 pm, B`, wait for the next day;
 - `go to the lab until someone is near` starts again, though the command comes to an end by itself;
-- `every 10 min, go to the lab` ends when a round fails.
+- `every 10 min, go to the lab` ends when a round fails;
+- `ask Bob "Tea?"` asks from where the robot is.
 """
 
 from __future__ import annotations
@@ -19,7 +21,10 @@ from btlang.passes.lint.two_readings import make_printer, make_warning
 from btlang.text.source import Span
 from btlang.text.time_of_day import seconds_of
 from btlang.tree import ast
+from btlang.tree.answers import ASK
+from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.value_type import PERSON
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -160,6 +165,22 @@ def find_ended_rounds(compilation: Compilation) -> Iterator[Diagnostic]:
             if isinstance(node, ast.Every | ast.Repeat | ast.UntilTime) and _goes_on(node) and _may_fail(node.body):
                 yield _note_end(node, compilation.vocabulary)
                 return
+
+
+def find_distant_questions(compilation: Compilation) -> Iterator[Diagnostic]:
+    """Report a question to somebody by name before whom nothing moves the robot, or asks where they are."""
+    body, vocabulary = compilation.mission.body, compilation.vocabulary
+    phrases = [each for each in compilation.syntax(body) if isinstance(each, ast.Phrase)] if body is not None else []
+    for phrase in sorted(phrases, key=lambda each: each.span.start):
+        named = [text for name, text in phrase.arguments if phrase.entry.slot(name).type == PERSON]
+        if phrase.entry.id == ASK and named and named[0] in vocabulary.values.listed(PERSON):
+            words = phrase.span.text
+            journey = " ".join((*vocabulary.asking["journey"], named[0], vocabulary.word("then")))
+            fixed = f"{journey} {words[:1].lower()}{words[1:]}"
+            yield diagnostic("BT149", phrase.span, words=words, person=named[0], fixed=fixed)
+            return
+        if named or MOVES in phrase.entry.resources or phrase.entry.sort == "name":
+            return
 
 
 def _note_end(node: ast.Every | ast.Repeat | ast.UntilTime, vocabulary: Lexicon) -> Diagnostic:
