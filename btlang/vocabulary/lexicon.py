@@ -171,6 +171,8 @@ class Lexicon:
         """The endings of the form that a verb has behind `while` or `before`, each with those of the verb itself."""
         self.third_person: dict[str, list[str]] = language["third_person"]
         """The same for the form behind a subject: `the robot waves`."""
+        self.of_robot: dict[str, str] = language["of_robot"]
+        """What a mission calls the robot, and what the robot calls itself: `you are`, `I am`."""
         self.perfect: dict[str, str] = language["perfect"]
         """How a condition says that it has held for some time, and what it says: `has been`, `is`."""
         self.nodes: dict[str, str] = language["nodes"]

@@ -148,15 +148,24 @@ class ReadingContext:
         if not is_both and (text.words[at] not in self.values.each or here.words[place - 1] not in self.values.located):
             return ()
         self.lacked = True
-        first = here.earlier(place)[1]
-        first = here.earlier(first - 1)[1] if first else 0
-        every = meant.uncounted()
-        names = self.values.likenesses.described(every)
-        led = [name for where, kind, name in self.reached if where >= first and kind == meant.type and name in names]
-        spoken = tuple(dict.fromkeys(led))
+        names = self.values.likenesses.described(meant.uncounted())
+        spoken = self._led_to(meant.type, names, here, place)
         if len(spoken) == 2 or (not is_both and len(spoken) > 2):
             return ((NAMES, ";".join(spoken)),)
         return None if is_both and len(names) != 2 else ()
+
+    def _led_to(self, kind: str, names: Sequence[str], text: Words, at: int) -> tuple[str, ...]:
+        """To which names of a type the statement at a word led, or the one before."""
+        first = text.earlier(at)[1]
+        first = text.earlier(first - 1)[1] if first else 0
+        led = [name for where, of, name in self.reached if where >= first and of == kind and name in names]
+        return tuple(dict.fromkeys(led))
+
+    def stops(self, text: Words, at: int) -> str:
+        """The set of the places to which the statement at a word led, or the one before; "" for fewer than two."""
+        led = self._led_to(PLACE, self.values.listed(PLACE), text, at)
+        parts = ((NAMES, ";".join(led)),)
+        return Choice(ALL, PLACE, self.keys.get(PLACE, PLACE), parts).text if len(led) > 1 else ""
 
     def without(self, group: str, text: Words, at: int) -> tuple[str, int] | None:
         """The choice of a set without what is left out at a word, `except the red one`, and where that ends."""
@@ -367,5 +376,8 @@ class ReadingContext:
         if is_one and word in self.values.plural_pronouns and self._stands_for_several(kind):
             self.lacked |= not self.listed.get(kind)
             return (self.listed[kind], end) if self.listed.get(kind) else None
+        if is_one and word in self.values.distributive and self.latest.get(kind, "")[:1] != "{":
+            self.lacked = True
+            return None  # `go to Alice. Go to Bob. Wave at each`
         self.lacked |= is_one and kind not in self.latest
         return (self.latest[kind], end) if is_one and kind in self.latest else None

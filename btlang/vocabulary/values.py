@@ -45,8 +45,7 @@ class Values(Measures):
         """The first words of what stands between the values of a list."""
         self.pronouns: Mapping[str, Sequence[str]] = language["pronouns"]
         """Words that stand for the latest value of a type, each with the types that it may be of."""
-        self.plural_pronouns = frozenset(language["plural_pronouns"])
-        """Those that stand for a list, too."""
+        self.plural_pronouns = frozenset(language["plural_pronouns"])  # also for a list
         self.pronoun_words = tree_of((words, words) for words in self.pronouns)
         self._names: dict[str, WordTree] = {kind.name: {} for kind in types.values() if kind.kind == "names"}
         self._listed: dict[str, dict[str, None]] = {}
@@ -70,6 +69,7 @@ class Values(Measures):
         roles, asking = language["roles"], language.get("asking", {})
         self.both, self._every, joined = (frozenset(roles.get(role, ())) for role in ("both", "all_names", "and"))
         self._joining = joined | frozenset(roles.get("or", ()))
+        self.distributive = {words for words in self.plural_pronouns if words.split()[0] in self.both | self._every}
         self.each, self.located = (frozenset(asking.get(name, ())) for name in ("apiece", "located"))
 
     def add_name(self, kind: str, words: str, name: str) -> None:

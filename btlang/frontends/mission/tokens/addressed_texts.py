@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import JOINTS, STATEMENT_ENDS, Called, Listed, Token, run_start, statement_start
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, searches
@@ -12,7 +14,7 @@ from btlang.tree.answers import ABOUT_ANSWERS, ASK
 from btlang.vocabulary.entry import RECIPIENT, Entry
 from btlang.vocabulary.match import SlotValue
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE, ZONE
+from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE, WORLD, ZONE
 from btlang.vocabulary.word_tree import find
 
 TELL = "TellPerson"
@@ -25,6 +27,7 @@ _NO_QUESTION = "begins no question that I know"
 _PERSON = "is a person, and the question is missing"
 
 
+_MEASURES = frozenset(("count", "at_most", "up_to_times", "tries", "within", "for", "up_to", "every"))
 _BEHIND = ("politeness", "then", "and")
 
 
@@ -96,7 +99,8 @@ class AddressedTexts(SentenceReader):
         if any(token.kind in _LINE_ENDS for token in self._tokens[form:]) or not isinstance(asked[0].value, Called):
             return ""
         text, pronouns = self._text, self._vocabulary.values.pronoun_words
-        named = [value for _, value in asked[0].value.arguments]
+        slots = asked[0].value.entry.slot
+        named = [value for name, value in asked[0].value.arguments if slots(name).type in WORLD]
         if asked[0].value.entry.id in ABOUT_ANSWERS:  # `if she says yes, tell Bob`: of who was asked
             named = [person for person in [self._context.latest.get(PERSON, "")] if person]
         words: list[str] = []
@@ -107,7 +111,11 @@ class AddressedTexts(SentenceReader):
             if pronoun is not None and (len(named) != 1 or named[0][:1] == "{"):
                 return ""
             words.append(named[0] if pronoun is not None else self._written(at))
+        of_robot = self._vocabulary.of_robot
+        pattern = "|".join(map(re.escape, sorted(of_robot, key=len, reverse=True)))
         said = " ".join(words)
+        if of_robot:
+            said = re.sub(rf"\b(?:{pattern})\b", lambda match: of_robot[match[0].lower()], said, flags=re.IGNORECASE)
         return said[:1].upper() + said[1:]
 
     def _failed(self, end: int) -> str:
@@ -115,7 +123,7 @@ class AddressedTexts(SentenceReader):
         tried = self._tokens[end - 1] if end else None
         if tried is None or tried.kind != "command" or end - 1 != statement_start(self._tokens, end):
             return ""
-        words = list(words_of(self._text, tried))
+        words = [at for at in words_of(self._text, tried) if self._text.words[at][0] != '"']
         people = self._vocabulary.values.texts.of_persons
         if any(self._text.words[at] in people or self._text.words[at] in self._context.pronouns for at in words):
             return ""
@@ -157,6 +165,8 @@ class AddressedTexts(SentenceReader):
         about = asked if asked is not text or not is_speaker else None  # `ask me if she wants tea`
         question = values.texts.direct(about, at, last, self._joining_things(at, last)) if about is not None else None
         self._note_asked(at, last)
+        if question is not None and self._doubt(entry, self._measure_in(at, last)):
+            return 0
         if question is not None:
             self._set_text(command, value.name, question)
             if end:
@@ -166,6 +176,14 @@ class AddressedTexts(SentenceReader):
         if not self._doubt(entry, values.texts.doubt(text, at + 1, value.last)):
             self._doubt(entry, at, _NO_QUESTION)
         return 0
+
+    def _measure_in(self, first: int, last: int) -> int:
+        """Where words end what is said that could say how often, or how long: `if he wants tea three times`."""
+        found = ((at, self._phrase(at)) for at in range(first + 1, last))
+        ends = (
+            at for at, match in found if match is not None and match.meaning.role in _MEASURES and match.last == last
+        )
+        return next(ends, 0)
 
     def _of_speaker(self, first: int, last: int) -> Words:
         """The words of `ask me if I want my tea` as those about somebody else: `if they want their tea`."""

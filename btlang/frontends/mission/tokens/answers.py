@@ -68,8 +68,10 @@ class Answers(AddressedTexts):
         """`ask Alice "Tea?". If so, A`: a command that depends on the answer, not on whether there was one."""
         found = find(self._vocabulary.replies, self._text.words, at) if self._may_ask else None
         entry = self._vocabulary.entry(ANSWERED) if found is not None else None
+        if found is None or entry is None:
+            return 0
         behind, is_first = run_start(self._tokens, len(self._tokens), ("comma",)), begins(self._tokens)
-        if found is None or entry is None or self._question(behind, right_before=role == "otherwise") is None:
+        if self._question(behind, right_before=role == "otherwise") is None:
             return 0
         start, end = self._text.starts[at], self._text.ends[found[1] - 1]
         if not is_first:

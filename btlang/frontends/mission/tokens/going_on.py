@@ -160,6 +160,20 @@ class GoingOn(SentenceReader):
         if first < joint < check and is_plain and all(each.kind in _ASKED for each in tokens[check + 1 : last]):
             tokens[joint:check] = [Token("semi", tokens[check].start, tokens[check].start)]
 
+    def _doubt_so(self, end: int, at: int) -> None:
+        """BT151 for `go to the lab unless C. If so, A`: if C, or if that worked."""
+        tokens, text = self._tokens, self._text
+        last = run_start(tokens, len(tokens) - 1, JOINTS | STATEMENT_ENDS)
+        first = statement_start(tokens, last)
+        form = next((i for i in range(first, last) if tokens[i].kind in ("if", "unless")), last)
+        asked = next((token for token in tokens[form:last] if token.kind == "condition"), None)
+        if asked is None or tokens[form].start == tokens[form].end:
+            return  # none, or an answer that has been asked about
+        words, condition = text.span(at, end), Span(text.source, asked.start, asked.end).text
+        one = f"{self._vocabulary.word('if')} {condition}, ..."
+        other = f"{self._vocabulary.word('if_works')}, ..."
+        self._calls.problems.append(diagnostic("BT151", words, words=words.text.rstrip(" ,"), one=one, other=other))
+
     def _doubt_silence(self, words: Span) -> None:
         """BT144 for `ask Alice and Bob "Tea?". If they don't answer, A`: whoever is silent, or both."""
         asked = next((token for token in reversed(self._tokens) if token.kind == "command" and hears(token)), None)

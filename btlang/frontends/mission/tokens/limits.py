@@ -6,6 +6,7 @@ from btlang.frontends.mission.token import IN_CONDITIONS, JOINTS, STATEMENT_ENDS
 from btlang.frontends.mission.tokens.going_on import GoingOn
 from btlang.frontends.mission.tokens.sentence_reader import hears, searches
 from btlang.frontends.mission.tokens.settling import FAILS, MEASURES, STAYS, asked_about, lasting
+from btlang.frontends.mission.tokens.silent_words import BEGINS
 from btlang.text.source import Span
 from btlang.vocabulary.match import Match
 
@@ -22,13 +23,28 @@ class Limits(GoingOn):
         at = asked_about(tokens, form, lambda _: True)
         if at is None or any(token.kind not in (*JOINTS, "stop") for token in tokens[at + 1 : form]):
             return end
-        limit = self._phrase(end)
-        if role == FAILS and limit is not None and limit.meaning.role == "tries":
-            count = self._calls.token(limit, end)
-            tokens.insert(at + 1, Token("count", count.start, count.end, count.value))
-            tokens.insert(at, Token("retry", tokens[at].start, tokens[at].start))
-            return limit.last
+        if role == FAILS and (last := self._tries_of(at, end)):
+            return last
         return self._limit(tokens[at], end) if role == FAILS or searches(tokens[at]) else end
+
+    def _tries_of(self, at: int, end: int) -> int:
+        """Make the command at a place so many tries as the words at `end` say. Returns where they end, 0 for others."""
+        tokens, tries = self._tokens, self._phrase(end)
+        if tries is None or tries.meaning.role != "tries":
+            return 0
+        count = self._calls.token(tries, end)
+        tokens.insert(at + 1, Token("count", count.start, count.end, count.value))
+        tokens.insert(at, Token("retry", tokens[at].start, tokens[at].start))
+        return tries.last
+
+    def _ask_later(self) -> None:
+        """`if nobody is near five minutes later, A`: it waits, and asks then."""
+        tokens = self._tokens
+        form = run_start(tokens, len(tokens) - 1, IN_CONDITIONS) - 1
+        is_first = form == 0 or (form > 0 and tokens[form - 1].kind in (*BEGINS, *JOINTS))
+        if is_first and tokens[form].kind in ("if", "unless"):
+            delay = tokens.pop()
+            tokens[form:form] = [delay, Token("comma", delay.end, delay.end)]
 
     def _limit_wait(self) -> None:
         """`wait at the door until C, but no longer than 5 min`: it waits so long, the way there left out.

@@ -10,7 +10,6 @@ from collections.abc import Container
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import (
-    IN_CONDITIONS,
     JOINTS,
     STATEMENT_ENDS,
     Called,
@@ -36,7 +35,7 @@ from btlang.frontends.mission.tokens.settling import (
     settle,
     takes,
 )
-from btlang.frontends.mission.tokens.silent_words import BEGINS, begins
+from btlang.frontends.mission.tokens.silent_words import begins
 from btlang.frontends.mission.tokens.tries import LIMIT
 from btlang.text.source import Span
 from btlang.tree.rounds import ONE_FAILS
@@ -70,6 +69,8 @@ class Outcomes(Limits):
                 tokens.insert(-1, Token("comma", token.start, token.start))  # `pick it up and if that works, wave`
         if role in ("for", "up_to"):
             self._limit_wait()
+            if token.kind == "up_to" and len(tokens) > 1 and searches(tokens[-2]):
+                token.kind = "within"  # a search that isn't over by then has found nothing
         if role == "until" and len(self._tokens) > 1 and self._tokens[-2].role == LIMIT:
             self._doubt_count(self._tokens[-2], match, at)
         if role == ONE_FAILS and not self._in_round():
@@ -82,6 +83,8 @@ class Outcomes(Limits):
             self._make_fail(last)
         if role in (WORKS, "otherwise") and find(self._vocabulary.replies, self._text.words, at) is not None:
             self._ask_alone()
+            if role == WORKS:
+                self._doubt_so(match.last, at)
         if role in (FAILS, ONE_FAILS, "if_unanswered", "otherwise"):
             token.kind = "or" if role != "otherwise" else role
             token.value = FAILS if said != "otherwise" else None
@@ -97,15 +100,6 @@ class Outcomes(Limits):
         if role == "if_unanswered":
             return self.unanswered(match.last)
         return self._limit_before(match.last, role) if said in (WORKS, FAILS) else match.last
-
-    def _ask_later(self) -> None:
-        """`if nobody is near five minutes later, A`: it waits, and asks then."""
-        tokens = self._tokens
-        form = run_start(tokens, len(tokens) - 1, IN_CONDITIONS) - 1
-        is_first = form == 0 or (form > 0 and tokens[form - 1].kind in (*BEGINS, *JOINTS))
-        if is_first and tokens[form].kind in ("if", "unless"):
-            delay = tokens.pop()
-            tokens[form:form] = [delay, Token("comma", delay.end, delay.end)]
 
     def _doubt_count(self, count: Token, match: Match, at: int) -> None:
         """BT151 for `turn left up to 8 times until C`: at most so often, or so often again and again."""
@@ -131,7 +125,8 @@ class Outcomes(Limits):
             if at is not None and at + 1 < run_start(tokens, form, JOINTS):  # `when you find it, A, if you don't, B`
                 tokens[form - 1].kind = "semi"
         if denied and tokens[form].kind == "if" and tokens[form - 1].kind in ("semi", "newline"):
-            at = asked_about(tokens, form, lambda token: self._is_settled(token, asked))
+            waited = asked_about(tokens, form, lambda token: token.kind != "command" and self._is_settled(token, asked))
+            at = asked_about(tokens, form, lambda token: self._is_settled(token, asked)) if waited is None else waited
             is_free = BRANCHES.isdisjoint(self._statement(form - 1)[1])
             may_ask = at is None or not is_free or self._may_ask_again(at, form, end)
             if at is None and is_free and self._is_event(asked):
@@ -297,7 +292,8 @@ class Outcomes(Limits):
             return 0
         start = self._tokens.pop().start
         self._try(match, front[1], Token("or", start, self._text.ends[front[1] - 1], FAILS))
-        return self._behind_comma(match.last)
+        command = len(self._tokens) - 3
+        return self._behind_comma(self._tries_of(command, match.last) or self._limit(self._tokens[command], match.last))
 
     def _is_so(self, at: int) -> int:
         """`check if the door is open, and close it if it is`."""

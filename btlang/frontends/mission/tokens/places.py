@@ -15,6 +15,7 @@ from btlang.frontends.mission.token import (
     arguments_of,
     constraint_of,
     drives,
+    run_end,
     run_start,
     statement_start,
 )
@@ -35,6 +36,8 @@ _COMMANDS = frozenset(("command", "name", "wait", "nothing"))
 _DONE = ("command", "name", "close", "wait")
 _HEADS = frozenset(("every", "every_day", "condition"))
 """The kinds of tokens behind which the commands of a form begin."""
+_LASTING = frozenset(("for", "until_time", "every"))
+"""The kinds of tokens that say how long a round goes on, and how often."""
 _PLAIN = frozenset(("command", "name", "comma", "open", "close", *_JOINS))
 """The kinds of tokens of a statement that does each of its commands once."""
 
@@ -95,6 +98,9 @@ class Places(SentenceReader):
         if journey is None or not (is_polite or self._is_end(pronoun[1]) or text.words[pronoun[1]] == ","):
             return 0
         is_plural = pronoun[0] in context.values.plural_pronouns
+        if is_plural and PLACE not in context.listed and context.latest.get(PLACE, "{")[:1] != "{":
+            stops = context.stops(text, at)  # `go to A, then to B, and wave in each`
+            return pronoun[1] if stops and self._goes_there(stops, len(tokens) - 1) else 0
         goal = context.listed[PLACE] if is_plural and PLACE in context.listed else context.latest.get(PLACE)
         if not goal:
             return 0
@@ -106,9 +112,19 @@ class Places(SentenceReader):
                 return self._doubt_times(journey, count, pronoun[1])
             if tokens[-2].kind != "and" or not self._calls.is_round(journey, goal):
                 return 0
+            self._measure_round(tokens.index(journey))
         elif not leads_to(journey, goal):
             return 0
         return pronoun[1]
+
+    def _measure_round(self, at: int) -> None:
+        """Put what says how long behind what is done in each: `patrol A and B until 6 pm and wave in each`."""
+        tokens = self._tokens
+        last = run_end(tokens, at + 1, _LASTING)
+        measures, here, end = tokens[at + 1 : last], tokens[at].start, tokens[-1].end
+        if measures and len(tokens) == last + 2 and tokens[last].kind == "and":
+            opening, closing = Token("open", here, here), Token("close", end, end)
+            tokens[at:] = [opening, tokens[at], tokens[last], tokens[-1], closing, *measures]
 
     def left_out(self, at: int) -> int:
         """`pick up all cups and bring them to the lab, except the red ones`: of the set in the statement."""
@@ -152,7 +168,7 @@ class Places(SentenceReader):
             if placed is None:
                 return 0
             value = tokens[-1].value = placed
-        if self._goes_there(journey, len(tokens) - 1):
+        if self._goes_there(_goal_of(journey), len(tokens) - 1):
             return journey.last
         if self._goes_round(journey, len(tokens) - 1):
             return journey.last
@@ -200,7 +216,7 @@ class Places(SentenceReader):
         following = self._phrase(behind)
         if following is not None and journey.values[0].group:
             self._doubt_round(at, behind, following)
-        if self._goes_there(journey, len(self._tokens)):
+        if self._goes_there(_goal_of(journey), len(self._tokens)):
             return behind
         if following is None or following.meaning.role not in _COMMANDS:
             return 0
@@ -228,9 +244,9 @@ class Places(SentenceReader):
         one, other = f"{journey} {words.word('and')} {doing} {here}", f"{journey}, {words.word('then')} {doing}"
         self._calls.problems.append(diagnostic("BT151", said, words=said.text, one=one, other=other))
 
-    def _goes_there(self, journey: Match, end: int) -> bool:
+    def _goes_there(self, goal: str, end: int) -> bool:
         """Whether the journey before some token is to the same places: what comes behind is done at each of them."""
-        tokens, goal = self._tokens, journey.values[0].group or journey.values[0].text
+        tokens = self._tokens
         behind = run_start(tokens, end, JOINTS | STATEMENT_ENDS)
         pace = tokens[behind - 1] if behind > 1 else None
         is_paced = pace is not None and (pace.kind == "every" or (pace.kind == "count" and pace.value == "-1"))
@@ -311,3 +327,8 @@ class Places(SentenceReader):
         is_list = goal is not None and bool(goal.more) and not goal.group  # `wave in the kitchen and the lab`
         is_there = goal is not None and (goal.type == PLACE or (goal.type == PERSON and bool(goal.group)))
         return journey if is_there and not is_list else None  # `at each person, wave`
+
+
+def _goal_of(journey: Match) -> str:
+    """Where a journey leads: to one place, or to a set of them."""
+    return journey.values[0].group or journey.values[0].text

@@ -16,6 +16,7 @@ from btlang.frontends.mission.token import (
     Called,
     Listed,
     Token,
+    arguments_of,
     constraint_of,
     drives,
     run_end,
@@ -28,7 +29,7 @@ from btlang.text.source import Source, Span
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import ALL, choice_of
-from btlang.vocabulary.value_type import OBJECT
+from btlang.vocabulary.value_type import OBJECT, PLACE
 
 FAILS, WORKS = "if_fails", "if_works"
 STAYS = "stays"
@@ -130,8 +131,10 @@ def turn_branches(tokens: list[Token]) -> None:
 def with_rounds(tokens: list[Token]) -> None:
     """Make `go to the lab every hour and wave` into `every hour, go to the lab and wave`: a task has no end else."""
     for at, token in enumerate(tokens):
+        if token.kind != "every":
+            continue
         behind = run_end(tokens, at + 1, JOINTS)
-        if token.kind != "every" or all(each.kind != "and" for each in tokens[at + 1 : behind]):
+        if all(each.kind != "and" for each in tokens[at + 1 : behind]):
             continue
         first, end = statement_start(tokens, at), run_start(tokens, statement_end(tokens, at), STATEMENT_ENDS)
         if first == at or any(each.kind not in _SIMPLE for each in tokens[first:at]):
@@ -180,8 +183,8 @@ def with_stays(tokens: list[Token], source: Source, standing: Container[str]) ->
         return  # as nearly always
     depth, outside = 0, list[int]()
     for at, token in enumerate(tokens):
-        if token.kind == "command" and not token.role and first_word(token, source) in standing:
-            token.role = STAYS
+        if drives(token.value) and names_place(token.value) and first_word(token, source) in standing:
+            token.role = token.role or STAYS
         depth += (token.kind == "indent") - (token.kind == "dedent")
         begins = at == 0 or tokens[at - 1].kind in STATEMENT_ENDS
         if depth == 0 and begins and token.kind not in ("define", *STATEMENT_ENDS):
@@ -220,6 +223,11 @@ def lasting(wait: Span, vocabulary: Lexicon) -> Diagnostic:
 def first_word(token: Token, source: Source) -> str:
     """The word with which a command begins, in small letters."""
     return source.text[token.start : token.end].split(" ")[0].lower()
+
+
+def names_place(said: Called | Listed) -> bool:
+    """Whether a command says a place: `stand at the desk`, but not `stop`."""
+    return any(said.entry.slot(name).type == PLACE for each in arguments_of(said) for name, _ in each)
 
 
 def _is_sequence(before: Sequence[Token]) -> bool:
