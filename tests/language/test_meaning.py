@@ -207,6 +207,7 @@ def test_numbers_that_are_said(sentence: str, tree: str) -> None:
         ("tell Bob if Alice is in the lab", "BT151"),
         ("don't go into the kitchen while anybody is in there. Otherwise wave", "BT151"),
         ("go to the lab from nine to ten", "BT160"),
+        ("wait in the hall until the lab is empty", "BT010"),
         ("go to the lab, wave and say hello on the way", "BT179"),
         ("wave. Say hello on the way", "BT179"),
         ("go to the lab. If bumped, wave and start over", "BT067"),
