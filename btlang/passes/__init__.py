@@ -25,6 +25,7 @@ from btlang.passes.lint.unlikely_meanings import (
     find_ended_rounds,
     find_half_turns,
     find_next_day,
+    find_picked_up_only,
     find_restarts,
 )
 from btlang.passes.lower import lower_names
@@ -53,6 +54,7 @@ PASSES = (
     Pass("starts again", find_restarts, needs_text=True),
     Pass("rounds end", find_ended_rounds, needs_text=True),
     Pass("asks from afar", find_distant_questions, needs_text=True),
+    Pass("picked up only", find_picked_up_only, needs_text=True),
     Pass("only rules", find_rules_only, needs_text=True),
     Pass("unused", find_unused, needs_text=True),
     Pass("never runs", find_unreachable),

@@ -17,7 +17,7 @@ from btlang.tree.answers import ABOUT_ANSWERS
 from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.lexicon import Lexicon
-from btlang.vocabulary.references import choice_of
+from btlang.vocabulary.references import ALL, choice_of
 from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE
 
 TYPE_CHECKING = False
@@ -29,6 +29,7 @@ _QUOTED_ENDS = ('."', '!"', '?"')
 ON_THE_WAY = ("SomeoneInTheWay", "SomethingInTheWay")
 _BUMPED = "Bumped"
 _WHILE_DRIVING = (_BUMPED, "WallInFront", "ObstacleWithin")
+_IN_VIEW = ("SeesSomeone", "SeesPerson", "SeesObject", "SomeoneNear", "PersonNear")
 _CLOSED = "DoorClosed"
 _FREE, _BATTERY, _LOW = "PathClear", "Battery", "BatteryLow"
 
@@ -101,7 +102,8 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
         _is_about_driving(asked, node, journeys)
         or (is_front and asked.entry.id == _BUMPED and asked.entry not in entries)
     )
-    if is_timed or is_driving:
+    is_seen = isinstance(asked, ast.Phrase) and asked.entry.id in _IN_VIEW and _is_tour(journeys)
+    if is_timed or is_driving or (is_seen and is_front):
         each = f"{vocabulary.word('whenever')} {node.span.text[len(words.split(maxsplit=1)[0]) :].lstrip()}"
         advice = f"'{last}' is over by then. To do it {'meanwhile' if is_timed else 'on the way'}, write: {each}"
         yield diagnostic("BT068", node.span, words=words, advice=advice).replace(readings=((node.span, each),))
@@ -114,6 +116,14 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
     ):
         advice = f"'{last}' comes first, and fails if it can't be done. What decides about it stands before it."
         yield diagnostic("BT068", node.span, words=words, advice=advice)
+
+
+def _is_tour(journeys: Sequence[ast.Phrase]) -> bool:
+    """Return whether a journey leads to several places, at the last of which it is too late to look."""
+    goals = [text for each in journeys for name, text in each.arguments if each.entry.slot(name).type == PLACE]
+    choices = [choice_of(goal) for goal in goals]
+    is_set = any(choice is not None and choice.how == ALL for choice in choices)
+    return is_set or (len(goals) > 1 and len({each.entry.id for each in journeys}) == 1)
 
 
 def _asked(node: ast.If) -> ast.Ast:

@@ -1,4 +1,4 @@
-"""Lints on commands that mean something else than most people expect (BT149, BT163, BT169, BT170, BT175,
+"""Lints on commands that mean something else than most people expect (BT148, BT149, BT163, BT169, BT170, BT175,
 BT050).
 
 - `turn around three times` are half turns, as most people mean whole turns;
@@ -6,6 +6,7 @@ BT050).
 - `A until 5 pm. At 5 pm, B`, and `... At 4 pm, B`, wait for the next day;
 - `go to the lab until someone is near` starts again, though the command comes to an end by itself;
 - `every 10 min, go to the lab` ends when a round fails;
+- `fetch the cup` only picks it up;
 - `ask Bob "Tea?"` asks from where the robot is.
 """
 
@@ -24,13 +25,14 @@ from btlang.tree import ast
 from btlang.tree.answers import ASK
 from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.references import choice_of
 from btlang.vocabulary.value_type import PERSON
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-_ENDLESS = "-1"
+_ENDLESS, _PICK_UP = "-1", "PickUp"
 _PACES = ("every", "every_day", "weekly", "on_days", "at", "until_time")
 """The roles of the words that say when the rounds of a loop begin."""
 _HALF_DAY = 12 * 3600
@@ -181,6 +183,26 @@ def find_distant_questions(compilation: Compilation) -> Iterator[Diagnostic]:
             return
         if named or MOVES in phrase.entry.resources or phrase.entry.sort == "name":
             return
+
+
+def find_picked_up_only(compilation: Compilation) -> Iterator[Diagnostic]:
+    """Report `fetch the cup` where no command behind it does anything with the cup."""
+    vocabulary = compilation.vocabulary
+    verbs = vocabulary.asking["getting"]
+    for body in ast.bodies(compilation.mission):
+        phrases = [each for each in compilation.syntax(body) if isinstance(each, ast.Phrase)]
+        by_place = {each.span.start: each for each in reversed(phrases)}  # of a list, one
+        for phrase in sorted(by_place.values(), key=lambda each: each.span.start):
+            verb, _, rest = phrase.span.text.partition(" ")
+            if phrase.entry.id != _PICK_UP or verb.lower() not in verbs or "\n" in rest:
+                continue
+            text = phrase.arguments[0][1]
+            choice = choice_of(text)
+            names = {text, f"{{{choice.key}}}"} if choice is not None else {text}
+            later = (each for each in phrases if each.span.start > phrase.span.start)
+            if not any(names.intersection(value for _, value in each.arguments) for each in later):
+                fixed = f"{' '.join(vocabulary.asking['bringing'])} {rest}"
+                yield diagnostic("BT148", phrase.span, words=phrase.span.text, fixed=fixed)
 
 
 def _note_end(node: ast.Every | ast.Repeat | ast.UntilTime, vocabulary: Lexicon) -> Diagnostic:

@@ -99,8 +99,8 @@ class AddressedTexts(SentenceReader):
         if any(token.kind in _LINE_ENDS for token in self._tokens[form:]) or not isinstance(asked[0].value, Called):
             return ""
         text, pronouns = self._text, self._vocabulary.values.pronoun_words
-        slots = asked[0].value.entry.slot
-        named = [value for name, value in asked[0].value.arguments if slots(name).type in WORLD]
+        slots = {slot.name for slot in asked[0].value.entry.slots if slot.type in WORLD}
+        named = [value for name, value in asked[0].value.arguments if name in slots]
         if asked[0].value.entry.id in ABOUT_ANSWERS:  # `if she says yes, tell Bob`: of who was asked
             named = [person for person in [self._context.latest.get(PERSON, "")] if person]
         words: list[str] = []

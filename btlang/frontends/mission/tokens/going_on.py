@@ -19,7 +19,16 @@ from btlang.frontends.mission.token import (
 )
 from btlang.frontends.mission.tokens.rules_inside import ON_WAY
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, hears, searches
-from btlang.frontends.mission.tokens.settling import FAILS, MEASURES, TURNED, WORKS, asked_about, is_about, settle
+from btlang.frontends.mission.tokens.settling import (
+    FAILS,
+    MEASURES,
+    TURNED,
+    WORKS,
+    asked_about,
+    is_about,
+    settle,
+    takes,
+)
 from btlang.text.source import Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
 from btlang.tree.answers import ASK, EXAMPLE
@@ -159,6 +168,12 @@ class GoingOn(SentenceReader):
         is_plain = all(token.kind in (*_DONE, *JOINTS) for token in tokens[first:joint])
         if first < joint < check and is_plain and all(each.kind in _ASKED for each in tokens[check + 1 : last]):
             tokens[joint:check] = [Token("semi", tokens[check].start, tokens[check].start)]
+
+    def asks_anew(self, match: Match, at: int) -> bool:
+        """Whether `if you find anybody` is about what is there: nothing before it is looked for."""
+        before = next((token for token in reversed(self._tokens) if token.kind in ("command", "name")), None)
+        asks = not set(self._vocabulary.asking["finding"]).isdisjoint(self._text.words[at : match.last])
+        return asks and before is not None and drives(before.value) and not (searches(before) or takes(before))
 
     def _doubt_so(self, end: int, at: int) -> None:
         """BT151 for `go to the lab unless C. If so, A`: if C, or if that worked."""

@@ -13,6 +13,7 @@ from btlang.frontends.mission.tokens.ended_rules import with_ends
 from btlang.frontends.mission.tokens.rules_inside import with_rules_inside
 from btlang.frontends.mission.tokens.settling import (
     find_brief_stays,
+    find_unclear_things,
     turn_branches,
     with_either_end,
     with_rounds,
@@ -67,6 +68,7 @@ class Lexer:
         with_either_end(self.tokens)
         with_stays(self.tokens, source, vocabulary.asking["standing_verbs"])
         self.problems += find_brief_stays(self.tokens, vocabulary, source) if explain else ()
+        self.problems += find_unclear_things(self.tokens, vocabulary, source) if explain else ()
         with_meetings(self.tokens, vocabulary)
         with_sightings(self.tokens, vocabulary, source)
         with_rules_inside(self.tokens)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import IN_CONDITIONS, JOINTS, STATEMENT_ENDS, Token, run_start
 from btlang.frontends.mission.tokens.going_on import GoingOn
 from btlang.frontends.mission.tokens.sentence_reader import hears, searches
@@ -122,11 +123,22 @@ class Limits(GoingOn):
                 return limit
         return None
 
+    def _doubt_tried(self, end: int) -> int:
+        """BT152 for `if you can't find it after looking in every room`: that is said of the search."""
+        after = self._phrase(end)
+        done = self._partial.doing(after.last) if after is not None and after.meaning.role == "after" else None
+        if done is None:
+            return end
+        words, advice = self._text.span(end, done.last), "Say before it all that is to be tried."
+        reason = "it would be done after that has failed"
+        self._calls.problems.append(diagnostic("BT152", words, words=words.text, reason=reason, advice=advice))
+        return done.last
+
     def _limit(self, command: Token, end: int) -> int:
         """`if he doesn't come within 5 min`: how long a command may take is said behind the words that ask about it."""
         limit = self._time_behind(end)
         if limit is None:
-            return end
+            return self._doubt_tried(end)
         at = self._tokens.index(command) + 1
         if self._tokens[at].kind in MEASURES:
             return end

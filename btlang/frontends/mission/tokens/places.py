@@ -27,7 +27,7 @@ from btlang.vocabulary.references import ALL, NAMES, choice_of
 from btlang.vocabulary.value_type import OBJECT, PERSON, PLACE
 from btlang.vocabulary.word_tree import find
 
-_HOLD = "Hold"
+_HOLD, _SEES, _AT = "Hold", "SeesPerson", "PersonIsAt"
 _JOINS = ("and", "then", "or")
 _BEHIND = (*_JOINS, "at", "every", "every_day", "weekly", "count", "within", "until_time", "if", "unless", "until")
 """Raw kinds that may stand behind where a command is done: `wave in the hall at 6 pm`."""
@@ -125,6 +125,17 @@ class Places(SentenceReader):
         if measures and len(tokens) == last + 2 and tokens[last].kind == "and":
             opening, closing = Token("open", here, here), Token("close", end, end)
             tokens[at:] = [opening, tokens[at], tokens[last], tokens[-1], closing, *measures]
+
+    def placed_before(self, asked: Token) -> None:
+        """`if Bob is in the lab, wait until he leaves`: until he isn't in the lab, wherever the robot looks."""
+        value, tokens = asked.value, self._tokens
+        if not isinstance(value, Called) or value.entry.id != _SEES or tokens[-1:] == [] or tokens[-1].kind != "not":
+            return
+        for token in tokens[statement_start(tokens, len(tokens)) :]:
+            before = token.value
+            if token.kind == "condition" and isinstance(before, Called) and before.entry.id == _AT:
+                if {text for _, text in value.arguments} <= {text for _, text in before.arguments}:
+                    asked.value = before
 
     def left_out(self, at: int) -> int:
         """`pick up all cups and bring them to the lab, except the red ones`: of the set in the statement."""

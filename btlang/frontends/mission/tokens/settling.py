@@ -214,6 +214,33 @@ def find_brief_stays(tokens: Sequence[Token], vocabulary: Lexicon, source: Sourc
                 yield lasting(wait, vocabulary)
 
 
+def find_unclear_things(tokens: Sequence[Token], vocabulary: Lexicon, source: Source) -> Iterator[Diagnostic]:
+    """Report `pick up the cup. If the light is off, put it in the lab`: what is carried, or what was asked about."""
+    carried, asked = "", ""
+    pronouns = {word for word, types in vocabulary.values.pronouns.items() if OBJECT in types}
+    for token in tokens:
+        if token.kind in STATEMENT_ENDS:
+            asked = ""
+        value = token.value
+        thing = _thing_of(value) if isinstance(value, Called) else ""
+        if token.kind == "condition" and thing:
+            asked = thing
+        if token.kind != "command" or not thing or not takes(token):
+            continue
+        words = source.text[token.start : token.end].lower().split()
+        pronoun = next((word for word in words if word in pronouns), "")
+        if pronoun and carried not in ("", asked) and thing == asked:
+            span = Span(source, token.start, token.end)
+            yield diagnostic("BT151", span, words=pronoun, one=carried, other=asked)
+        carried = thing
+
+
+def _thing_of(said: Called) -> str:
+    """The name of the thing that a phrase is about, "" for none, or for one that is chosen."""
+    names = {slot.name for slot in said.entry.slots if slot.type == OBJECT}
+    return next((text for name, text in said.arguments if name in names and text[:1] != "{"), "")
+
+
 def lasting(wait: Span, vocabulary: Lexicon) -> Diagnostic:
     """BT012 for a wait that doesn't say how long."""
     example = f"{wait.text} {vocabulary.word('for')} {vocabulary.types['duration'].example}"

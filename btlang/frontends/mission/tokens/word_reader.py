@@ -161,6 +161,10 @@ class WordReader:
         role = match.meaning.role if match is not None else ""
         if match is not None and role == "then" and self._is_end_condition(match, at):
             match, role = Match(Meaning("if"), at + 1), "if"
+        if match is not None and role == "if_works" and self._outcomes.asks_anew(match, at):
+            role = "and" if self._text.words[at] in self._vocabulary.roles["and"] else "if"
+            match = Match(Meaning(role), at + 1)
+            self._text.going_on.discard(at)
         if match is not None and role in ("politeness", "never") and self._unknown.is_doubtful(match, role, at):
             match, role = None, ""
         end = self._sentence(match, role, at)
@@ -359,6 +363,7 @@ class WordReader:
             if not self._shares:
                 self._problems += check_negation(self._text, match, at, self._vocabulary, tokens)
         token = self._calls.token(match, at)
+        self._places.placed_before(token)
         self._requests.said(token, at)
         tokens.append(token)
         if match.meaning.role != "negated_twice":
