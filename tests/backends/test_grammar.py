@@ -43,6 +43,7 @@ UNKNOWABLE = {
     "BT059": "a rule may be among the commands that `start over` repeats",
     "BT160": "16:45 is in no morning",
     "BT163": "half turns are counted",
+    "BT164": "15:27 is in no morning, so `this morning at 15:27` says nothing",
     "BT169": "a time comes on the next day",
     "BT171": "what follows `as soon as` waits, too",
     "BT175": "a round may fail",

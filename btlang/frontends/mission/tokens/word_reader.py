@@ -50,6 +50,7 @@ from btlang.vocabulary.lexicon import NODE_ROLES
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import longest
+from btlang.vocabulary.value_type import TEXT
 from btlang.vocabulary.word_tree import SLOTS
 
 _ROLES = {"if_it_works": ("if_possible", "if_works"), "in_parallel": ("in_parallel", "meanwhile")}
@@ -145,7 +146,7 @@ class WordReader:
 
     def _phrase(self, at: int, last: int) -> int:
         """What begins at a word, known or unknown."""
-        match = self._requests.with_name(self._match(at), at)
+        match = self._without_measure(self._requests.with_name(self._match(at), at), at)
         if match is not None and match.meaning.role in NODE_ROLES:
             if end := self._node(match, at):
                 return end
@@ -177,6 +178,16 @@ class WordReader:
         if not end and match is not None and role not in _NOT_READ:
             return self._known(match, at)
         return end or self._other(match, role, at, last)
+
+    def _without_measure(self, match: Match | None, at: int) -> Match | None:
+        """The same without a text that begins how long it may take: `welcome Bob with a limit of 5 s`."""
+        text = match.values[-1] if match is not None and match.values else None
+        if match is None or text is None or text.type != TEXT or not (match.last == text.last == text.first + 1):
+            return match
+        other = longest(self._vocabulary.trie, self._text, text.first - 1, self._context)
+        if other is None or other.meaning.entry is not None or other.last <= match.last:
+            return match
+        return self._partial.in_order(range(at, text.first - 1)) or match
 
     def _is_end_condition(self, match: Match, at: int) -> bool:
         """Whether words that go on with what was done stand at the end: `say hi to Bob when you see him`."""
