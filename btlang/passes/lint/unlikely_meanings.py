@@ -1,4 +1,4 @@
-"""Lints on commands that mean something else than most people expect (BT148, BT149, BT163, BT169, BT170, BT175,
+"""Lints on commands that mean something else than most people expect (BT147, BT148, BT149, BT163, BT169, BT170, BT175,
 BT050).
 
 - `turn around three times` are half turns, as most people mean whole turns;
@@ -6,6 +6,7 @@ BT050).
 - `A until 5 pm. At 5 pm, B`, and `... At 4 pm, B`, wait for the next day;
 - `go to the lab until someone is near` starts again, though the command comes to an end by itself;
 - `every 10 min, go to the lab` ends when a round fails;
+- `ask Bob "Tea?". If he says no, ask again` does nothing with the second answer;
 - `fetch the cup` only picks it up;
 - `ask Bob "Tea?"` asks from where the robot is.
 """
@@ -22,7 +23,7 @@ from btlang.passes.lint.two_readings import make_printer, make_warning
 from btlang.text.source import Span
 from btlang.text.time_of_day import seconds_of
 from btlang.tree import ast
-from btlang.tree.answers import ASK
+from btlang.tree.answers import ABOUT_ANSWERS, ASK, asking_verbs
 from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import choice_of
@@ -32,6 +33,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+_LOOPS = (ast.Repeat, ast.Retry, ast.Every, ast.While)
+_KEEP_ASKING = 'keep asking Alice "Tea?" until she says yes'
 _ENDLESS, _PICK_UP = "-1", "PickUp"
 _PACES = ("every", "every_day", "weekly", "on_days", "at", "until_time")
 """The roles of the words that say when the rounds of a loop begin."""
@@ -178,11 +181,33 @@ def find_distant_questions(compilation: Compilation) -> Iterator[Diagnostic]:
         if phrase.entry.id == ASK and named and named[0] in vocabulary.values.listed(PERSON):
             words = phrase.span.text
             journey = " ".join((*vocabulary.asking["journey"], named[0], vocabulary.word("then")))
-            fixed = f"{journey} {words[:1].lower()}{words[1:]}"
+            is_verb = words.split()[0].lower() in asking_verbs(vocabulary)  # but not `keep asking Bob`
+            fixed = f"{journey} {words[:1].lower()}{words[1:]}" if is_verb else f"{journey} ..."
             yield diagnostic("BT149", phrase.span, words=words, person=named[0], fixed=fixed)
             return
         if named or MOVES in phrase.entry.resources or phrase.entry.sort == "name":
             return
+
+
+def find_unused_answers(compilation: Compilation) -> Iterator[Diagnostic]:
+    """Report a question that is asked again behind an answer to it, where nothing depends on the second answer."""
+    for body in ast.bodies(compilation.mission):
+        nodes = compilation.syntax(body)
+        repeated = {id(each) for node in nodes if isinstance(node, _LOOPS) for each in ast.parents_first(node)}
+        phrases = [each for each in nodes if isinstance(each, ast.Phrase)]
+        used = max((each.span.start for each in phrases if each.entry.id in ABOUT_ANSWERS), default=-1)
+        asked = [each for each in phrases if each.entry.id == ASK]
+        for node in nodes:
+            if not isinstance(node, ast.If) or not _is_about_answers(node.condition) or id(node) in repeated:
+                continue
+            for again in (each for each in ast.parents_first(node) if each in asked and each.span.start > used):
+                before = (each.arguments for each in asked if each.span.start < again.span.start)
+                if isinstance(again, ast.Phrase) and again.arguments in before:
+                    yield diagnostic("BT147", again.span, words=again.span.text, example=_KEEP_ASKING)
+
+
+def _is_about_answers(condition: ast.Ast) -> bool:
+    return any(isinstance(each, ast.Phrase) and each.entry.id in ABOUT_ANSWERS for each in ast.parents_first(condition))
 
 
 def find_picked_up_only(compilation: Compilation) -> Iterator[Diagnostic]:

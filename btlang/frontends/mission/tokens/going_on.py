@@ -173,7 +173,10 @@ class GoingOn(SentenceReader):
         """Whether `if you find anybody` is about what is there: nothing before it is looked for."""
         before = next((token for token in reversed(self._tokens) if token.kind in ("command", "name")), None)
         asks = not set(self._vocabulary.asking["finding"]).isdisjoint(self._text.words[at : match.last])
-        return asks and before is not None and drives(before.value) and not (searches(before) or takes(before))
+        if not asks or before is None or not drives(before.value) or searches(before) or takes(before):
+            return False
+        asked = self._phrase(at + 1 + (self._text.words[at] in self._vocabulary.roles["and"]))
+        return asked is not None and asked.meaning.role == "condition"
 
     def _doubt_so(self, end: int, at: int) -> None:
         """BT151 for `go to the lab unless C. If so, A`: if C, or if that worked."""
