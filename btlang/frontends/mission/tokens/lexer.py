@@ -140,10 +140,15 @@ def _drop_words_of_turns(text: Words, vocabulary: Lexicon) -> None:
 
 
 def _drop_still(text: Words, vocabulary: Lexicon) -> None:
-    """Take out `still` and `already` before what a condition says: `if he still says no`; but not `if he is still`."""
+    """Take out `still` and `already` before what a condition says: `if he still says no`; but not `if he is still`.
+
+    `yet` stands at its end: `if he isn't there yet`.
+    """
     words, still, motionless = text.words, vocabulary.asking["still"], vocabulary.asking["motionless"]
-    for at in reversed(range(1, len(words))) if not text.distinct.isdisjoint(still) else ():
-        if words[at] in still and words[at - 1] not in motionless and words[at + 1][0].isalpha():
+    yet = vocabulary.asking["yet"]
+    for at in reversed(range(1, len(words))) if not text.distinct.isdisjoint((*still, *yet)) else ():
+        is_still = words[at] in still and words[at - 1] not in motionless and words[at + 1][0].isalpha()
+        if is_still or (words[at] in yet and not words[at + 1][0].isalpha()):
             _, first, _ = text.earlier(at)
             first = max((i + 1 for i in range(first, at) if words[i] == ","), default=first)
             if any(word in vocabulary.before_conditions for word in words[first:at]):

@@ -104,10 +104,15 @@ class RuleWords(SentenceReader):
         return 0
 
     def _split_rule(self, last: int) -> None:
-        """`patrol until noon, and whenever bumped, wave`: a rule of its own, where each command is done once."""
+        """`patrol until noon, and whenever bumped, wave`: a rule of its own, where each command is done once.
+
+        Also in `patrol, but wave whenever bumped`.
+        """
         tokens = self._tokens
-        joint = run_start(tokens, last, JOINTS)
+        if last > 1 and tokens[last - 1].kind == "command" and tokens[last - 2].kind == "but":
+            last -= 1
+        joint = run_start(tokens, last, JOINTS | {"but"})
         before = tokens[statement_start(tokens, joint) : joint]
-        if before and any(token.kind == "and" for token in tokens[joint:last]):
+        if before and any(token.kind in ("and", "but") for token in tokens[joint:last]):
             if all(token.kind in _PLAIN for token in before):
                 tokens[joint:last] = [Token("semi", tokens[joint].start, tokens[joint].start)]
