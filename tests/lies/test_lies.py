@@ -99,7 +99,11 @@ def test_a_driver(lie: Lie, tmp_path: Path) -> None:
 @pytest.mark.long
 @pytest.mark.parametrize("lie", some(BOARD, ["a phantom for the sonar"]), ids=lambda lie: lie.name)
 def test_a_board(lie: Lie, tmp_path: Path) -> None:
-    judge(lie, devices.run(tmp_path, mission(lie), [lie], board=True, **scene(lie)), 0.3)
+    for attempt in range(3):
+        result = devices.run(tmp_path / str(attempt), mission(lie), [lie], board=True, **scene(lie))
+        if "silent" in lie.words or "silent" not in result.reason:
+            break  # else the board itself had no time on a busy machine, and the robot stopped for that
+    judge(lie, result, 0.3)
 
 
 @pytest.mark.long
