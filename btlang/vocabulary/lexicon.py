@@ -48,6 +48,7 @@ _CONDITIONAL = ("if", "unless", "whenever", "as_soon_as", "once", "while", "unti
 """Roles of words behind which a condition stands."""
 _JOINING = ("and", "then", "or", "but")
 
+_MOST, _TIMES = ("at_most", "up_to_times"), "{count} time(s)"
 _REPLIES = (("if_yes", True), ("if_no", False))
 
 
@@ -376,6 +377,10 @@ class Lexicon:
                 self._add_words(phrase, Meaning(role, between=self.meanings.get(phrase, "")))
         for words, rounds in self.counts.items():
             self._add_words(words, Meaning("count", value=rounds))
+            limits = ((role, phrase) for role in _MOST for phrase in self.roles.get(role, ()) if rounds > 0)
+            for role, phrase in limits:  # `at most twice`
+                if _TIMES in phrase:
+                    self._add_words(phrase.replace(_TIMES, words), Meaning(role, value=rounds))
         for node_id, words in self.nodes.items():
             for role in NODE_ROLES:
                 for head in self.roles[role]:

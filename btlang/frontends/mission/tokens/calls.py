@@ -91,7 +91,7 @@ class Calls:
             return made
         if values:
             return Token(meaning.role, start, end, ";".join(values[0].texts))
-        return Token(meaning.role, start, end, str(meaning.value) if meaning.role == "count" else None, meaning.between)
+        return Token(meaning.role, start, end, str(meaning.value) if meaning.value else None, meaning.between)
 
     def with_details(self, token: Token, at: int, names: TrieNode) -> int:
         """Adds what `called` and `with` say of the phrase before a word to its token. Returns where to go on."""

@@ -10,7 +10,9 @@ from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
 from btlang.vocabulary.word_tree import find
 
 _DONE = frozenset(("command", "name", "wait", "wait_time", "condition", "close"))
-_PLAIN = frozenset((*_DONE, *JOINTS, *WAITING, *WAITING.values(), "open", "or", "up_to", "count", "wait_up_to"))
+_PLAIN = frozenset(
+    (*_DONE, *JOINTS, *WAITING, *WAITING.values(), "open", "or", "up_to", "count", "wait_up_to", "repeat")
+)
 """The kinds of tokens of a statement in which no rule is for a part alone."""
 
 
