@@ -213,13 +213,21 @@ def free_port() -> int:
         return int(listening.getsockname()[1])
 
 
-def received(connection: ClientConnection, **wanted: Any) -> dict[str, Any]:
-    """The next message with these fields."""
+def received(
+    connection: ClientConnection, passed_over: list[dict[str, Any]] | None = None, **wanted: Any
+) -> dict[str, Any]:
+    """The next message with these fields, first among those that were `passed_over`; others are added to these."""
+    earlier = passed_over if passed_over is not None else []
+    found = next((message for message in earlier if wanted.items() <= message.items()), None)
+    if found is not None:
+        earlier.remove(found)
+        return found
     until = time.monotonic() + LONG
     while time.monotonic() < until:
         message: dict[str, Any] = json.loads(connection.recv(LONG))
         if wanted.items() <= message.items():
             return message
+        earlier.append(message)
     raise AssertionError(wanted)
 
 
