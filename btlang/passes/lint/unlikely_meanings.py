@@ -176,6 +176,8 @@ def find_distant_questions(compilation: Compilation) -> Iterator[Diagnostic]:
     """Report a question to somebody by name before whom nothing moves the robot, or asks where they are."""
     body, vocabulary = compilation.mission.body, compilation.vocabulary
     phrases = [each for each in compilation.syntax(body) if isinstance(each, ast.Phrase)] if body is not None else []
+    if all(each.entry.id != ASK for each in phrases):
+        return  # as nearly always
     for phrase in sorted(phrases, key=lambda each: each.span.start):
         named = [text for name, text in phrase.arguments if phrase.entry.slot(name).type == PERSON]
         if phrase.entry.id == ASK and named and named[0] in vocabulary.values.listed(PERSON):
@@ -193,6 +195,8 @@ def find_unused_answers(compilation: Compilation) -> Iterator[Diagnostic]:
     """Report a question that is asked again behind an answer to it, where nothing depends on the second answer."""
     for body in ast.bodies(compilation.mission):
         nodes = compilation.syntax(body)
+        if sum(isinstance(each, ast.Phrase) and each.entry.id == ASK for each in nodes) < 2:
+            continue  # as nearly always
         repeated = {id(each) for node in nodes if isinstance(node, _LOOPS) for each in ast.parents_first(node)}
         phrases = [each for each in nodes if isinstance(each, ast.Phrase)]
         used = max((each.span.start for each in phrases if each.entry.id in ABOUT_ANSWERS), default=-1)
@@ -216,10 +220,10 @@ def find_picked_up_only(compilation: Compilation) -> Iterator[Diagnostic]:
     verbs = vocabulary.asking["getting"]
     for body in ast.bodies(compilation.mission):
         phrases = [each for each in compilation.syntax(body) if isinstance(each, ast.Phrase)]
-        by_place = {each.span.start: each for each in reversed(phrases)}  # of a list, one
+        by_place = {each.span.start: each for each in reversed(phrases) if each.entry.id == _PICK_UP}  # of a list, one
         for phrase in sorted(by_place.values(), key=lambda each: each.span.start):
             verb, _, rest = phrase.span.text.partition(" ")
-            if phrase.entry.id != _PICK_UP or verb.lower() not in verbs or "\n" in rest:
+            if verb.lower() not in verbs or "\n" in rest:
                 continue
             text = phrase.arguments[0][1]
             choice = choice_of(text)

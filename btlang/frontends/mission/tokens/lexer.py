@@ -68,7 +68,7 @@ class Lexer:
         with_either_end(self.tokens)
         with_stays(self.tokens, source, vocabulary.asking["standing_verbs"])
         self.problems += find_brief_stays(self.tokens, vocabulary, source) if explain else ()
-        self.problems += find_unclear_things(self.tokens, vocabulary, source) if explain else ()
+        self.problems += find_unclear_things(self.tokens, vocabulary, self.text) if explain else ()
         with_meetings(self.tokens, vocabulary)
         with_sightings(self.tokens, vocabulary, source)
         with_rules_inside(self.tokens)

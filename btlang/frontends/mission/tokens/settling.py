@@ -26,6 +26,7 @@ from btlang.frontends.mission.token import (
     texts_of,
 )
 from btlang.text.source import Source, Span
+from btlang.text.words import Words
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import ALL, choice_of
@@ -183,8 +184,8 @@ def with_stays(tokens: list[Token], source: Source, standing: Container[str]) ->
         return  # as nearly always
     depth, outside = 0, list[int]()
     for at, token in enumerate(tokens):
-        if drives(token.value) and names_place(token.value) and first_word(token, source) in standing:
-            token.role = token.role or STAYS
+        if not token.role and first_word(token, source) in standing:
+            token.role = STAYS if drives(token.value) and names_place(token.value) else ""
         depth += (token.kind == "indent") - (token.kind == "dedent")
         begins = at == 0 or tokens[at - 1].kind in STATEMENT_ENDS
         if depth == 0 and begins and token.kind not in ("define", *STATEMENT_ENDS):
@@ -214,10 +215,12 @@ def find_brief_stays(tokens: Sequence[Token], vocabulary: Lexicon, source: Sourc
                 yield lasting(wait, vocabulary)
 
 
-def find_unclear_things(tokens: Sequence[Token], vocabulary: Lexicon, source: Source) -> Iterator[Diagnostic]:
+def find_unclear_things(tokens: Sequence[Token], vocabulary: Lexicon, text: Words) -> Iterator[Diagnostic]:
     """Report `pick up the cup. If the light is off, put it in the lab`: what is carried, or what was asked about."""
     carried, asked = "", ""
     pronouns = {word for word, types in vocabulary.values.pronouns.items() if OBJECT in types}
+    if text.distinct.isdisjoint(pronouns):
+        return
     for token in tokens:
         if token.kind in STATEMENT_ENDS:
             asked = ""
@@ -227,10 +230,10 @@ def find_unclear_things(tokens: Sequence[Token], vocabulary: Lexicon, source: So
             asked = thing
         if token.kind != "command" or not thing or not takes(token):
             continue
-        words = source.text[token.start : token.end].lower().split()
+        words = text.source.text[token.start : token.end].lower().split()
         pronoun = next((word for word in words if word in pronouns), "")
         if pronoun and carried not in ("", asked) and thing == asked:
-            span = Span(source, token.start, token.end)
+            span = Span(text.source, token.start, token.end)
             yield diagnostic("BT151", span, words=pronoun, one=carried, other=asked)
         carried = thing
 

@@ -96,9 +96,10 @@ class Visitors(SentenceReader):
 def with_meetings(tokens: list[Token], vocabulary: Lexicon) -> None:
     """Make `wait for Alice in the lab for 5 min` go to the lab first: she needn't be there yet."""
     goes = vocabulary.entry(GO)
-    for at in reversed(range(len(tokens))):
+    waits = [at for at, token in enumerate(tokens) if type(token.value) is Called and token.value.entry.id == COMES]
+    for at in reversed(waits):
         said, start, end = tokens[at].value, tokens[at].start, tokens[at].end
-        if goes is None or not isinstance(said, Called) or said.entry.id != COMES:
+        if goes is None or not isinstance(said, Called):
             continue
         who = choice_of(said.arguments[0][1])
         parts = dict(who.parts) if who is not None else {}
