@@ -207,6 +207,7 @@ def test_numbers_that_are_said(sentence: str, tree: str) -> None:
         ("tell Bob if Alice is in the lab", "BT151"),
         ("don't go into the kitchen while anybody is in there. Otherwise wave", "BT151"),
         ("go to the lab from nine to ten", "BT160"),
+        ("go from", "BT012"),
         ("pick up the book. If the lamp is off, put it in the kitchen", "BT151"),
         ("pick up the book unless the battery is low; if so, charge", "BT151"),
         ("look for the book. If you can't find it after looking in every room, wave", "BT152"),

@@ -45,7 +45,9 @@ class JourneyWords(SentenceReader):
     def _from_each(self, at: int, first: int) -> int:
         """`go from room to room`, where the noun at a word stands twice: to every room."""
         text, every = self._text, self._vocabulary.roles["all_names"][0]
-        if text.words[first] != text.words[first + 2] or first in text.articles:
+        if self._is_end(first) or self._is_end(first + 1) or first in text.articles:
+            return 0
+        if text.words[first] != text.words[first + 2]:
             return 0
         journey = self._partial.with_front(at, first + 2, [*self._vocabulary.asking["journey"], every])
         if journey is None or journey.last != first + 3:
