@@ -63,7 +63,8 @@ class Tries(SentenceReader):
             elif match.meaning.role == "at_most":
                 span = self._text.span(at, match.last)
                 fixed = self._text.source.text[tokens[first].start : tokens[last].end]
-                fixed += f" {match.values[0].text} {self._vocabulary.word('count').split()[-1]}"
+                number = self._calls.token(match, at).value
+                fixed += f" {number} {self._vocabulary.word('count').split()[-1]}"
                 self._calls.problems.append(diagnostic("BT167", span, words=span.text, fixed=fixed))
         if fails and tokens[-1].kind == "comma":
             tokens.pop()
@@ -74,7 +75,7 @@ class Tries(SentenceReader):
 
     def _doubt_number(self, match: Match, at: int) -> None:
         """BT151 for `keep asking Bob "Ready?" until he says yes, at most 4 times`, which would ask on and on."""
-        word, number = self._vocabulary.word, match.values[0].text
+        word, number = self._vocabulary.word, self._calls.token(match, at).value
         words = self._text.span(at, match.last)
         one, other = f"... {number} times", f"... {word('until')} ..."
         self._calls.problems.append(diagnostic("BT151", words, words=words.text, one=one, other=other))
