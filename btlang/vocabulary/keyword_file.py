@@ -156,8 +156,9 @@ class _Reader:
     def denied(self, phrases: object, slots: Sequence[SlotSpec], near: str) -> list[str]:
         """The phrases that say that a condition isn't so; they have the slots of the others."""
         names = {slot.name for slot in slots}
+        phrases = [phrases] if isinstance(phrases, str) else phrases
         if not isinstance(phrases, list) or not _strings(phrases):
-            self.wrong(f"denied of '{near}' must be a list of phrases", near)
+            self.wrong(f"denied of '{near}' must be a phrase, or a list of phrases", near)
             return []
         for phrase in phrases:
             if not names.issuperset(_slot_names(phrase)):

@@ -42,6 +42,8 @@ def test_a_stop_between_a_crash_and_the_next_start(folder: Path, capsys: pytest.
     with layer_in(Path(data_folder("q"))) as layer:
         assert layer.emergency.reason.endswith(": smoke")
         ask(layer, "resume")
+        again = layer.handle({"command": "resume"}, "ann")
+        assert again.text == "Nothing was paused. The robot is stopped until 'release'."
         assert layer.store.task(number).state is TaskState.QUEUED  # type: ignore[union-attr]
         ask(layer, "release")
         wait_for(layer, number, TaskState.COMPLETED)

@@ -121,6 +121,15 @@ def test_words_that_yield_leave_their_ids_to_others(tmp_path: Path) -> None:
     assert [entry.call for entry in read] == ["my_words:ask"]
 
 
+def test_one_phrase_may_deny_a_condition(tmp_path: Path) -> None:
+    file = tmp_path / "words.toml"
+    file.write_text(
+        '[[condition]]\nphrase = "air is bad"\ndenied = "air is clean"\nid = "Bad"\ncall = "a:b"\n', encoding="utf-8"
+    )
+    root = parse_tree("check the air is clean", keywords=[str(file)]).tree.root
+    assert [root.id, *(child.id for child in root.children)] == ["Inverter", "Bad"]
+
+
 def test_a_byte_order_mark_is_fine(tmp_path: Path) -> None:
     file = tmp_path / "words.toml"
     file.write_text(ACTION, encoding="utf-8-sig")

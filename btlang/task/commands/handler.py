@@ -174,7 +174,10 @@ class Handler:
     def _resume(self, command: messages.Resume, person: str) -> Answer:
         if not command.task:
             ended = self._executor.resume()
-            return Answer(True, f"That ends {ended}." if ended else "Nothing was paused.", {"ended": ended})
+            text = f"That ends {ended}." if ended else "Nothing was paused."
+            if not ended and self._emergency.is_latched:
+                text += " The robot is stopped until 'release'."
+            return Answer(True, text, {"ended": ended})
         task = self._open(command.task)
         if task.state is not TaskState.DELAYED or not task.token:
             raise refusal_error(task.id, f"wasn't interrupted: it's {task.state}")

@@ -1,4 +1,4 @@
-"""Its missions on the robot of robot.toml. What missions do elsewhere is tested by patrol.test.txt."""
+"""Its missions on the robot of robot.toml. patrol.test.txt tests in English what they do."""
 
 from pathlib import Path
 

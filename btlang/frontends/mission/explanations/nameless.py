@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import chain
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.explanations.spelling_rule import is_respelling
@@ -63,7 +64,7 @@ def _misfit(text: Words, value: SlotValue, reason: str, advice: str) -> Diagnost
 
 def unnamed(span: Span, kinds: Sequence[ValueType], understood: str, vocabulary: Lexicon) -> Diagnostic:
     """BT013: nothing of these kinds has such a name."""
-    known = list(dict.fromkeys(name for kind in kinds for name in vocabulary.values.said_names(kind.name)))
+    known = _mixed([vocabulary.values.said_names(kind.name) for kind in kinds])
     said = joined(list(dict.fromkeys(KIND_NAMES.get(kind.name, kind.name) for kind in kinds)), "or")
     words = span.text.lower()
     people = vocabulary.values.said_names(PERSON)
@@ -75,6 +76,13 @@ def unnamed(span: Span, kinds: Sequence[ValueType], understood: str, vocabulary:
         near = [name for name in near if is_respelling(words, name.lower(), vocabulary)]
     fix = (span, near[0]) if near else None
     return diagnostic("BT013", span, fix=fix, type=said, words=span.text, help=understood + near_names(near, known))
+
+
+def _mixed(names: Sequence[Sequence[str]]) -> list[str]:
+    """The names of some kinds; where they are too many to be listed, some of each kind come first."""
+    share = _MOST_NAMES // max(len(names), 1)
+    firsts = [name for each in names for name in each[:share]] if sum(map(len, names)) > _MOST_NAMES else []
+    return list(dict.fromkeys([*firsts, *chain.from_iterable(names)]))
 
 
 def near_names(near: list[str], known: list[str]) -> str:

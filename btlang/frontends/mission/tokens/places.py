@@ -77,6 +77,23 @@ class Places(SentenceReader):
             value = Called(search.entry, each[0]) if len(goals) == 1 else Listed(search.entry, each, "or")
             tokens[at:] = [Token("command", tokens[at].start, tokens[-1].end, value)]
 
+    def looking_there(self, match: Match) -> Match:
+        """The same; `look for the cup there` looks in that place, where the cup needn't be known to be."""
+        entry = match.meaning.entry
+        slot = next((each for each in entry.slots if each.type == PLACE), None) if entry is not None else None
+        if entry is None or not entry.first or slot is None or any(value.name == slot.name for value in match.values):
+            return match
+        for value in match.values:
+            choice, last = choice_of(value.text), value.last - 1
+            parts = dict(choice.parts) if choice is not None else {}
+            if parts.keys() == {"inside", "named"} and PLACE in self._context.pronouns.get(self._text.words[last], ()):
+                others = (each for each in match.values if each is not value)
+                thing = value.replace(text=parts["named"], last=last)
+                place = SlotValue(slot.name, PLACE, parts["inside"], last, value.last)
+                placed: Match = match.replace(values=(*others, thing, place))
+                return placed
+        return match
+
     @staticmethod
     def _is_beside(token: Token) -> bool:
         """Whether a command is done where the robot is, or is a search that is about the same place."""
