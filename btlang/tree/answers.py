@@ -39,7 +39,7 @@ def with_answers(mission: ast.Program) -> tuple[ast.Program, list[Diagnostic]]:
     problems: list[Diagnostic] = []
 
     def body(root: ast.Ast) -> ast.Ast:
-        if not _asks(root):
+        if not asks(root):
             return root
         return fold(root, ast.parts, lambda node, done: _gather(_ask_until(ast.with_parts(node, done)), problems))
 
@@ -49,19 +49,19 @@ def with_answers(mission: ast.Program) -> tuple[ast.Program, list[Diagnostic]]:
     return program(mission), problems
 
 
-def _asks(node: ast.Ast, ids: Container[str] = ABOUT_ANSWERS) -> bool:
+def asks(node: ast.Ast, ids: Container[str] = ABOUT_ANSWERS) -> bool:
     """Whether a condition of these, by default one about an answer, is in a node."""
     return any(isinstance(each, ast.Phrase) and each.entry.id in ids for each in ast.parents_first(node))
 
 
 def _depends(node: ast.Ast) -> bool:
     """Whether a command is done if the answer is this or that."""
-    return isinstance(node, ast.If) and _asks(node.condition)
+    return isinstance(node, ast.If) and asks(node.condition)
 
 
 def _ask_until(node: ast.Ast) -> ast.Ast:
     """Ask again after another answer, or after none: `ask Bob "Ready?" every minute until he says yes`."""
-    if not (isinstance(node, ast.While) and node.negated and node.otherwise is None and _asks(node.condition)):
+    if not (isinstance(node, ast.While) and node.negated and node.otherwise is None and asks(node.condition)):
         return node
     round_, pause = node.body, ""
     if isinstance(round_, ast.Every) and not round_.rounds:
@@ -72,7 +72,7 @@ def _ask_until(node: ast.Ast) -> ast.Ast:
         return node
     if _is_reply(node):
         asked = ast.Chain("sequence", (asked, ast.Check(node.condition, node.condition.span)), True, node.span)
-    elif not (isinstance(node.condition, ast.Not) and _asks(node.condition, (UNANSWERED,))):  # `until he answers`
+    elif not (isinstance(node.condition, ast.Not) and asks(node.condition, (UNANSWERED,))):  # `until he answers`
         return node
     return ast.Retry("-1", asked, pause, node.span)
 
@@ -123,7 +123,7 @@ def _behind_silence(question: ast.Ast, item: ast.If) -> ast.Ast | None:
 
 def _reply(items: list[ast.Ast], asking: int | None, item: ast.Ast) -> None:
     """Add a command to those behind a question, if there is one."""
-    if asking is not None and isinstance(item, ast.If) and _asks(item.condition, (UNANSWERED,)):
+    if asking is not None and isinstance(item, ast.If) and asks(item.condition, (UNANSWERED,)):
         items[asking:] = _with_silence(items[asking:], item)
         return
     if asking is not None and isinstance(item, ast.If) and item.otherwise is not None and _is_reply(item):

@@ -89,7 +89,7 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
             front = f"{ends.strip(' ,')}, {pace.strip(' ,')}, {done[:1].lower()}{done[1:]}"
             each = f"{front}, {vocabulary.word('then')} {rest[:1].lower()}{rest[1:]}"
         advice = f"All rounds are over by then. To do it in each round, write: {each}"
-        yield diagnostic("BT068", node.span, words=words, advice=advice).replace(readings=((whole, each),))
+        yield _with_reading(node, words, advice, whole, each)
         return
     is_timed = isinstance(timed, ast.UntilTime | ast.For | ast.WaitTime)
     phrases = [each for item in before for each in ast.parents_first(item) if isinstance(each, ast.Phrase)]
@@ -106,7 +106,7 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
     if is_timed or is_driving or (is_seen and is_front):
         each = f"{vocabulary.word('whenever')} {node.span.text[len(words.split(maxsplit=1)[0]) :].lstrip()}"
         advice = f"'{last}' is over by then. To do it {'meanwhile' if is_timed else 'on the way'}, write: {each}"
-        yield diagnostic("BT068", node.span, words=words, advice=advice).replace(readings=((node.span, each),))
+        yield _with_reading(node, words, advice, node.span, each)
     elif isinstance(asked, ast.Phrase) and (
         any(_leads_through(journey, asked) for journey in journeys)
         or (
@@ -213,20 +213,15 @@ def _warn(node: ast.If, before: ast.Ast | None, vocabulary: Lexicon, is_first: b
         if before is not None and node.body.span.text.lower() in vocabulary.halting and "\n" not in before.span.text:
             fixed = f"{before.span.text} {vocabulary.word('stop_when')} {condition.text}"
             advice = f"To stop what comes before, write: {fixed}"
-            reading = Span(source, before.span.start, node.span.end), fixed
-            yield diagnostic("BT068", node.span, words=node.span.text, advice=advice).replace(readings=(reading,))
+            yield _with_reading(node, node.span.text, advice, Span(source, before.span.start, node.span.end), fixed)
         elif before is not None and (type(node.body) is ast.Fail or _is_event(node.condition, vocabulary)):
             each = f"{vocabulary.word('whenever')} {condition.text}, {node.body.span.text}"
             advice = f"'{before.span.text}' is over by then. To do it meanwhile, write: {each}"
-            yield diagnostic("BT068", node.span, words=node.span.text, advice=advice).replace(
-                readings=((node.span, each),)
-            )
+            yield _with_reading(node, node.span.text, advice, node.span, each)
         elif is_first and node.body.span.text.lower() in vocabulary.halting:  # `stop when C. A`
             each = f"{vocabulary.word('whenever')} {condition.text}, {node.body.span.text.lower()}"
             advice = f"To do it whenever it is true, write: {each}"
-            yield diagnostic("BT068", node.span, words=node.span.text, advice=advice).replace(
-                readings=((node.span, each),)
-            )
+            yield _with_reading(node, node.span.text, advice, node.span, each)
         elif node.body.span.text.lower() not in vocabulary.halting and not _is_answered(node):
             word = next(iter(source.text[node.body.span.end : condition.start].lower().split()), "")
             if word in vocabulary.asked_once:  # `wave when Bob is near`
@@ -239,6 +234,12 @@ def _warn(node: ast.If, before: ast.Ast | None, vocabulary: Lexicon, is_first: b
     if word.lower() in vocabulary.asked_once or _is_event(node.condition, vocabulary):
         rest = source.text[node.span.start + len(word) : node.span.end].lstrip()
         yield _asked_once(node, f"{word} {condition.text}", f"{{}} {rest}", vocabulary)
+
+
+def _with_reading(node: ast.If, words: str, advice: str, place: Span, fixed: str) -> Diagnostic:
+    """Make BT068 with words of a condition, and what to write at a place instead."""
+    problem = diagnostic("BT068", node.span, words=words, advice=advice)
+    return problem.replace(readings=((place, fixed),))  # type: ignore[no-any-return]
 
 
 def _asked_once(node: ast.If, words: str, other: str, vocabulary: Lexicon) -> Diagnostic:

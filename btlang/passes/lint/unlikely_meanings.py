@@ -13,7 +13,7 @@ BT050).
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
@@ -23,7 +23,7 @@ from btlang.passes.lint.two_readings import make_printer, make_warning
 from btlang.text.source import Span
 from btlang.text.time_of_day import seconds_of
 from btlang.tree import ast
-from btlang.tree.answers import ABOUT_ANSWERS, ASK, asking_verbs
+from btlang.tree.answers import ABOUT_ANSWERS, ASK, asking_verbs, asks
 from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import choice_of
@@ -175,7 +175,7 @@ def find_ended_rounds(compilation: Compilation) -> Iterator[Diagnostic]:
 def find_distant_questions(compilation: Compilation) -> Iterator[Diagnostic]:
     """Report a question to somebody by name before whom nothing moves the robot, or asks where they are."""
     body, vocabulary = compilation.mission.body, compilation.vocabulary
-    phrases = [each for each in compilation.syntax(body) if isinstance(each, ast.Phrase)] if body is not None else []
+    phrases = _phrases(compilation.syntax(body)) if body is not None else []
     if all(each.entry.id != ASK for each in phrases):
         return  # as nearly always
     for phrase in sorted(phrases, key=lambda each: each.span.start):
@@ -195,14 +195,14 @@ def find_unused_answers(compilation: Compilation) -> Iterator[Diagnostic]:
     """Report a question that is asked again behind an answer to it, where nothing depends on the second answer."""
     for body in ast.bodies(compilation.mission):
         nodes = compilation.syntax(body)
-        if sum(isinstance(each, ast.Phrase) and each.entry.id == ASK for each in nodes) < 2:
+        phrases = _phrases(nodes)
+        asked = [each for each in phrases if each.entry.id == ASK]
+        if len(asked) < 2:
             continue  # as nearly always
         repeated = {id(each) for node in nodes if isinstance(node, _LOOPS) for each in ast.parents_first(node)}
-        phrases = [each for each in nodes if isinstance(each, ast.Phrase)]
         used = max((each.span.start for each in phrases if each.entry.id in ABOUT_ANSWERS), default=-1)
-        asked = [each for each in phrases if each.entry.id == ASK]
         for node in nodes:
-            if not isinstance(node, ast.If) or not _is_about_answers(node.condition) or id(node) in repeated:
+            if not isinstance(node, ast.If) or not asks(node.condition) or id(node) in repeated:
                 continue
             for again in (each for each in ast.parents_first(node) if each in asked and each.span.start > used):
                 before = (each.arguments for each in asked if each.span.start < again.span.start)
@@ -210,8 +210,8 @@ def find_unused_answers(compilation: Compilation) -> Iterator[Diagnostic]:
                     yield diagnostic("BT147", again.span, words=again.span.text, example=_KEEP_ASKING)
 
 
-def _is_about_answers(condition: ast.Ast) -> bool:
-    return any(isinstance(each, ast.Phrase) and each.entry.id in ABOUT_ANSWERS for each in ast.parents_first(condition))
+def _phrases(nodes: Iterable[ast.Ast]) -> list[ast.Phrase]:
+    return [each for each in nodes if isinstance(each, ast.Phrase)]
 
 
 def find_picked_up_only(compilation: Compilation) -> Iterator[Diagnostic]:
@@ -219,7 +219,7 @@ def find_picked_up_only(compilation: Compilation) -> Iterator[Diagnostic]:
     vocabulary = compilation.vocabulary
     verbs = vocabulary.asking["getting"]
     for body in ast.bodies(compilation.mission):
-        phrases = [each for each in compilation.syntax(body) if isinstance(each, ast.Phrase)]
+        phrases = _phrases(compilation.syntax(body))
         by_place = {each.span.start: each for each in reversed(phrases) if each.entry.id == _PICK_UP}  # of a list, one
         for phrase in sorted(by_place.values(), key=lambda each: each.span.start):
             verb, _, rest = phrase.span.text.partition(" ")

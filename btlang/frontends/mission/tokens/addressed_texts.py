@@ -111,10 +111,9 @@ class AddressedTexts(SentenceReader):
             if pronoun is not None and (len(named) != 1 or named[0][:1] == "{"):
                 return ""
             words.append(named[0] if pronoun is not None else self._written(at))
-        of_robot = self._vocabulary.of_robot
-        pattern = "|".join(map(re.escape, sorted(of_robot, key=len, reverse=True)))
-        said = " ".join(words)
+        said, of_robot = " ".join(words), self._vocabulary.of_robot
         if of_robot:
+            pattern = "|".join(map(re.escape, sorted(of_robot, key=len, reverse=True)))
             said = re.sub(rf"\b(?:{pattern})\b", lambda match: of_robot[match[0].lower()], said, flags=re.IGNORECASE)
         return said[:1].upper() + said[1:]
 

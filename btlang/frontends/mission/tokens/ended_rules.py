@@ -187,6 +187,11 @@ def _say_where(tokens: list[Token], at: int, vocabulary: Lexicon, span: Callable
             token.value = Called(place, (*value.arguments, (_slot_of(place), zones[0])))
 
 
+def journey_to(place: str, goes: Entry) -> Called:
+    """The journey to one place, with the entry that goes there."""
+    return Called(goes, ((_slot_of(goes), place),))
+
+
 def _slot_of(entry: Entry) -> str:
     return next(slot.name for slot in entry.slots if slot.type == PLACE)
 
@@ -250,8 +255,7 @@ def _wait(tokens: list[Token], at: int, vocabulary: Lexicon) -> None:
     elif goes is not None and isinstance(stay.value, Called):
         zone = stay.value.arguments[0][1]
         if zone in vocabulary.values.listed(PLACE):
-            journey = Called(goes, ((_slot_of(goes), zone),))
-            tokens[at:at] = [Token("command", start, start, journey), Token("then", start, start)]
+            tokens[at:at] = [Token("command", start, start, journey_to(zone, goes)), Token("then", start, start)]
 
 
 def _condition_end(tokens: list[Token], at: int) -> tuple[int, int]:

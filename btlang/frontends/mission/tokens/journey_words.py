@@ -38,9 +38,9 @@ class JourneyWords(SentenceReader):
         if self._text.words[at] not in self._vocabulary.journey_verbs:
             return 0
         match = self._phrase(at + 1)
-        if match is not None and match.meaning.role == "start_at" and (end := self._from_each(at, match.last)):
-            return end
-        return self._start(at, match.last) if match is not None and match.meaning.role == "start_at" else 0
+        if match is None or match.meaning.role != "start_at":
+            return 0
+        return self._from_each(at, match.last) or self._start(at, match.last)
 
     def _from_each(self, at: int, first: int) -> int:
         """`go from room to room`, where the noun at a word stands twice: to every room."""

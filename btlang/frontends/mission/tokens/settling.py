@@ -184,8 +184,9 @@ def with_stays(tokens: list[Token], source: Source, standing: Container[str]) ->
         return  # as nearly always
     depth, outside = 0, list[int]()
     for at, token in enumerate(tokens):
-        if not token.role and first_word(token, source) in standing:
-            token.role = STAYS if drives(token.value) and names_place(token.value) else ""
+        value = token.value
+        if not token.role and drives(value) and first_word(token, source) in standing and names_place(value):
+            token.role = STAYS
         depth += (token.kind == "indent") - (token.kind == "dedent")
         begins = at == 0 or tokens[at - 1].kind in STATEMENT_ENDS
         if depth == 0 and begins and token.kind not in ("define", *STATEMENT_ENDS):

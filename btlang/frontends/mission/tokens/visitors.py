@@ -16,7 +16,7 @@ from btlang.frontends.mission.token import (
     statement_start,
     texts_of,
 )
-from btlang.frontends.mission.tokens.ended_rules import GO
+from btlang.frontends.mission.tokens.ended_rules import GO, journey_to
 from btlang.frontends.mission.tokens.journey_words import COMES
 from btlang.frontends.mission.tokens.rules_inside import ON_WAY
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
@@ -96,18 +96,15 @@ class Visitors(SentenceReader):
 def with_meetings(tokens: list[Token], vocabulary: Lexicon) -> None:
     """Make `wait for Alice in the lab for 5 min` go to the lab first: she needn't be there yet."""
     goes = vocabulary.entry(GO)
-    waits = [at for at, token in enumerate(tokens) if type(token.value) is Called and token.value.entry.id == COMES]
-    for at in reversed(waits):
+    for at in reversed(range(len(tokens)) if goes is not None else ()):
         said, start, end = tokens[at].value, tokens[at].start, tokens[at].end
-        if goes is None or not isinstance(said, Called):
-            continue
+        if goes is None or not isinstance(said, Called) or said.entry.id != COMES:
+            continue  # as nearly always
         who = choice_of(said.arguments[0][1])
         parts = dict(who.parts) if who is not None else {}
         if parts.keys() == {"inside", "named"}:
-            goal = next(slot.name for slot in goes.slots if slot.type == PLACE)
-            journey = Token("command", start, start, Called(goes, ((goal, parts["inside"]),)))
-            wait = said.replace(arguments=((said.arguments[0][0], parts["named"]), *said.arguments[1:]))
-            tokens[at].value = wait
+            journey = Token("command", start, start, journey_to(parts["inside"], goes))
+            tokens[at].value = said.replace(arguments=((said.arguments[0][0], parts["named"]), *said.arguments[1:]))
             tokens[at : at + 1] = [
                 Token("open", start, start), journey, Token("then", start, start), tokens[at], Token("close", end, end),
             ]  # fmt: skip
