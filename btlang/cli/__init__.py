@@ -55,8 +55,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         for stream in (sys.stdout, sys.stderr):
             os.dup2(nowhere, stream.fileno())
         return codes.get(error.errno or 0, BAD_INPUT)
-    except KeyboardInterrupt:
-        return INTERRUPTED
+    except KeyboardInterrupt as interrupt:
+        return 128 + interrupt.args[0] if interrupt.args else INTERRUPTED  # see `interrupted_by_signals`
     except Exception as error:
         if os.environ.get("BTC_DEBUG"):
             raise

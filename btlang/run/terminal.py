@@ -164,23 +164,33 @@ def warn_of_motion(standstill: Standstill) -> bool:
     return bool(standstill.moving)
 
 
+class _Interrupt:
+    """The handler that interrupts for a signal, as Ctrl-C does, and keeps those that came."""
+
+    def __init__(self) -> None:
+        self.came: list[int] = []
+
+    def __call__(self, number: int, _: object) -> None:
+        self.came.append(number)
+        raise KeyboardInterrupt(number)
+
+
 @contextmanager
 def interrupted_by_signals() -> Iterator[list[int]]:
-    """Let a signal to end, or that the terminal is gone, halt the robot as Ctrl-C does; a caller's own handler stays.
+    """Let a signal to end, or that the terminal is gone, interrupt as Ctrl-C does; a caller's own handler stays.
 
-    The list keeps those that came.
+    The list keeps those that came; where one is inside another they share it.
     """
-    came: list[int] = []
-
-    def interrupt(number: int, _: object) -> None:
-        came.append(number)
-        raise KeyboardInterrupt
-
+    handler = next((found for found in map(signal.getsignal, ENDING_SIGNALS) if isinstance(found, _Interrupt)), None)
+    if handler is not None:
+        yield handler.came
+        return
+    handler = _Interrupt()
     taken = [number for number in ENDING_SIGNALS if signal.getsignal(number) == signal.SIG_DFL]
     for number in taken:
-        signal.signal(number, interrupt)
+        signal.signal(number, handler)
     try:
-        yield came
+        yield handler.came
     finally:
         for number in taken:
             signal.signal(number, signal.SIG_DFL)

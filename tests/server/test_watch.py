@@ -142,7 +142,16 @@ def test_the_browser_gets_the_address_in_a_private_file(words: tuple[str, ...], 
         up.enter()
         assert not Path(address.removeprefix("file://")).exists()
     assert up.token not in "".join(up.lines)
+    assert up.process.returncode == 128 + signal.SIGTERM
     assert not [path for path in folder.iterdir() if path.name.startswith("btlang-")]
+
+
+@pytest.mark.parametrize("words", [("run", "--watch", "--no-browser"), ("edit", "--no-browser")])
+def test_a_signal_at_once_leaves_nothing(words: tuple[str, ...], mission: Path) -> None:
+    up = LocalDoor(mission.parent, *words, str(mission))  # it returns with the first line
+    up.close()
+    assert up.process.returncode == 128 + signal.SIGTERM, up.lines
+    assert not [path for path in mission.parent.iterdir() if path.name.startswith("btlang-")]
 
 
 def _text(path: Path) -> str:

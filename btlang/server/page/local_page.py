@@ -185,6 +185,7 @@ def local_page(make: Callable[[Accounts, int, str], LocalApi], port: int = 0) ->
     listener = open_listener(_HOST, port)
     port = listener.getsockname()[1]
     with (
+        interrupted_by_signals(),  # so that what it wrote is removed, whenever the signal comes
         tempfile.TemporaryDirectory(prefix="btlang-") as folder,
         closing(Accounts(folder, clock=lambda: 0.0)) as accounts,  # its session ends with it, however long that is
     ):
