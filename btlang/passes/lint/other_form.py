@@ -25,7 +25,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-OTHERWISE, PACED, FORMS, SENTENCES, SEARCHES, TRIED = "otherwise", "paced", "forms", "sentences", "searches", "tried"
+OTHERWISE, PACED, FORMS, SENTENCES = "otherwise", "paced", "forms", "sentences"
+SEARCHES, TRIED, LEAVES = "searches", "tried", "leaves"
 _SENTENCE_END = re.compile(r"[.;!?]")
 _SEES = "perception"
 _WORD = re.compile(r"\w+")
@@ -41,7 +42,10 @@ def find_in_form(node: ast.If | ast.Try, vocabulary: Lexicon) -> Iterator[Attach
     if node.otherwise is not None or body.span.start <= node.span.start:
         return
     if isinstance(node, ast.Try) and _is_tried(node, vocabulary) and _is_joined_by_then(body, vocabulary):
-        yield Attachment(TRIED, node.span.start, partial(_try_first, node))
+        yield Attachment(TRIED, node.span.start, partial(_first_alone, node, 1))
+    leaves = _leaves_at(node, vocabulary) if isinstance(node, ast.If) else 0
+    if leaves:
+        yield Attachment(LEAVES, node.span.start, partial(_first_alone, node, leaves))
     joins = isinstance(body, ast.Chain) and body.operator in ("sequence", "parallel") and not body.bracketed
     if isinstance(node, ast.If) and isinstance(body, ast.Chain) and joins and len(body.items) > 1:
         before, last = body.items[-2:]
@@ -167,6 +171,31 @@ def _is_joined_by_then(body: ast.Ast, vocabulary: Lexicon) -> bool:
     return _between(*body.items[:2]).strip(" ,").lower() in vocabulary.roles["then"]
 
 
+def _leaves_at(node: ast.If, vocabulary: Lexicon) -> int:
+    """Return how many commands of `if C, A, then B` are before the `then`, 0 unless B could be done in any case.
+
+    That is so where the robot only leaves with B, for a goal that has nothing to do with C or A.
+    """
+    if not isinstance(node.body, ast.Chain) or node.body.operator != "sequence" or node.body.bracketed:
+        return 0
+    told = _told(node.condition)
+    for at, (here, behind) in enumerate(pairwise(node.body.items)):
+        if not isinstance(here, ast.Phrase) or not isinstance(behind, ast.Phrase) or MOVES in here.entry.resources:
+            return 0
+        told |= _told(here)
+        _, comma, word = _between(here, behind).rpartition(",")
+        if comma and word.strip().lower() in vocabulary.roles["then"]:
+            goal = _told(behind) if MOVES in behind.entry.resources else set()
+            return at + 1 if goal and not goal & told else 0
+    return 0
+
+
+def _told(node: ast.Ast) -> set[str]:
+    """Return the values of the phrases in a node."""
+    phrases = (each for each in ast.parents_first(node) if isinstance(each, ast.Phrase))
+    return {text for phrase in phrases for _, text in phrase.arguments}
+
+
 def _has_otherwise(node: ast.Ast) -> bool:
     return getattr(node, "otherwise", None) is not None
 
@@ -194,11 +223,11 @@ def _side_by_side(node: ast.If, gap: Span, then: str) -> Readings:
     return Readings(taken, other, node.span, fix)
 
 
-def _try_first(node: ast.Try) -> Readings:
-    """Read `try to A, then B` as: try to A; then B in any case."""
+def _first_alone(node: ast.If | ast.Try, count: int) -> Readings:
+    """Read `try to A, then B` as: try to A; then B in any case. `count` commands are before the `then`."""
     body: Any = node.body
-    first = node.replace(body=body.items[0])
-    other = ast.Chain("sequence", (first, *body.items[1:]), True, node.span)
+    first = node.replace(body=body.items[0] if count == 1 else body.replace(items=body.items[:count]))
+    other = ast.Chain("sequence", (first, *body.items[count:]), True, node.span)
     return Readings(node, other, node.span, add_brackets(body.span))
 
 

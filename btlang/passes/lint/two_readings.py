@@ -10,7 +10,7 @@
 - a number before a pace: `A 3 times every 10 s`; a condition behind one: `every 10 s, A until C`;
 - two sentences that could exclude one another: `if C, A. If D, B. Otherwise E`;
 - a search for a time: `look for Alice for 5 min`;
-- what follows a command that is tried: `try to A, then B`;
+- what follows a command that is tried: `try to A, then B`, or a journey behind one with an `if`: `if C, A, then B`;
 - a rule about people behind a journey: `go to the door. Whenever somebody comes near, B`: on the way, or there;
 - `A, or B if C`: B if A fails, or B instead of A. Brackets can't give the second reading.
 """
