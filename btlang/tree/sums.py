@@ -16,7 +16,7 @@ from btlang.vocabulary.value_type import number_type
 
 COUNTING = frozenset(("CountPeople", "CountObjects", "CountKind"))
 """The ids of commands that count."""
-_COMPARED = "Counted"
+COMPARED = "Counted"
 """The id of the condition about what was counted last."""
 _IN_TURN = ("sequence", "and")
 """Operators of chains whose commands run one after another: one that counts goes with nothing else."""
@@ -102,7 +102,7 @@ class _Sums:
     def _ask_sum(self, node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
         if isinstance(node, ast.Remember) and _is_number(node):
             return ast.Assign(node.key, "set", self._number, f"{{{_TOTAL}}}", node.span)
-        if isinstance(node, ast.Phrase) and node.entry.id == _COMPARED:
+        if isinstance(node, ast.Phrase) and node.entry.id == COMPARED:
             return ast.Compared(_TOTAL, self._number, node.arguments, node.span)
         return ast.with_parts(node, done)
 
@@ -142,7 +142,7 @@ def _last_count(node: ast.Ast) -> tuple[list[ast.Chain], ast.Ast | None]:
 
 def _asks(node: ast.Ast) -> bool:
     """Whether a node asks for the number that was counted last."""
-    return _is_number(node) or (isinstance(node, ast.Phrase) and node.entry.id == _COMPARED)
+    return _is_number(node) or (isinstance(node, ast.Phrase) and node.entry.id == COMPARED)
 
 
 def _counts_several(node: ast.Ast) -> bool:

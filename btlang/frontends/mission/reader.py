@@ -19,6 +19,7 @@ from btlang.text.source import Source, Span
 from btlang.tree.answers import with_answers
 from btlang.tree.ast import Ast, Definition, Nothing, Program
 from btlang.tree.conjunctions import resolve
+from btlang.tree.endless import with_ends
 from btlang.tree.rounds import with_rounds
 from btlang.tree.sums import with_sums
 from btlang.vocabulary.lexicon import Lexicon
@@ -69,7 +70,7 @@ def read_mission(
 def _whole(mission: Program, vocabulary: Lexicon) -> tuple[Program, list[Diagnostic]]:
     """A mission with what takes all of it to know, and what there is to say about it. Raises MissionError (BT144)."""
     looped = with_rounds(mission, vocabulary)
-    answered, problems = with_answers(with_sums(looped, vocabulary))
+    answered, problems = with_answers(with_sums(with_ends(looped), vocabulary))
     if problems:
         raise MissionError(problems)
     return resolve(answered, vocabulary)
