@@ -66,8 +66,36 @@ class _Round(Record):
 
 def _with_loops(root: ast.Ast, vocabulary: Lexicon) -> ast.Ast:
     if any(map(_set_of, ast.parents_first(root))):
-        root = _add_loops(root, vocabulary)
+        root = _add_loops(_ended_by_times(root), vocabulary)
     return fold(root, ast.parts, lambda node, done: _with_each_tried(node, done, vocabulary))
+
+
+def _ended_by_times(root: ast.Ast) -> ast.Ast:
+    """Return a mission in which a time of day ends a round: `tell everyone "Lunch", and at 1 pm tell them "Work"`.
+
+    What speaks of the thing behind it is a new round over the same things.
+    """
+    sets, over, renewed = dict[str, Choice](), set[str](), dict[int, str]()
+    for node in ast.parents_first(root):
+        own = _set_of(node)
+        if isinstance(node, ast.WaitTime):
+            over |= sets.keys()
+        elif own is not None:
+            sets[own.key] = own
+            over.discard(own.key)
+        elif isinstance(node, ast.Phrase | ast.Name) and (
+            again := next(iter(over.intersection(ast.keys_of(node))), "")
+        ):
+            renewed[id(node)] = again
+            over.discard(again)
+
+    def renew(node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
+        key = renewed.get(id(node), "")
+        if key and isinstance(node, ast.Phrase | ast.Name):
+            return _replace_argument(node, f"{{{key}}}", sets[key].text)
+        return ast.with_parts(node, done)
+
+    return fold(root, ast.parts, renew) if renewed else root
 
 
 def _add_loops(root: ast.Ast, vocabulary: Lexicon) -> ast.Ast:

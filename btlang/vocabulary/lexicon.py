@@ -174,6 +174,8 @@ class Lexicon:
         """The same for the form behind a subject: `the robot waves`."""
         self.of_robot: dict[str, str] = language["of_robot"]
         """What a mission calls the robot, and what the robot calls itself: `you are`, `I am`."""
+        self.happened: dict[str, str] = language["happened"]
+        """The verbs of what is so, and of what was so: `is`, `was`."""
         self.perfect: dict[str, str] = language["perfect"]
         """How a condition says that it has held for some time, and what it says: `has been`, `is`."""
         self.nodes: dict[str, str] = language["nodes"]

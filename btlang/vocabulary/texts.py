@@ -39,7 +39,11 @@ class Texts:
         self._clause_words = frozenset(language["clause_words"])
         self._question_words = frozenset(language["question_words"])
         self._openers = frozenset((*language["clause_openers"], *self._question_words))
-        self.inverting = frozenset(language["inverting"])
+        self._modals, self._completed = frozenset(language["modals"]), frozenset(language["completed"])
+        self._participles, self._endings = frozenset(language["participles"]), tuple(language["participle_endings"])
+        self.inverting = self._modals.union(language["inverting"])
+        self.matters = frozenset(language["matters"])
+        """Words before what somebody is told of, which is no text."""
         self._purpose = frozenset(language["purpose"])
         self._relatives = frozenset(phrase.split()[0] for phrase in language["relatives"])
         self._owners = frozenset(language["possessives"].get("others", ()))
@@ -104,7 +108,20 @@ class Texts:
 
     def may_be_joined(self, text: Words, first: int, last: int) -> bool:
         """Whether a verb as it stands in commands could go on with a clause: `if he can come and help`."""
-        return any(text.words[at] in self.inverting or text.words[at] in self._purpose for at in range(first, last))
+        return any(text.words[at] in self._modals or text.words[at] in self._purpose for at in range(first, last))
+
+    def is_whole(self, text: Words, first: int, last: int) -> bool:
+        """Whether a clause has its verb, in a form that no verb as in commands goes on with: `tea is ready`."""
+        return self._verb(text, first, last) > first and not self.may_be_joined(text, first, last)
+
+    def _verb(self, text: Words, first: int, last: int) -> int:
+        """The word of a clause that stands before who does it in a question; the first of all where there is none."""
+        return next((at for at in range(first, last) if self._inverts(text, at)), first)
+
+    def _inverts(self, text: Words, at: int) -> bool:
+        word, behind = text.words[at], text.words[at + 1]
+        done = behind in self._participles or behind.endswith(self._endings)
+        return word in self.inverting or (word in self._completed and done and at + 1 not in text.articles)
 
     def is_owned(self, text: Words, at: int) -> bool:
         """Whether an article, or a word for whose thing it is, stands before what begins at a word."""
@@ -112,7 +129,13 @@ class Texts:
 
     def doubt(self, text: Words, first: int, last: int) -> int:
         """The word of a text without quotes that may end it, or be understood as somebody else; 0 if there is none."""
-        return next((at for at in range(first, last) if text.words[at] in self._doubtful), 0)
+        doubtful = (at for at in range(first, last) if text.words[at] in self._doubtful)
+        return next((at for at in doubtful if at == first or not self._belongs(text, at)), 0)
+
+    def _belongs(self, text: Words, at: int) -> bool:
+        """Whether a word that could end a text goes on with the verb before it: `the book is on the table`."""
+        is_joint = any(find(joints, text.words, at) is not None for joints in (self._joints, self._then))
+        return text.words[at - 1] in self.inverting - self._modals and text.words[at] in self._joining and not is_joint
 
     def direct(self, text: Words, first: int, last: int, sure: Set[str]) -> str | None:
         """The question that a clause stands for: `he is hungry` as "Are you hungry?"; None where that can't be told.
@@ -131,10 +154,12 @@ class Texts:
                 return self._question(parts, self._said(text, front[1], last), doubtful)
         if asks and text.words[first] in self.inverting:  # `what is 7 times 8`
             return self._question((opener, text.words[first]), self._said(text, first + 1, last), doubtful)
-        verb = next((at for at in range(first, last) if text.words[at] in self.inverting), first)
+        verb = self._verb(text, first, last)
         if verb == first or not self._relatives.isdisjoint(text.words[first:verb]):
             return None
         parts = [*([opener] if asks else []), text.words[verb], *self._said(text, first, verb)]
+        if self._belongs(text, verb + 1):  # `if the book is on the table`
+            doubtful = doubtful - {text.words[verb + 1]}
         return self._question(parts, self._said(text, verb + 1, last), doubtful)
 
     def _question(self, front: Sequence[str], behind: Sequence[str], doubtful: Set[str]) -> str | None:

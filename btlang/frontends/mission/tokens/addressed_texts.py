@@ -7,12 +7,13 @@ import re
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import JOINTS, STATEMENT_ENDS, Called, Listed, Token, run_start, statement_start
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, searches
-from btlang.frontends.mission.tokens.settling import FAILS, WORKS
+from btlang.frontends.mission.tokens.settling import FAILS, WORKS, is_about
 from btlang.frontends.mission.tokens.word_matches import words_of
 from btlang.text.words import Words
 from btlang.tree.answers import ABOUT_ANSWERS, ASK
 from btlang.vocabulary.entry import RECIPIENT, Entry
 from btlang.vocabulary.match import SlotValue
+from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE, WORLD, ZONE
 from btlang.vocabulary.word_tree import find
@@ -24,10 +25,12 @@ _LINE_ENDS = frozenset(("semi", "newline", "otherwise"))
 _SOMEBODY = "may be somebody else for whoever hears it"
 _NEXT = "may be a part of it, or go on with the mission"
 _NO_QUESTION = "begins no question that I know"
+_MATTER = "begins what it is about, but not what to say"
 _PERSON = "is a person, and the question is missing"
 
 
 _MEASURES = frozenset(("count", "at_most", "up_to_times", "tries", "within", "for", "up_to", "every"))
+_DONE = ("command", "at", "wait", "wait_until", "wait_forever")
 _BEHIND = ("politeness", "then", "and")
 
 
@@ -41,6 +44,12 @@ class AddressedTexts(SentenceReader):
         match = self._phrase(at)
         return match is not None and match.meaning.role in _BEHIND
 
+    def _behind_manner(self, at: int) -> int:
+        """Where to go on behind words that say nothing, which may end what is said: `right away`."""
+        silent = self._phrase(at)
+        is_manner = silent is not None and silent.meaning.role == "politeness" and self._ends(silent.last)
+        return silent.last if silent is not None and is_manner else at
+
     def _goes_on(self, at: int) -> bool:
         """Whether words follow that are neither a mark nor begin anything."""
         is_mark = self._is_end(at) or self._text.words[at] in (",", ":")
@@ -50,14 +59,25 @@ class AddressedTexts(SentenceReader):
         """`tell Bob dinner is ready`: a clause without a word before it."""
         text, texts = self._text, self._vocabulary.values.texts
         end = texts.end_of_clause(text, value.first)
+        end = self._end_before_command(value.first, end, is_told=True) or end
         if any(word[0] == '"' for word in text.words[value.first : end]):
             return 0  # `tell her quietly "Hello"`
-        if not end or self._doubt(entry, texts.doubt(text, value.first, end)):
+        if not end:
             return 0
+        if text.words[value.first] not in texts.matters or not self._doubt(entry, value.first, _MATTER):
+            self._doubt_words(entry, value.first, end)
+        return self._say_clause(value, end, command)
+
+    def _say_clause(self, value: SlotValue, end: int, command: Token) -> int:
+        """Say the words of a clause up to a place, at which the mission goes on."""
+        text = self._text
         self._set_text(command, value.name, text.source.text[text.begin(value.first) : text.ends[end - 1]])
         command.end = text.ends[end - 1]
         self._tokens.append(command)
         return end
+
+    def _doubt_words(self, entry: Entry, first: int, last: int) -> bool:
+        return self._doubt(entry, self._vocabulary.values.texts.doubt(self._text, first, last))
 
     def _plead(self, entry: Entry, value: SlotValue, at: int, command: Token) -> int:
         """`ask Bob to close his door`: says "Please close your door" to him; `ask Bob for the cup`: to give it."""
@@ -104,13 +124,18 @@ class AddressedTexts(SentenceReader):
         if asked[0].value.entry.id in ABOUT_ANSWERS:  # `if she says yes, tell Bob`: of who was asked
             named = [person for person in [self._context.latest.get(PERSON, "")] if person]
         words: list[str] = []
+        types = {slot.name: slot.type for slot in asked[0].value.entry.slots}
+        things = [value for name, value in asked[0].value.arguments if types[name] in (OBJECT, DOOR)]
+        done = (token for token in self._tokens[form:] if token.kind == "command")
+        is_over = any(is_about(token, {thing}) for token in done for thing in things)
+        happened = self._vocabulary.happened if is_over else {}
         for at in words_of(text, asked[0]):
             pronoun = find(pronouns, text.words, at)
             if pronoun is not None and PLACE in self._context.pronouns[pronoun[0]]:
                 pronoun = None  # `if she isn't there, tell me`
             if pronoun is not None and (len(named) != 1 or named[0][:1] == "{"):
                 return ""
-            words.append(named[0] if pronoun is not None else self._written(at))
+            words.append(named[0] if pronoun is not None else happened.get(text.words[at]) or self._written(at))
         said, of_robot = " ".join(words), self._vocabulary.of_robot
         if of_robot:
             pattern = "|".join(map(re.escape, sorted(of_robot, key=len, reverse=True)))
@@ -156,7 +181,7 @@ class AddressedTexts(SentenceReader):
             elif at not in text.articles and find(values.names_tree("person"), text.words, at) is not None:
                 self._doubt(entry, at, _PERSON)
             return 0
-        end = self._end_before_command(value)
+        end = self._end_before_command(at, value.last, is_told=False)
         last = end or value.last
         is_speaker = text.words[at - 2] in values.role_words.speaker
         asked = self._of_speaker(at, last) if is_speaker else text
@@ -255,21 +280,27 @@ class AddressedTexts(SentenceReader):
         self._context.latest[PERSON] = named[0]
         return likewise[1] if likewise is not None else named[1]
 
-    def _end_before_command(self, value: SlotValue) -> int:
-        """Where a clause ends before a reply, or before `and` and a command whose verb can't go on with it; else 0."""
+    def _end_before_command(self, first: int, last: int, is_told: bool) -> int:
+        """Where a clause ends before a reply, or before `and` and a command whose verb can't go on with it; else 0.
+
+        What is told has its verb by then: `tell Bob that tea is ready and wave`.
+        """
         text, joints, context = self._text, self._vocabulary.roles["and"], self._context.with_references()
-        replies = (at for at in range(value.first + 1, value.last) if find(self._vocabulary.replies, text.words, at))
-        if at := next(replies, 0):
-            return at - (text.words[at - 1] == ",")
+        texts, replies = self._vocabulary.values.texts, self._vocabulary.replies
+        if at := next((at for at in range(first + 1, last) if find(replies, text.words, at)), 0):
+            return 0 if is_told else at - (text.words[at - 1] == ",")
         context.latest = dict.fromkeys(context.types, "")  # `and bring him the cup`: who is asked isn't known yet
-        for at in range(value.first + 1, value.last - 1):
-            if text.words[at] in joints:
-                behind = longest(self._vocabulary.trie, text, at + 1, context)
-                is_command = behind is not None and behind.meaning.role == "command" and at + 1 not in text.articles
-                ends = behind is not None and (self._is_end(behind.last) or behind.last < value.last)
-                may_go_on = self._vocabulary.values.texts.may_be_joined(text, value.first, at)
-                return at if is_command and ends and not may_go_on else 0
+        for at in range(first + 1, last - 1):
+            if text.words[at] in joints and self._begins_command(at + 1, context):
+                goes_on = not texts.is_whole(text, first, at) if is_told else texts.may_be_joined(text, first, at)
+                return 0 if goes_on else at - (text.words[at - 1] == ",")
         return 0
+
+    def _begins_command(self, at: int, context: ReadingContext) -> bool:
+        """Whether a command begins at a word, or a time at which it is done."""
+        behind = longest(self._vocabulary.trie, self._text, at, context)
+        role = behind.meaning.role if behind is not None else ""
+        return at not in self._text.articles and role in _DONE
 
     def _joining_things(self, first: int, last: int) -> set[str]:
         """The words that only join things there: `if she'd like the newspaper or her book`."""
@@ -300,6 +331,7 @@ class AddressedTexts(SentenceReader):
         """`remind me to drink some water`, `tell me that tea is ready`: what is said, and where it ends."""
         text, asking, texts = self._text, self._vocabulary.asking, self._vocabulary.values.texts
         end = texts.end_of_clause(text, opener + 1) or opener + 2
+        end = self._end_before_command(opener + 1, end, is_told=True) or end
         own = self._vocabulary.values.adjectives.own if text.words[opener] in asking["pleading"] else frozenset[str]()
         doubtful = (place for place in range(opener + 1, end) if texts.doubt(text, place, place + 1))
         self._doubt(entry, next((place for place in doubtful if text.words[place] not in own), 0))

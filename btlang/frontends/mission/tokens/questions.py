@@ -82,7 +82,7 @@ class Questions(Answers):
         person = self._context.read(PERSON, text, at + 1) if text.words[at] in asking["informing"] else None
         if person is None or entry is None or not person[0] or person[0][:1] == "{":
             return 0
-        end = person[1] + (text.words[person[1]] in asking["informed"])
+        end = self._behind_manner(person[1] + (text.words[person[1]] in asking["informed"]))
         slots = {slot.type: slot.name for slot in entry.slots}
         said = self._asked_of() if self._ends(end) else ""
         told = Called(entry, ((slots[PERSON], person[0]), (slots[TEXT], said)))

@@ -65,9 +65,13 @@ class Requests(Questions):
         if entry.id == TELL and likewise is not None and self._ends(likewise[1]):
             self._doubt(entry, value.first)  # `tell Bob too` behind nothing that was told
             return 0
+        if entry.id == TELL and self._behind_manner(value.first) > value.first:  # `tell Bob right away`
+            return self._inform(at) or self._miss_text(at, value.first, command)
         if entry.id == ASK:
             return self._ask(entry, value, command)
         if self._is_clause(value):
+            if end := self._end_before_command(value.first, value.last, is_told=True):
+                return self._say_clause(value, end, command) if not self._doubt_words(entry, value.first, end) else 0
             doubt = self._vocabulary.values.texts.doubt(self._text, value.first, value.last)
             doubt = doubt or self._measure_in(value.first, value.last)
             self._doubt(entry, doubt or self._addressee(value.first + 1, value.last) * (entry.id == SAY))
@@ -159,12 +163,19 @@ class Requests(Questions):
             said, end = self._asked_of() if self._ends(told[1]) else "", told[1]
         if not said and not self._ends(end):
             return 0
+        command = Token("command", text.starts[at], text.ends[end - 1], self._saying_of(said))
         if not said:
-            words = text.span(at, end)
-            example = f'{words.text} "{_EXAMPLE}"'
-            self._calls.problems.append(diagnostic("BT012", words, words=words.text, wanted="a text", example=example))
-        self._tokens.append(Token("command", text.starts[at], text.ends[end - 1], self._saying_of(said)))
+            return self._miss_text(at, end, command)
+        self._tokens.append(command)
         return end
+
+    def _miss_text(self, at: int, end: int, command: Token) -> int:
+        """BT012 for a command that doesn't say what to tell; return where to go on."""
+        words = self._text.span(at, end)
+        example = f'{words.text} "{_EXAMPLE}"'
+        self._calls.problems.append(diagnostic("BT012", words, words=words.text, wanted="a text", example=example))
+        self._tokens.append(command)
+        return self._behind_manner(end)
 
     def said(self, token: Token, at: int) -> None:
         """See Answers; BT151 for `make sure the door is closed`, which could also mean to close it."""
