@@ -27,7 +27,7 @@ from btlang.tree.answers import ABOUT_ANSWERS, ASK, asking_verbs, asks
 from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import choice_of
-from btlang.vocabulary.value_type import PERSON
+from btlang.vocabulary.value_type import OBJECT, PERSON
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -173,7 +173,10 @@ def find_ended_rounds(compilation: Compilation) -> Iterator[Diagnostic]:
 
 
 def find_distant_questions(compilation: Compilation) -> Iterator[Diagnostic]:
-    """Report a question to somebody by name before whom nothing moves the robot, or asks where they are."""
+    """Report a question to somebody by name before whom nothing moves the robot, or asks where they are.
+
+    That it drives to a thing to take it brings it to nobody.
+    """
     body, vocabulary = compilation.mission.body, compilation.vocabulary
     phrases = _phrases(compilation.syntax(body)) if body is not None else []
     if all(each.entry.id != ASK for each in phrases):
@@ -187,7 +190,8 @@ def find_distant_questions(compilation: Compilation) -> Iterator[Diagnostic]:
             fixed = f"{journey} {words[:1].lower()}{words[1:]}" if is_verb else f"{journey} ..."
             yield diagnostic("BT149", phrase.span, words=words, person=named[0], fixed=fixed)
             return
-        if named or MOVES in phrase.entry.resources or phrase.entry.sort == "name":
+        is_at_thing = {phrase.entry.slot(name).type for name, _ in phrase.arguments} == {OBJECT}
+        if named or (MOVES in phrase.entry.resources and not is_at_thing) or phrase.entry.sort == "name":
             return
 
 

@@ -18,6 +18,7 @@ from btlang.frontends.mission.token import (
     Called,
     Listed,
     Token,
+    arguments_of,
     begins_condition,
     constraint_of,
     run_end,
@@ -180,11 +181,13 @@ def _say_where(tokens: list[Token], at: int, vocabulary: Lexicon, span: Callable
         return
     for token in tokens[at + 2 : _condition_end(tokens, at + 2)[0]]:
         value = token.value
-        if not isinstance(value, Called) or not span(token.start, token.end).text.lower().endswith(there):
+        if not isinstance(value, Called | Listed) or not span(token.start, token.end).text.lower().endswith(there):
             continue
         place = vocabulary.entry(_AT.get(value.entry.id, ""))
         if place is not None:
-            token.value = Called(place, (*value.arguments, (_slot_of(place), zones[0])))
+            where = (_slot_of(place), zones[0])
+            arguments = tuple((*each, where) for each in arguments_of(value))
+            token.value = value.replace(entry=place, arguments=arguments[0] if isinstance(value, Called) else arguments)
 
 
 def journey_to(place: str, goes: Entry) -> Called:
