@@ -53,6 +53,7 @@ def with_ends(tokens: list[Token], vocabulary: Lexicon, span: Callable[[int, int
     """
     opening = vocabulary.entry(_OPEN)
     problems: list[Diagnostic] = []
+    _end_whole_rules(tokens, vocabulary, span)
     if opening is not None:
         _front(tokens)
         problems += _never_opened(tokens, opening, vocabulary, span)
@@ -83,6 +84,16 @@ def with_ends(tokens: list[Token], vocabulary: Lexicon, span: Callable[[int, int
                 problems.append(_two_readings(tokens, at, vocabulary, span))
         at += 1
     return problems
+
+
+def _end_whole_rules(tokens: list[Token], vocabulary: Lexicon, span: Callable[[int, int], Span]) -> None:
+    """Make `never enter the hall, and if C, A` two statements: what is always forbidden isn't so for A alone."""
+    for at, token in enumerate(tokens):
+        behind = run_end(tokens, at + 1, JOINTS) if _keeps_out(token) and _begins(tokens, at) else 0
+        if behind > at + 1 and tokens[behind : behind + 1] and tokens[behind].kind in ("if", "unless"):
+            said = span(tokens[at - 1].end if at else 0, token.end).text.lower().split()
+            if not set(vocabulary.asking["whole"]).isdisjoint(said):
+                tokens[at + 1 : behind] = [Token("semi", token.end, tokens[behind].start)]
 
 
 def _keeps_out(token: Token) -> bool:

@@ -234,6 +234,8 @@ class OrderWords(ClockWords, JourneyWords, RuleWords):
         tokens, text = self._tokens, self._text
         if tokens[-1:] and tokens[-1].kind == "condition":
             return self._any_time(end, ON_WAY)  # `if the battery gets low on the way, A`
+        if tokens and constraint_of(tokens[-1]) is not None and not self._is_end(end):
+            return self._forbidden_on_way(end)
         if self._is_end(end):
             return end if self._goes_along() else 0
         journey = self._journey()
@@ -251,13 +253,29 @@ class OrderWords(ClockWords, JourneyWords, RuleWords):
         tokens.append(Token("after" if joint == "then" else joint, text.starts[at], text.ends[end - 1]))
         return behind
 
+    def _forbidden_on_way(self, end: int) -> int:
+        """`A. Avoid the hall on the way, and if C, B`: what is forbidden is so on A alone."""
+        joint = self._phrase(self._behind_comma(end))
+        if joint is None or joint.meaning.role != "and" or not self._goes_along():
+            return 0
+        self._tokens.append(Token("semi", self._text.starts[end], self._text.ends[joint.last - 1]))
+        return joint.last
+
+    def during(self, match: Match) -> int:
+        """`A. Avoid the hall while doing so`. Return where to go on, 0 for other words."""
+        is_last = self._tokens and constraint_of(self._tokens[-1]) is not None and self._is_end(match.last)
+        return match.last if is_last and self._goes_along() else 0
+
     def _goes_along(self) -> bool:
         """Joins the last command to the journey just before it. A journey alone stays as it is."""
         tokens = self._tokens
         last = self._last_command()
         journey = self._journey(tokens[:last])
         if journey is None or constraint_of(tokens[last]) is not None:
-            return bool(tokens) and last == len(tokens) - 1 and self._journey() is not None
+            behind = run_start(tokens, last, STATEMENT_ENDS)
+            if journey is not None and behind < last:  # `go to the lab. Avoid the hall on the way`
+                tokens[behind:last] = [Token("and", tokens[last].start, tokens[last].start)]
+            return bool(tokens) and tokens[-1].kind == "command" and self._journey() is not None
         first = last
         while tokens[first - 1].kind in JOINTS or tokens[first - 1].kind in LINES:
             first -= 1

@@ -325,6 +325,8 @@ class WordReader:
                 self._outcomes.doubt_rule(role, at, match.last)
         if role == "politeness" and self._text.words[at] in self._vocabulary.asking["lasting"]:
             self._order.lasts(at)
+        if role == "meanwhile" and (end := self._order.during(match)):
+            return end
         if role == "politeness" or (role in ("following", "then") and self._order.says_nothing(match, at)):
             return after_politeness(tokens, self._text.words, match)
         if at in self._text.going_on:
