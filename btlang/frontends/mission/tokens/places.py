@@ -209,7 +209,7 @@ class Places(SentenceReader):
         if hold is not None and isinstance(value, Called) and value.entry.slots[0].type == OBJECT:
             held = Called(hold, ((hold.slots[0].name, dict(value.arguments)[value.entry.slots[0].name]),))
             tokens += [Token("command", said.start, said.start, held), Token("and", said.start, said.start)]
-        self._partial.append(journey, at)
+        self._append_tour(journey, at)
         tokens[-1].start = said.start
         tokens += [Token("and", said.start, said.start), said, Token("close", end, end)]
         return journey.last
@@ -252,7 +252,7 @@ class Places(SentenceReader):
             return 0  # `in every room, look around, and if you see Alice, greet her`
         if self._repeats(journey, run_start(self._tokens, len(self._tokens), LINES)):
             return 0
-        self._partial.append(journey, at)
+        self._append_tour(journey, at)
         end = self._text.ends[journey.last - 1]
         self._tokens.append(Token("and", end, end))
         return behind
@@ -352,9 +352,16 @@ class Places(SentenceReader):
             return None
         journey = self._with_front(at, at + 1, "journey")
         goal = journey.values[0] if journey is not None and journey.values else None
-        is_list = goal is not None and bool(goal.more) and not goal.group  # `wave in the kitchen and the lab`
         is_there = goal is not None and (goal.type == PLACE or (goal.type == PERSON and bool(goal.group)))
-        return journey if is_there and not is_list else None  # `at each person, wave`
+        is_open = goal is not None and bool(goal.more) and goal.joiner == "or"  # `wave in the kitchen or the lab`
+        return journey if is_there and not is_open else None  # `at each person, wave`
+
+    def _append_tour(self, journey: Match, at: int) -> None:
+        """Go to where something is done; to each place of a list in a round of its own."""
+        self._partial.append(journey, at)
+        listed = self._context.listed.get(PLACE)
+        if journey.values[0].more and not journey.values[0].group and listed:
+            self._calls.make_round(self._tokens[-1], listed)
 
 
 def _goal_of(journey: Match) -> str:
