@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from btlang.diagnostics.diagnostic import diagnostic
-from btlang.frontends.mission.token import IN_CONDITIONS, JOINTS, STATEMENT_ENDS, Token, run_start
+from btlang.frontends.mission.token import IN_CONDITIONS, JOINTS, STATEMENT_ENDS, Called, Listed, Token, run_start
 from btlang.frontends.mission.tokens.going_on import GoingOn
 from btlang.frontends.mission.tokens.sentence_reader import hears, searches
 from btlang.frontends.mission.tokens.settling import FAILS, MEASURES, STAYS, asked_about, lasting
@@ -64,6 +64,25 @@ class Limits(GoingOn):
         elif tokens[begin].kind == "until" and is_end:
             limit.kind = "up_to"
             del tokens[behind]
+
+    def _limit_sought(self, is_last: bool) -> None:
+        """`look for Bob for up to 5 min`, `wait for Bob, but no longer than 5 min`: without him it has failed then."""
+        tokens, limit = self._tokens, self._tokens[-1]
+        behind = run_start(tokens, len(tokens) - 1, ("comma",)) if limit.kind == "up_to" else 0
+        if behind and (searches(tokens[behind - 1]) or self._awaits(tokens[behind - 1])):
+            limit.kind = "within"
+        elif is_last or not behind or self._words_of(limit)[0] not in self._vocabulary.roles["but"]:
+            return
+        del tokens[behind:-1]  # `charge, but no longer than 5 min, then wave`
+
+    def _words_of(self, token: Token) -> list[str]:
+        return self._text.source.text[token.start : token.end].lower().split()
+
+    def _awaits(self, token: Token) -> bool:
+        """Whether a command waits for somebody."""
+        value, said = token.value, self._words_of(token)
+        achieves = token.kind == "command" and isinstance(value, Called | Listed) and bool(value.entry.achieves)
+        return achieves and said[:1] == [*self._vocabulary.asking["waiting"]][:1]
 
     def _make_fail(self, at: int) -> None:
         """Let a wait for the condition at a place fail when its time is over; alone it works in any case."""

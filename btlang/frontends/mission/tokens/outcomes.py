@@ -69,8 +69,7 @@ class Outcomes(Limits):
                 tokens.insert(-1, Token("comma", token.start, token.start))  # `pick it up and if that works, wave`
         if role in ("for", "up_to"):
             self._limit_wait()
-            if token.kind == "up_to" and len(tokens) > 1 and searches(tokens[-2]):
-                token.kind = "within"  # a search that isn't over by then has found nothing
+            self._limit_sought(self._is_end(match.last))
         if role == "until" and len(self._tokens) > 1 and self._tokens[-2].role == LIMIT:
             self._doubt_count(self._tokens[-2], match, at)
         if role == ONE_FAILS and not self._in_round():
