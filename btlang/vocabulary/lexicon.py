@@ -130,6 +130,8 @@ class Lexicon:
         """The words of remarks: how somebody feels, that there is something, and what may be felt."""
         self.been = tree_of((words, True) for words in self.asking["been"])
         """The words of a journey that is behind somebody: `have been in`."""
+        self.yet = tree_of((words, True) for words in self.asking["yet"])
+        """The words at the end of a condition that say nothing: `yet`."""
         self.contents = tree_of((words, True) for words in self.asking["contents"])
         """What may be in a thing: `water`."""
         self.content_words = frozenset(language["qualities"].get("content", ())[:1])

@@ -208,7 +208,15 @@ charge [to {percent}]
             ],
         ),
         ("wall in front", ["wall in front  (condition)"]),
-        ("after", ["after", "after {duration}", "stop after {count}"]),
+        (
+            "after",
+            [
+                "after",
+                "after {duration}",
+                "stop after {count}",
+                "[all night/day/morning/afternoon/evening [,]] between {time_of_day}",
+            ],
+        ),
         (
             "wait for",
             [

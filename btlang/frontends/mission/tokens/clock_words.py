@@ -7,6 +7,7 @@ from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.frontends.mission.tokens.settling import STAYS
 from btlang.frontends.mission.tokens.silent_words import BEGINS
 from btlang.text.time_of_day import WEEKDAYS
+from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.match import Match, SlotValue
 
 _TIME = "time_of_day"
@@ -74,6 +75,8 @@ class ClockWords(SentenceReader):
     def _between(self, match: Match, at: int) -> int:
         """`every 15 minutes between 10 pm and 6 am, A`: each time, if it is then."""
         tokens, words, entry = self._tokens, self._text.words, self._vocabulary.entry(_DAYTIME)
+        if entry is not None and words[at] in self._vocabulary.roles["after"]:
+            return self._after(match, at, entry)
         joins = words[match.last] in self._vocabulary.asking["between_joint"]
         last = self._context.read(_TIME, self._text, match.last + 1) if joins else None
         if last is None or entry is None:
@@ -85,15 +88,33 @@ class ClockWords(SentenceReader):
         first = statement_start(tokens, len(tokens))
         if len(tokens) > first and tokens[-1].kind not in BEGINS:
             return self._within_hours(match, asked, last) if self._is_end(last[1]) else 0
-        if words[last[1]] != ",":
+        if not self._begins_there(last[1]):
             return 0
         lasts = words[at] in self._vocabulary.roles["start_at"] or self._is_repeated(last[1])
         if not lasts or (tokens and tokens[-1].kind not in BEGINS):
             return 0
         tokens += [  # `from 7 am to 10 am, A`, `between 7 am and 10 am, A every 5 min`: also begun within that time
             Token("wait_until", start, start), asked, Token("then", end, end), Token("until_time", start, end, last[0]),
+            Token("comma", end, end),
         ]  # fmt: skip
-        return last[1]
+        return self._behind_comma(last[1])
+
+    def _after(self, match: Match, at: int, entry: Entry) -> int:
+        """`after 8 pm, A`: at once if it is later, else then."""
+        tokens, start, end = self._tokens, self._text.starts[at], self._text.ends[match.last - 1]
+        if (tokens and tokens[-1].kind not in BEGINS) or not self._begins_there(match.last):
+            return 0
+        asked = Token("condition", start, end, Called(entry, (("above", match.values[0].text),)))
+        tokens += [Token("wait_until", start, start), asked, Token("then", end, end)]
+        return self._behind_comma(match.last)
+
+    def _begins_there(self, at: int) -> bool:
+        """Whether a comma stands at a word, or a command begins there."""
+        behind = self._phrase(at)
+        is_command = behind is not None and behind.meaning.role in ("command", "name", "wait", "try", "repeat")
+        asking, word = self._vocabulary.asking, self._text.words[at]
+        stays = word in asking["standing_verbs"] or any(words.split()[0] == word for words in asking["staying"])
+        return word == "," or stays or is_command
 
     def _within_hours(self, match: Match, asked: Token, last: tuple[str, int]) -> int:
         """`patrol A and B from 10 pm to 6 am`, `stand at the door from 9 am to 5 pm`: as if it stood in front."""

@@ -145,14 +145,16 @@ def _drop_still(text: Words, vocabulary: Lexicon) -> None:
     `yet` stands at its end: `if he isn't there yet`.
     """
     words, still, motionless = text.words, vocabulary.asking["still"], vocabulary.asking["motionless"]
-    yet = vocabulary.asking["yet"]
+    yet = vocabulary.yet
     for at in reversed(range(1, len(words))) if not text.distinct.isdisjoint((*still, *yet)) else ():
         is_still = words[at] in still and words[at - 1] not in motionless and words[at + 1][0].isalpha()
-        if is_still or (words[at] in yet and not words[at + 1][0].isalpha()):
+        said = find(yet, words, at)
+        end = at + 1 if is_still else said[1] if said is not None and not words[said[1]][0].isalpha() else 0
+        if end:
             _, first, _ = text.earlier(at)
             first = max((i + 1 for i in range(first, at) if words[i] == ","), default=first)
             if any(word in vocabulary.before_conditions for word in words[first:at]):
-                text.drop(at, at + 1)
+                text.drop(at, end)
 
 
 def _drop_commas(text: Words, vocabulary: Lexicon) -> None:

@@ -227,6 +227,9 @@ class Places(SentenceReader):
     def in_place_of_command(self, match: Match, at: int) -> int:
         """A condition where a command stands: where one is done, or the rest of a command that leaves words out."""
         tokens = self._tokens
+        if tokens and tokens[-1].kind in ("before", "after") and (done := self._partial.doing(at)) is not None:
+            self._partial.append(done, at)
+            return done.last  # `wave before charging`
         before = run_start(tokens, len(tokens), JOINTS)
         goes_on = 0 < before < len(tokens) and tokens[before - 1].kind in _DONE
         if (goes_on or begins(tokens)) and (end := self.before(at)):
