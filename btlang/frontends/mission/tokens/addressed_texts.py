@@ -27,8 +27,6 @@ _NEXT = "may be a part of it, or go on with the mission"
 _NO_QUESTION = "begins no question that I know"
 _MATTER = "begins what it is about, but not what to say"
 _PERSON = "is a person, and the question is missing"
-
-
 _MEASURES = frozenset(("count", "at_most", "up_to_times", "tries", "within", "for", "up_to", "every"))
 _DONE = ("command", "at", "wait", "wait_until", "wait_forever")
 _BEHIND = ("politeness", "then", "and")
@@ -62,11 +60,9 @@ class AddressedTexts(SentenceReader):
         end = self._end_before_command(value.first, end, is_told=True) or end
         if any(word[0] == '"' for word in text.words[value.first : end]):
             return 0  # `tell her quietly "Hello"`
-        if not end:
-            return 0
-        if text.words[value.first] not in texts.matters or not self._doubt(entry, value.first, _MATTER):
+        if end and (text.words[value.first] not in texts.matters or not self._doubt(entry, value.first, _MATTER)):
             self._doubt_words(entry, value.first, end)
-        return self._say_clause(value, end, command)
+        return self._say_clause(value, end, command) if end else 0
 
     def _say_clause(self, value: SlotValue, end: int, command: Token) -> int:
         """Say the words of a clause up to a place, at which the mission goes on."""
@@ -177,8 +173,8 @@ class AddressedTexts(SentenceReader):
                 and not values.texts.asks(text.words[at])
                 and value.last == at + 1
             ):
-                self._doubt(entry, at, _NO_QUESTION)
-            elif at not in text.articles and find(values.names_tree("person"), text.words, at) is not None:
+                return self._ask_nobody(entry, value, command)
+            if at not in text.articles and find(values.names_tree("person"), text.words, at) is not None:
                 self._doubt(entry, at, _PERSON)
             return 0
         end = self._end_before_command(at, value.last, is_told=False)
@@ -200,6 +196,22 @@ class AddressedTexts(SentenceReader):
         if not self._doubt(entry, values.texts.doubt(text, at + 1, value.last)):
             self._doubt(entry, at, _NO_QUESTION)
         return 0
+
+    def _ask_nobody(self, entry: Entry, value: SlotValue, command: Token) -> int:
+        """BT013 for `ask the patient "Tea?"`, BT159 for words without a question. Returns where to go on."""
+        from btlang.frontends.mission.explanations.nameless import unnamed
+
+        text, at = self._text, value.first
+        quote = next((i for i in range(at + 1, self._end_of_statement(at)) if text.words[i][0] == '"'), 0)
+        if not quote or any(text.words[i] in self._vocabulary.joining for i in range(at, quote)):
+            self._doubt(entry, at, _NO_QUESTION)
+            return 0
+        end = next((i for i in range(at + 1, quote) if text.words[i] in self._vocabulary.asking["located"]), quote)
+        people = [self._context.types[PERSON]]
+        self._calls.problems.append(unnamed(text.span(at, end), people, "", self._vocabulary))
+        self._set_text(command, value.name, text.words[quote][1:])
+        self._tokens.append(command)
+        return quote + 1
 
     def _measure_in(self, first: int, last: int) -> int:
         """Where words end what is said that could say how often, or how long: `if he wants tea three times`."""
