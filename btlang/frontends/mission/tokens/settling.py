@@ -30,7 +30,7 @@ from btlang.text.words import Words
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import ALL, choice_of
-from btlang.vocabulary.value_type import OBJECT, PLACE
+from btlang.vocabulary.value_type import OBJECT, PERSON, PLACE
 
 FAILS, WORKS = "if_fails", "if_works"
 STAYS = "stays"
@@ -236,7 +236,12 @@ def find_unclear_things(tokens: Sequence[Token], vocabulary: Lexicon, text: Word
         if pronoun and carried not in ("", asked) and thing == asked:
             span = Span(text.source, token.start, token.end)
             yield diagnostic("BT151", span, words=pronoun, one=carried, other=asked)
-        carried = thing
+        carried = "" if _is_delivered(value) else thing
+
+
+def _is_delivered(said: object) -> bool:
+    """Whether a command says to whom, or where to, it takes a thing: the hand is empty then."""
+    return isinstance(said, Called) and any(said.entry.slot(name).type in (PLACE, PERSON) for name, _ in said.arguments)
 
 
 def _thing_of(said: Called) -> str:
