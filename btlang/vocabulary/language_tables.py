@@ -113,6 +113,7 @@ WORD_LISTS = frozenset((
     "denials",
     "possessive_endings", "ones", "directions", "clause_openers", "clause_words", "question_words", "inverting",
     "matters", "completed", "modals", "participles", "participle_endings", "sayings", "of_persons", "colored", "shapes",
+    "belonging",
 ))  # fmt: skip
 
 
@@ -269,7 +270,7 @@ _LANGUAGE: dict[str, Any] = {
     "qualities": {},
     "relations_to_self": {},
     "determiners": [], "others": [], "denials": [], "possessive_endings": [], "ones": [], "directions": [],
-    "clause_openers": [], "clause_words": [], "question_words": [], "inverting": [], "matters": [],
+    "clause_openers": [], "clause_words": [], "question_words": [], "inverting": [], "matters": [], "belonging": [],
     "completed": [],
     "modals": [], "participles": [], "participle_endings": [], "sayings": [], "of_persons": [],
     "colored": [], "shapes": [],

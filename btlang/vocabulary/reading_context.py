@@ -115,7 +115,7 @@ class ReadingContext:
             named = self._named_after(kind, text, at) if text.words[at] in self.before else None
             if named is None and not self.values.ones.isdisjoint(text.distinct):
                 named = self.values.antecedents.named(kind, text, at)
-            named = named or self._said_again(kind, text, at)
+            named = named or self.values.shared_heads.behind_last(kind, text, at) or self._said_again(kind, text, at)
             return named if named is not None and (chosen is None or named[1] > chosen[1]) else chosen
         return chosen if found is None or (chosen is not None and chosen[1] > found[1]) else found
 

@@ -1,4 +1,4 @@
-"""Names whose common words are said once: `the first and third floor`, `the red or blue rooms`, `tables 1 and 2`."""
+"""Names whose words are said otherwise: `the first and third floor`, `tables 1 and 2`, `the door of the kitchen`."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence, Set
 
 from btlang.text.words import END_OF_TEXT, Words
 from btlang.vocabulary.nouns import plural
+from btlang.vocabulary.value_type import DOOR
 from btlang.vocabulary.word_tree import END, WordTree, find
 
 TYPE_CHECKING = False
@@ -21,11 +22,14 @@ _MOST_ITEMS = 16  # of a list whose last one ends them all
 class SharedHeads:
     """Reads such names. `names` gives the words of the names of a type, `joiners` stand between the items of a list.
 
-    `endings` are those of plurals, by the endings in the singular.
+    `endings` are those of plurals, by the endings in the singular; `belonging` are the words behind the last one of a
+    door's name and before the others.
     """
 
-    def __init__(self, names: Callable[[str], WordTree], joiners: Set[str], endings: Mapping[str, str]) -> None:
-        self._names, self._joiners, self._endings = names, joiners, endings
+    def __init__(
+        self, names: Callable[[str], WordTree], joiners: Set[str], endings: Mapping[str, str], belonging: Set[str]
+    ) -> None:
+        self._names, self._joiners, self._endings, self._belonging = names, joiners, endings, belonging
         self._ends: dict[str, tuple[dict[str, str], dict[str, str]]] = {}
 
     def read(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
@@ -34,6 +38,17 @@ class SharedHeads:
         if (at, kind) not in memo:
             memo[at, kind] = self._read(kind, text, at)
         return memo[at, kind]  # type: ignore[no-any-return]
+
+    def behind_last(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
+        """The name of which the last word stands at a word, and the others behind it: `the door of the kitchen`."""
+        words = text.words
+        if kind != DOOR or words[at + 1] not in self._belonging:
+            return None
+        for end in range(min(at + 2 + _LONGEST_NAME, len(words)), at + 2, -1):
+            made = _name(self._names(kind), [*words[at + 2 : end], words[at]])
+            if made is not None:
+                return made, end
+        return None
 
     def _read(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
         words = text.words

@@ -58,7 +58,7 @@ class Values(Measures):
         self.likenesses = Likenesses({}, self.listed)
         self.antecedents = Antecedents(self.ones, self.names_tree, self.likenesses)
         self.texts = Texts(language)
-        self._plural_endings = language["plural_endings"]
+        self._plural_endings, self._belonging = language["plural_endings"], frozenset(language["belonging"])
         self._spoken: dict[tuple[str, str], str] = {}
         self._exceptions = tree_of((phrase, True) for phrase in language["roles"].get("except", ()))
         self._without = {phrase.split()[0] for phrase in language["roles"].get("without_entering", ())}
@@ -85,7 +85,7 @@ class Values(Measures):
     def _forget(self) -> None:
         """Lets what was learnt from the names be learnt again: there are others now."""
         self._openers = self._choice_starts = self._group_starts = None
-        self.shared_heads = SharedHeads(self.names_tree, self.joiners, self._plural_endings)
+        self.shared_heads = SharedHeads(self.names_tree, self.joiners, self._plural_endings, self._belonging)
         self._described = NounReader(self.phrases, self.names_tree, self.likenesses)
 
     def with_names(self, names: Mapping[str, Iterable[tuple[str, str]]], features: Features | None = None) -> Values:
