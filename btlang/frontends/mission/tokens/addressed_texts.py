@@ -115,23 +115,23 @@ class AddressedTexts(SentenceReader):
         if any(token.kind in _LINE_ENDS for token in self._tokens[form:]) or not isinstance(asked[0].value, Called):
             return ""
         text, pronouns = self._text, self._vocabulary.values.pronoun_words
-        slots = {slot.name for slot in asked[0].value.entry.slots if slot.type in WORLD}
-        named = [value for name, value in asked[0].value.arguments if name in slots]
-        if asked[0].value.entry.id in ABOUT_ANSWERS:  # `if she says yes, tell Bob`: of who was asked
-            named = [person for person in [self._context.latest.get(PERSON, "")] if person]
-        words: list[str] = []
         types = {slot.name: slot.type for slot in asked[0].value.entry.slots}
-        things = [value for name, value in asked[0].value.arguments if types[name] in (OBJECT, DOOR)]
+        named = [(types[name], value) for name, value in asked[0].value.arguments if types[name] in WORLD]
+        if asked[0].value.entry.id in ABOUT_ANSWERS:  # `if she says yes, tell Bob`: of who was asked
+            named = [(PERSON, person) for person in [self._context.latest.get(PERSON, "")] if person]
+        words: list[str] = []
+        things = [value for kind, value in named if kind in (OBJECT, DOOR)]
         done = (token for token in self._tokens[form:] if token.kind == "command")
         is_over = any(is_about(token, {thing}) for token in done for thing in things)
         happened = self._vocabulary.happened if is_over else {}
         for at in words_of(text, asked[0]):
             pronoun = find(pronouns, text.words, at)
-            if pronoun is not None and PLACE in self._context.pronouns[pronoun[0]]:
-                pronoun = None  # `if she isn't there, tell me`
-            if pronoun is not None and (len(named) != 1 or named[0][:1] == "{"):
+            kinds = self._context.pronouns[pronoun[0]] if pronoun is not None else ()
+            meant = [value for kind, value in named if kind in kinds]
+            if pronoun is not None and PLACE not in kinds and (len(meant) != 1 or meant[0][:1] == "{"):
                 return ""
-            words.append(named[0] if pronoun is not None else happened.get(text.words[at]) or self._written(at))
+            is_there = PLACE in kinds  # `if she isn't there, tell me`
+            words.append(meant[0] if meant and not is_there else happened.get(text.words[at]) or self._written(at))
         said, of_robot = " ".join(words), self._vocabulary.of_robot
         if of_robot:
             pattern = "|".join(map(re.escape, sorted(of_robot, key=len, reverse=True)))
