@@ -20,6 +20,7 @@ from btlang.run.outcome import Outcome
 from btlang.session import Run, Session
 from btlang.support.record import Record
 from btlang.testing.chaos import Chaos
+from btlang.testing.gauges import Gauges
 from btlang.testing.observations import Observations, statuses_seen
 from btlang.testing.test import (
     ALWAYS,
@@ -46,6 +47,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from btlang.engine.leaves.leaf import LeafBinding
+    from btlang.robots.bodies.body import Body
     from btlang.run.connection import Connection
     from btlang.run.events import Sink
     from btlang.vocabulary.entry import Entry
@@ -66,8 +68,7 @@ class Broken(Record):
 class Script:
     """A sink for one run, behind that of its observations; ends the run when nothing is left to wait for.
 
-    Conditions are asked once in each period, with the values of the mission. `bind` is how the robot binds words (see
-    Connection.bind).
+    Conditions are asked once in each period, with the values of the mission. `gauges` bind them as the robot does.
     """
 
     policy = INLINE
@@ -79,13 +80,14 @@ class Script:
         robot: Any,
         controls: Controls,
         values: Blackboard,
-        bind: Callable[[Entry, Lexicon], LeafBinding | None] | None = None,
+        gauges: Gauges | None = None,
     ) -> None:
         self.broken: Broken | None = None
         """The first line that did not hold."""
         self._observed, self._controls = observed, controls
-        services = {"robot": robot, "observed": observed, "controls": controls}
-        self._ask: Callable[[Tree], str] = _Questions(test, services, values, bind).ask
+        gauges = Gauges() if gauges is None else gauges
+        services = {"robot": robot, "observed": observed, "controls": controls, "gauges": gauges}
+        self._ask: Callable[[Tree], str] = _Questions(test, services, values, gauges.bind).ask
         self._steps = [step for step in test.steps if step.kind not in (ALWAYS, NEVER, FINALLY)]
         self._watches = [step for step in test.steps if step.kind in (ALWAYS, NEVER)]
         self._begins = [_before(step, test.steps) for step in self._watches]
@@ -188,7 +190,7 @@ class _Questions:
         test: MissionTest,
         services: Mapping[str, Any],
         values: Blackboard,
-        bind: Callable[[Entry, Lexicon], LeafBinding | None] | None,
+        bind: Callable[[Entry, Lexicon], LeafBinding | None],
     ) -> None:
         self._vocabulary, self._services, self._values, self._bind = test.vocabulary, services, values, bind
         self._engines: dict[int, Engine] = {}
@@ -241,26 +243,29 @@ class Result(Record):
         return not self.problem
 
 
-class _TestRobot:
-    """Connects to the simulated robot of a test; fakes stand in for some words of its mission."""
+class _Connect(Record):
+    """A connection to the simulated robot of a test; fakes stand in for some of its words, and gauges are set."""
 
-    def __init__(self, test: MissionTest, fakes: Fakes) -> None:
-        self.body = body_of(test.robot or "simulated")
-        self._fakes = fakes
-        self.bind: Callable[[Entry, Lexicon], LeafBinding | None] = lambda entry, vocabulary: None
-        """How the robot itself binds words, without fakes; known once it is connected."""
+    body: Body
+    fakes: Fakes
+    gauges: Gauges
 
     def __call__(self, world: World) -> Connection:
         connection: Any = Connector(self.body, "simulated")(world)
-        bind, fakes = connection.bind, self._fakes
-        self.bind = bind
+        fakes, gauges = self.fakes, self.gauges
+        devices = getattr(connection, "devices", None)
+        gauges.connect(connection.bind, {} if devices is None else devices.readers)
 
         def bound(entry: Entry, vocabulary: Lexicon) -> LeafBinding | None:
-            own: LeafBinding | None = bind(entry, vocabulary)
+            own = gauges.bind(entry, vocabulary)
             return make_fake(own, entry, vocabulary, fakes, connection.bus.clock) if fakes.has(entry.id) else own
 
         connection.bind = bound
         return connection  # type: ignore[no-any-return]
+
+
+def _connect(test: MissionTest, fakes: Fakes, gauges: Gauges) -> _Connect:
+    return _Connect(body_of(test.robot or "simulated"), fakes, gauges)
 
 
 def run_test(
@@ -277,13 +282,13 @@ def run_test(
     mission, controls = mission or test.mission, controls or Controls()
     observed, values, fakes = Observations(_commands(test)), Blackboard(), Fakes(test.fakes)
     outcome: Outcome | None = None
-    robot = _TestRobot(test, fakes)
-    with Session(robot, world=mission.world or DEFAULT_WORLD) as session:
+    gauges = Gauges()
+    with Session(_connect(test, fakes, gauges), world=mission.world or DEFAULT_WORLD) as session:
         run = session.prepare(
             mission, speed="max", time_limit=test.limit, seed=seed, controls=controls, values=values,
             sinks=[observed, *sinks],
         )  # fmt: skip
-        script = Script(test, observed, session.robot, controls, values, robot.bind)
+        script = Script(test, observed, session.robot, controls, values, gauges)
         if script.broken is None:
             run.bus.add(script)
             outcome = _execute(run, controls)
@@ -309,12 +314,12 @@ def run_chaos(test: MissionTest, seed: int, sinks: Iterable[Sink] = ()) -> Resul
     What the test expects doesn't count, but its events at the start and its fakes do. Raises MissionError.
     """
     observed, controls, fakes = Observations({}), Controls(), Fakes(test.fakes)
-    robot = _TestRobot(test, fakes)
-    with Session(robot, world=test.mission.world or DEFAULT_WORLD) as session:
+    gauges = Gauges()
+    with Session(_connect(test, fakes, gauges), world=test.mission.world or DEFAULT_WORLD) as session:
         run = session.prepare(
             test.mission, speed="max", time_limit=test.limit, seed=seed, controls=controls, sinks=[observed, *sinks]
         )
-        Script(test.replace(steps=()), observed, session.robot, controls, Blackboard(), robot.bind)  # for its setup
+        Script(test.replace(steps=()), observed, session.robot, controls, Blackboard(), gauges)  # for its setup
         chaos = Chaos(seed, test.limit, observed, session.robot, controls, test.mission.vocabulary)
         run.bus.add(chaos)
         outcome = _execute(run, controls)
