@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import re
+import sys
 import threading
 import time
 from collections.abc import Callable
@@ -63,6 +65,20 @@ def test_the_lines_of_a_replay_are_those_of_the_run(tmp_path: Path, capsys: pyte
     run(FAILING, tmp_path / "run.mcap", "--lines")
     lines = [line for line in capsys.readouterr().out.splitlines() if line.startswith("  ")]
     assert printed(capsys, "replay", str(tmp_path / "run.mcap"), "--lines", "--speed", "max")[1].splitlines() == lines
+
+
+def test_a_replay_that_nobody_watches_prints_at_once(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    speeds: list[float] = []
+    monkeypatch.setattr(Player, "play", lambda self, speed, start: speeds.append(speed))
+    path = str(tmp_path / "run.mcap")
+    run("nod", tmp_path / "run.mcap", "--quiet")
+    for words in ((), ("--lines",), ("--speed", "real"), ("--speed", "3")):
+        assert printed(capsys, "replay", path, *words)[0] == 0
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True, raising=False)
+    printed(capsys, "replay", path, "--lines")
+    assert speeds == [math.inf, math.inf, 1.0, 3.0, 1.0]
 
 
 def test_why_tells_the_story(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
