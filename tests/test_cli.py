@@ -84,6 +84,30 @@ def test_exit_codes(btc: Screen) -> None:
 
 
 @pytest.mark.parametrize(
+    ("text", "noted"),
+    [
+        ("wait forever", "note: This mission has no end. To end it, press Ctrl-C, or run it with a time limit"),
+        ("whenever bumped, nod", "note: This mission only ends if something in it fails. To end it, press Ctrl-C"),
+        ("wave 3 times", ""),
+    ],
+)
+def test_an_endless_mission_says_so_as_it_begins(
+    text: str, noted: str, btc: Screen, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("btlang.engine.engine.Engine.tick", interrupted)
+    assert btc("run", "-c", text, "--speed", "max") == 130
+    assert btc.err.startswith(noted)
+    assert btc.err.count("note:") == bool(noted)
+    assert btc("run", "-c", text, "--speed", "max", "--quiet") == 130
+    assert btc.err == ""
+    assert btc("run", "-c", text, "--speed", "max", "--for", "3 s") == 130
+    assert btc.err == ""
+
+
+@pytest.mark.parametrize(
     "arguments",
     [
         ["run"],

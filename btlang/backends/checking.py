@@ -5,13 +5,17 @@ Also what a mission may have meant by an unknown id of a node: a word, a known n
 
 from __future__ import annotations
 
+import os
+import re
+import shlex
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache, partial
 
 from btlang.backends.engine import bind_leaf, leaf_binding
 from btlang.backends.keywords import Draft, drafts
 from btlang.backends.wording import id_words
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic, sort_diagnostics
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic, sort_diagnostics
+from btlang.diagnostics.files import read_source
 from btlang.engine.faults import UnknownNode, UnknownSubTree, find_faults
 from btlang.engine.instance import EngineError
 from btlang.engine.leaves.leaf import LeafBinding
@@ -48,14 +52,16 @@ def tree_problems(
     bind, services = bind or cache(partial(bind_placeholder, vocabulary)), services or {"robot": None}
     found = find_faults(tree, bind, services)
     found.sort(key=_place)  # so that a missing entry is reported at its first use
-    entries = drafts(tree, vocabulary) if any(isinstance(error, UnknownNode) for error in found) else {}
+    is_unknown = any(isinstance(error, UnknownNode) for error in found)
+    entries = drafts(tree, vocabulary) if is_unknown else {}
+    find_file = cache(find_keyword_file)
     problems = []
 
     def fits(node: Node) -> bool:
         return not find_faults(Tree(node), bind, services)
 
     for error in found:
-        problems.append(_diagnose(error, tree, vocabulary, entries, fits))
+        problems.append(_diagnose(error, tree, vocabulary, entries, fits, find_file))
         entries.pop(error.node.id, None)  # once is enough
     return sort_diagnostics(problems)
 
@@ -82,8 +88,12 @@ def _diagnose(
     vocabulary: Lexicon,
     entries: dict[str, Draft | None],
     fits: Callable[[Node], bool],
+    find_file: Callable[[Source, str], str],
 ) -> Diagnostic:
-    """Make a diagnostic of an error; `fits` says whether a leaf can run."""
+    """Make a diagnostic of an error.
+
+    `fits` says whether a leaf can run, `find_file` which keyword file beside a text has an id.
+    """
     node = error.node
     span, names = node.span or NOWHERE, [name for name, _ in tree.subtrees]
     if isinstance(error, UnknownSubTree):
@@ -106,8 +116,13 @@ def _diagnose(
         fix = correct_leaf(said, ids, vocabulary, lambda id: fits(node.replace(id=id)))
     if said is not None and fix is None and said.is_sentence:
         return diagnostic("BT010", span, kind="command", words=span.text, help=_near(nearest(node.id.lower(), ids)))
+    problem = diagnostic("BT130", span, fix=fix, id=node.id)
+    if file := find_file(span.source, node.id):
+        return _add_help(
+            problem.replace(fix=None), f"The keyword file {file} has it. Add: --keywords {shlex.quote(file)}"
+        )
     advice = "" if fix else _entry(node, entries)
-    return _add_help(diagnostic("BT130", span, fix=fix, id=node.id), _near(nearest(node.id.lower(), ids)), advice)
+    return _add_help(problem, _near(nearest(node.id.lower(), ids)), advice)
 
 
 def _add_help(problem: Diagnostic, *advice: str) -> Diagnostic:
@@ -138,7 +153,32 @@ def _entry(node: Node, entries: dict[str, Draft | None]) -> str:
     draft = entries[node.id]
     if draft is None:
         return "A keyword entry can't have this id: an id is one word of letters and digits."
-    return f"This entry of a keyword file would define it:\n{draft.text()}"
+    other = "If a keyword file of yours has it, add: --keywords FILE"
+    return f"{other}\nThis entry of a keyword file would define it:\n{draft.text()}"
+
+
+_MOST_FILES = 200
+_SORTS = ("[[action]]", "[[condition]]", "[[quantity]]")
+
+
+def find_keyword_file(source: Source, id: str) -> str:
+    """Return the path of a keyword file with an id that is in the folder of a text that the user named; "" if none."""
+    if not source.may_load:
+        return ""
+    try:
+        names = sorted(name for name in os.listdir(source.folder or os.curdir) if name.endswith(".toml"))
+    except (OSError, ValueError):
+        return ""
+    line = re.compile(rf"""^[ \t]*id[ \t]*=[ \t]*["']{re.escape(id)}["']""", re.MULTILINE)
+    for name in names[:_MOST_FILES]:
+        path = os.path.join(source.folder, name)
+        try:
+            text = read_source(path).text if os.path.isfile(path) else ""
+        except MissionError:
+            continue
+        if line.search(text) and any(sort in text for sort in _SORTS):
+            return path
+    return ""
 
 
 def bind_placeholder(vocabulary: Lexicon, node_id: str) -> LeafBinding | None:

@@ -6,9 +6,12 @@ Its expressions are ones that no parser of Python finds too deep.
 from __future__ import annotations
 
 import json
+import sys
 from collections.abc import Callable, Sequence
 
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.support.record import Record
+from btlang.text.source import NOWHERE
 from btlang.text.source import Source as WorldText
 from btlang.tree.ast import Fact
 from btlang.tree.node import Node, Tree
@@ -104,14 +107,19 @@ def to_python(
 ) -> str:
     """Return the text of a module with a name `mission`, a Mission with the keyword files of its leaves.
 
-    Words that are Python objects (`btlang.action`) can't be written: such a leaf is unknown there. The places in the
-    text of the mission are lost, too: failures name the leaf, but not its line.
+    Words that are Python functions (`btlang.action`) are imported. The places in the text of the mission are lost:
+    failures name the leaf, but not its line. Raises MissionError (BT134) for functions that can't be imported.
     """
+    functions = _functions(tree, vocabulary)
     lines = [_HEAD]
     if facts:
         lines = [_HEAD.replace(_TREE, f"\nfrom btlang.robots.worlds.world import Place{_TREE}")]
     if isinstance(world, WorldText):
         lines = [lines[0].replace(_TREE, f"\nfrom btlang.text.source import Source{_TREE}")]
+    modules = dict.fromkeys(module for module, _ in functions)
+    if modules:
+        aliases = {module: f"words_{number}" for number, module in enumerate(modules, 1)}
+        lines.append("\n".join([*(f"import {module} as {alias}" for module, alias in aliases.items()), ""]))
     used: list[str] = []
     for name, root in tree.subtrees:
         lines += _assign(f"subtree_{len(used) + 1}", root)
@@ -123,7 +131,9 @@ def to_python(
     lines += format_call(
         "TREE = Tree", [*arguments, *([f"name={format_literal(tree.name)}"] if tree.name else [])]
     ).lines
-    lines.append(f"KEYWORDS = {format_literal(_files(tree, vocabulary))}")
+    words = [*map(format_literal, _files(tree, vocabulary)), *(f"{aliases[at]}.{name}" for at, name in functions)]
+    made = format_call("", words, "[]")
+    lines += [f"KEYWORDS = {made.lines[0]}", *made.lines[1:]]
     text = (
         f"Source({format_literal(world.text)}, {format_literal(world.name)})"
         if isinstance(world, WorldText)
@@ -166,3 +176,39 @@ def _files(tree: Tree, vocabulary: Lexicon) -> list[str]:
     ours = {shown_name(path) for name in languages() for path in keyword_files(shipped("keywords", name))}
     entries = (entry for node in tree.walk() for entry in vocabulary.entries.get(node.id, ()))
     return sorted({entry.file for entry in entries if isinstance(entry.call, str)} - ours)
+
+
+def _functions(tree: Tree, vocabulary: Lexicon) -> list[tuple[str, str]]:
+    """Return the functions of the leaves: the module of each, and its name there.
+
+    Raises MissionError (BT134) for all that another program can't import.
+    """
+    found: dict[tuple[str, str], None] = {}
+    problems: dict[str, Diagnostic] = {}
+    for node in tree.walk():
+        for entry in vocabulary.entries.get(node.id, ()) if not node.children else ():
+            if isinstance(entry.call, str):
+                continue
+            module, name = (str(getattr(entry.call, key, "")) for key in ("__module__", "__qualname__"))
+            reason = _not_imported(entry.call, module, name)
+            if not reason:
+                found[module, name] = None
+            elif entry.id not in problems:
+                span = node.span or entry.span or NOWHERE
+                problems[entry.id] = diagnostic("BT134", span, id=entry.id, target="Python", reason=reason)
+    if problems:
+        raise MissionError(list(problems.values()))
+    return list(found)
+
+
+def _not_imported(call: object, module: str, name: str) -> str:
+    """Return why another program can't import a function, "" if it can."""
+    what = f"{name.rpartition('.')[2] or call}, its function,"
+    if module == "__main__":
+        return f"{what} is in the script that runs; move it to a file of its own and import it"
+    found: object = sys.modules.get(module)
+    for part in name.split("."):
+        found = getattr(found, part, None)
+    if found is not call:
+        return f"{what} can't be imported from {module or 'a module'}; define it at the top of a file"
+    return ""

@@ -127,6 +127,7 @@ ROBOT_WORDS = Option(
 """An option for verbs that read missions and run nothing."""
 
 SPEED = Option("--speed", type=speed, default="real", help="real, max, or a factor of real time")
+REPLAY_SPEED = Option("--speed", type=speed, default=0.0, help="real, max, or a factor of real time")  # 0: not given
 ROBOT_SPEED = Option("--speed", type=speed, default="real", metavar="SPEED", help="real, max, or a factor of real time")
 REAL_SPEED = Option("--speed", type=real_speed, default="real", help="real, or a factor of real time")
 RATE = Option("--rate", type=between(*RATES), default=20.0, metavar="HZ", help="ticks per second (default: 20)")

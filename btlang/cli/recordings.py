@@ -63,7 +63,10 @@ def replay(options: argparse.Namespace) -> int:
         if options.failure:
             start = next(iter(timeline.failures), -math.inf)
             controls.paused = view is not None and start > -math.inf
-        speed = {"real": 1.0, "max": math.inf}.get(options.speed, options.speed)
+        chosen = options.speed
+        if not chosen:  # nobody watches a pipe or a file
+            chosen = "real" if options.groot is not None or (sys.stdout is not None and sys.stdout.isatty()) else "max"
+        speed = {"real": 1.0, "max": math.inf}.get(chosen, chosen)
         sinks.append(lines if view is None else view)
         with (
             nullcontext() if view is None else view,

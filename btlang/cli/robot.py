@@ -154,7 +154,8 @@ def _up(options: argparse.Namespace) -> int:
         try:
             try:
                 for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-                    signal.signal(number, lambda *_: ended.set())
+                    if number != signal.SIGHUP or signal.getsignal(number) != signal.SIG_IGN:  # ignored under nohup
+                        signal.signal(number, lambda *_: ended.set())
                 left = left_over(layer.store, robot.body.name)
                 layer.start()
                 server.start()

@@ -74,6 +74,7 @@ def _run_shown(options: argparse.Namespace, mission: Mission, robot: Connector, 
             sinks=[*sinks, *recorders, *voices],
             scans=None if not recorders else 0.0 if options.record is None else options.record_scans,
             open_monitors=[*_groot(options.groot), *monitors],
+            limit_option="--for 60s",
         )
 
 

@@ -29,6 +29,7 @@ from btlang.cli.options import (
     REAL_SPEED,
     REASON,
     RECORDING,
+    REPLAY_SPEED,
     ROBOT_SPEED,
     ROBOT_WORDS,
     ROS_ARGS,
@@ -140,7 +141,7 @@ _TABLE = (
     Verb(
         "replay", RUN, "replay a run", "btlang.cli.recordings:replay",
         (
-            SPEED, LINES,
+            REPLAY_SPEED, LINES,
             Option("--from", type=duration, dest="start", metavar="DURATION", help="begin at this time, such as 5min"),
             Option("--failure", action="store_true", help="begin at the first failure"),
             GROOT, *PICTURES,

@@ -73,6 +73,8 @@ class SimulatedDevice:
         self._at_dock = False
         self.is_pressed = False
         """Whether somebody presses this button."""
+        self.measured = float(device.options.get("value", 0.0))
+        """What this gauge measures."""
 
     @property
     def shown(self) -> Command | None:
@@ -272,7 +274,7 @@ _READ: dict[str, Callable[[SimulatedDevice], Reading]] = {
     "microphone": SimulatedDevice._sound,
     "speaker": SimulatedDevice._playing,
     "button": SimulatedDevice._pressed,
-    "gauge": lambda device: Measured(float(device._option("value", 0.0))),
+    "gauge": lambda device: Measured(device.measured),
 }
 _WRITE: dict[str, Callable[[SimulatedDevice, Command], None]] = {
     "drive": SimulatedDevice._roll,

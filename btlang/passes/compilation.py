@@ -86,7 +86,7 @@ class Compilation:
         Children come before their parents, from left to right.
         """
         if not self._nodes:
-            self._nodes = [(name, children_first(root)) for name, root in sort_by_use(self.tree)]
+            self._nodes = nodes_by_use(self.tree)
         return self._nodes
 
     @property
@@ -98,18 +98,7 @@ class Compilation:
 
     def fold(self, combine: Callable[[Node, Sequence[Result], dict[str, Result]], Result]) -> None:
         """Combine each node with the results of its children; the third argument are those of the names so far."""
-        named: dict[str, Result] = {}
-        for name, nodes in self.nodes:
-            results: list[Result] = []
-            for node in nodes:
-                count = len(node.children)
-                if count:
-                    done = results[-count:]
-                    del results[-count:]
-                    results.append(combine(node, done, named))
-                else:
-                    results.append(combine(node, (), named))
-            named[name] = results[0]
+        fold_nodes(self.nodes, combine)
 
 
 class Pass(Record):
@@ -133,3 +122,31 @@ def sort_by_use(tree: Tree) -> list[tuple[str, Node]]:
     roots = dict(tree.subtrees)
     ordered, _ = in_order_of_use({name: reversed(subtree_names(root)) for name, root in roots.items()})
     return [*((name, roots[name]) for name in ordered), ("", tree.root)]
+
+
+def nodes_by_use(tree: Tree) -> list[tuple[str, list[Node]]]:
+    """List the nodes of each tree of `sort_by_use`, children before their parents, from left to right."""
+    return [(name, children_first(root)) for name, root in sort_by_use(tree)]
+
+
+def fold_nodes(
+    trees: Iterable[tuple[str, list[Node]]], combine: Callable[[Node, Sequence[Result], dict[str, Result]], Result]
+) -> dict[str, Result]:
+    """Combine each node with the results of its children, in trees as `nodes_by_use` lists them; return the result of
+    each tree by its name.
+
+    The third argument of `combine` are the results of the trees so far.
+    """
+    named: dict[str, Result] = {}
+    for name, nodes in trees:
+        results: list[Result] = []
+        for node in nodes:
+            count = len(node.children)
+            if count:
+                done = results[-count:]
+                del results[-count:]
+                results.append(combine(node, done, named))
+            else:
+                results.append(combine(node, (), named))
+        named[name] = results[0]
+    return named

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from operator import itemgetter
 
 from btlang.api import Mission
@@ -14,8 +14,11 @@ from btlang.run.events import Chosen, Ended, Event, FaultInjected, InTheWorld, N
 from btlang.run.failure_history import FailureHistory, failure_report
 from btlang.run.logs import is_asked_wait
 from btlang.text.formatting import one_line
+from btlang.tree.catalogue import CATALOGUE, ON_FAILURE
 from btlang.tree.node import Node
+from btlang.tree.visit import children_first
 
+_NO_REASON = ("", "it is not true")  # which say no more than "false"
 _ENDINGS = {FAILURE: "failed", IDLE: "was halted", SKIPPED: "was skipped"}
 
 
@@ -28,6 +31,8 @@ class Story:
         self._began: dict[int, tuple[float, Node]] = {}
         self.notes: list[tuple[float, int, str]] = []
         """The things that were done: when each began, the number of the node (-1: none), and the words."""
+        # conditions that were false, and choices that found nothing: when, what, and why
+        self._answers: list[tuple[float, str, str]] = []
         self._ended: Ended | None = None
         self._latest = 0.0
 
@@ -41,6 +46,10 @@ class Story:
                     node = event.valued.get(change.index, change.node)
                     if self._is_said(node) or is_asked_wait(change.node):
                         self._take_change(change.index, change.status, change.t, node, change.reason)
+                    elif change.status == FAILURE and self._is_question(node) and not self._is_watched(change.index):
+                        reason = "" if change.reason in _NO_REASON else f" ({change.reason})"
+                        answer = "false" if self._is_condition(node) else "failed"
+                        self._answers.append((change.t, f"{self._mission.label(node)}: {answer}", reason))
             elif isinstance(event, Chosen):
                 self._note(event.t, -1, f"It chooses {event.name}, the {event.how} {event.type}.")
             elif isinstance(event, FaultInjected | Notice | PartChanged) and event.text:
@@ -61,17 +70,21 @@ class Story:
             "" if "task" in about else ", on the simulated robot" if robot == "simulated" else f", on the robot {robot}"
         )
         yield one_line(f"{name}, {when}{on}:")
-        yield from self.body()
+        done = ((t, text, "") for t, text in self._noted())
+        yield from fold_lines([*self._answers, *done])  # an answer comes before what it begins
+        yield from self.ending()
 
     def body(self) -> Iterator[str]:
-        """Yield the story without its first line."""
+        """Yield what was done, without the first line, each time that it was done."""
+        yield from (format_line(t, text) for t, text in sorted(self._noted(), key=itemgetter(0)))
+        yield from self.ending()
+
+    def _noted(self) -> list[tuple[float, str]]:
         unfinished = [
             (began, f"{self._mission.label(node)}: not over when the recording ended")
             for began, node in self._began.values()
         ]
-        noted = [(t, text) for t, _, text in self.notes] + unfinished  # a command is noted when it ends
-        yield from (self._line(t, text) for t, text in sorted(noted, key=itemgetter(0)))
-        yield from self.ending()
+        return [(t, text) for t, _, text in self.notes] + unfinished  # a command is noted when it ends
 
     def ending(self) -> Iterator[str]:
         """Yield how it ended, and why."""
@@ -118,9 +131,64 @@ class Story:
     def _note(self, t: float, index: int, text: str) -> None:
         self.notes.append((t, index, one_line(text)))
 
-    @staticmethod
-    def _line(t: float, text: str) -> str:
-        return one_line(f"{t:8.1f} s  {text}")
+    def _is_question(self, node: Node) -> bool:
+        """Return whether it is a condition, or chooses what a command is about."""
+        entry = self._mission.vocabulary.entry(node.id)
+        is_choice = entry is not None and entry.sort == "action" and not entry.phrases
+        return not node.children and (is_choice or self._is_condition(node))
+
+    def _is_condition(self, node: Node) -> bool:
+        entry, kind = self._mission.vocabulary.entry(node.id), CATALOGUE.get(node.id)
+        return kind.kind == "Condition" if kind is not None else entry is not None and entry.sort == "condition"
+
+    def _is_watched(self, index: int) -> bool:
+        """Return whether something waits until the node succeeds, so that its failure says nothing."""
+        while (above := self._nodes.parent(index)) >= 0:
+            kind = CATALOGUE.get(self._nodes.node(above).id)
+            if kind is not None and index == above + 1:
+                if kind.reactive and kind.asks_first:
+                    return True
+                if kind.again == ON_FAILURE and kind.is_endless(self._nodes.node(above).ports):
+                    below = children_first(self._nodes.node(above))
+                    return all(leaf.children or self._is_question(leaf) for leaf in below)
+            index = above
+        return False
+
+
+_MOST_FOLDED = 8  # lines that are one round
+_LEAST_ROUNDS = 3
+
+
+def fold_lines(noted: Iterable[tuple[float, str, str]]) -> Iterator[str]:
+    """Yield lines by their time: when, what, and what else to write.
+
+    Rounds of the same lines, whatever else they say, are written once, with how often they came.
+    """
+    noted = sorted(noted, key=itemgetter(0))
+    texts = [text for _, text, _ in noted]
+    at = 0
+    while at < len(noted):
+        counted = ((length, _count_rounds(texts, at, length)) for length in range(1, _MOST_FOLDED + 1))
+        folded = [(length, rounds) for length, rounds in counted if rounds >= _LEAST_ROUNDS]
+        length, rounds = max(folded, key=lambda found: (found[0] * found[1], -found[0]), default=(1, 1))
+        yield from (format_line(t, text + more) for t, text, more in noted[at : at + length])
+        at += length * rounds
+        if rounds > 1:
+            what = "this" if length == 1 else f"these {length} lines"
+            yield f"{'...':>10}  {what} {rounds} times, last at {noted[at - length][0]:.1f} s"
+
+
+def _count_rounds(texts: Sequence[str], at: int, length: int) -> int:
+    """Return how many times in a row the lines from one on come."""
+    block, rounds = texts[at : at + length], 1
+    while texts[at + rounds * length : at + (rounds + 1) * length] == block:
+        rounds += 1
+    return rounds
+
+
+def format_line(t: float, text: str) -> str:
+    """Return a line of a story."""
+    return one_line(f"{t:8.1f} s  {text}")
 
 
 def explain_recording(path: str) -> str:

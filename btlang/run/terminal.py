@@ -94,6 +94,7 @@ def run_mission(
     answers: Mapping[str, list[str]] | None = None,
     scans: float | None = None,
     open_monitors: Iterable[Callable[[Controls], AbstractContextManager[Monitor]]] = (),
+    limit_option: str = "",
 ) -> int:
     """Run and report; return the exit code. Raises MissionError where the log cannot be opened (BT009).
 
@@ -102,8 +103,11 @@ def run_mission(
     puts keys that aren't for it into `type_ahead`, if given; elsewhere and where `lines` is true plain lines; and
     nothing when `quiet`. `sinks` get all events too, with `scans` also samples of the blackboard and so many scans a
     second; `open_session` gives the session to run in, `values` and `seed` are as for Session.prepare. `open_monitors`
-    give what shows the run to other programs, such as Groot2 and a browser. `answers` are those of WorldInput.
+    give what shows the run to other programs, such as Groot2 and a browser. `answers` are those of WorldInput. A note
+    on standard error says that a mission without a time limit has no end, and offers `limit_option`, if given.
     """
+    if time_limit is None and not quiet:
+        _note_endless(mission.tree, limit_option)
     controls, world_input = Controls(), WorldInput(answers)
     view = None if quiet or lines else live_view(mission, controls, type_ahead, tree_stays, world_input=world_input)
     shown: list[Sink] = (
@@ -155,6 +159,18 @@ def run_mission(
     if outcome.stopped in ("interrupted", "emergency stop"):
         return EMERGENCY_STOPPED if outcome.stopped == "emergency stop" else 128 + came[0] if came else 130
     return 1 if outcome.status == FAILURE else 2 if lost else 0
+
+
+def _note_endless(tree: Tree, limit_option: str) -> None:
+    """Say that a mission has no end and how to end it, where this is certain."""
+    from btlang.passes.lint.endings import FAILURE, NEVER, SKIPPED, SUCCESS, find_mission_ends
+
+    ends = find_mission_ends(tree)
+    if not ends & NEVER or ends & (SUCCESS | SKIPPED):
+        return
+    what = "only ends if something in it fails" if ends & FAILURE else "has no end"
+    limit = f", or run it with a time limit, such as {limit_option}" if limit_option else ""
+    show(f"note: This mission {what}. To end it, press Ctrl-C{limit}.", sys.stderr)
 
 
 def warn_of_motion(standstill: Standstill) -> bool:

@@ -158,7 +158,7 @@ class MissionEnglish:
         if word not in ("fails", "succeeds", "takes"):
             raise self._unread_fake(one)
         behind = at + 1 + (following == "after" and word != "takes")
-        found = self._vocabulary.values.quantity(self._text, behind)
+        found = self._vocabulary.values.quantity(self._text, behind, ("duration",))
         if behind == at + 2 or word == "takes":
             if found is None or found[1] != "duration":
                 raise self._unread_fake(one)

@@ -20,6 +20,7 @@ from btlang.run.outcome import Outcome
 from btlang.session import Run, Session
 from btlang.support.record import Record
 from btlang.testing.chaos import Chaos
+from btlang.testing.gauges import Gauges
 from btlang.testing.observations import Observations, statuses_seen
 from btlang.testing.test import (
     ALWAYS,
@@ -67,19 +68,26 @@ class Broken(Record):
 class Script:
     """A sink for one run, behind that of its observations; ends the run when nothing is left to wait for.
 
-    Conditions are asked once in each period, with the values of the mission.
+    Conditions are asked once in each period, with the values of the mission. `gauges` bind them as the robot does.
     """
 
     policy = INLINE
 
     def __init__(
-        self, test: MissionTest, observed: Observations, robot: Any, controls: Controls, values: Blackboard
+        self,
+        test: MissionTest,
+        observed: Observations,
+        robot: Any,
+        controls: Controls,
+        values: Blackboard,
+        gauges: Gauges | None = None,
     ) -> None:
         self.broken: Broken | None = None
         """The first line that did not hold."""
         self._observed, self._controls = observed, controls
-        services = {"robot": robot, "observed": observed, "controls": controls}
-        self._ask: Callable[[Tree], str] = _Questions(test, services, values).ask
+        gauges = Gauges() if gauges is None else gauges
+        services = {"robot": robot, "observed": observed, "controls": controls, "gauges": gauges}
+        self._ask: Callable[[Tree], str] = _Questions(test, services, values, gauges.bind).ask
         self._steps = [step for step in test.steps if step.kind not in (ALWAYS, NEVER, FINALLY)]
         self._watches = [step for step in test.steps if step.kind in (ALWAYS, NEVER)]
         self._begins = [_before(step, test.steps) for step in self._watches]
@@ -177,8 +185,14 @@ def _before(watch: ScriptStep, steps: tuple[ScriptStep, ...]) -> int:
 class _Questions:
     """The conditions of a test, and what trees of events make happen; each has an engine that lasts."""
 
-    def __init__(self, test: MissionTest, services: Mapping[str, Any], values: Blackboard) -> None:
-        self._vocabulary, self._services, self._values = test.vocabulary, services, values
+    def __init__(
+        self,
+        test: MissionTest,
+        services: Mapping[str, Any],
+        values: Blackboard,
+        bind: Callable[[Entry, Lexicon], LeafBinding | None],
+    ) -> None:
+        self._vocabulary, self._services, self._values, self._bind = test.vocabulary, services, values, bind
         self._engines: dict[int, Engine] = {}
 
     def ask(self, tree: Tree) -> str:
@@ -199,8 +213,8 @@ class _Questions:
 
     def _engine(self, tree: Tree) -> Engine:
         return Engine(
-            tree, lambda node_id: bind_leaf(node_id, self._vocabulary), clock=Clock(), services=self._services,
-            blackboard=self._values,
+            tree, lambda node_id: bind_leaf(node_id, self._vocabulary, self._bind), clock=Clock(),
+            services=self._services, blackboard=self._values,
         )  # fmt: skip
 
 
@@ -230,25 +244,28 @@ class Result(Record):
 
 
 class _Connect(Record):
-    """A connection to the simulated robot of a test; fakes stand in for some of its words."""
+    """A connection to the simulated robot of a test; fakes stand in for some of its words, and gauges are set."""
 
     body: Body
     fakes: Fakes
+    gauges: Gauges
 
     def __call__(self, world: World) -> Connection:
         connection: Any = Connector(self.body, "simulated")(world)
-        bind, fakes = connection.bind, self.fakes
+        fakes, gauges = self.fakes, self.gauges
+        devices = getattr(connection, "devices", None)
+        gauges.connect(connection.bind, {} if devices is None else devices.readers)
 
         def bound(entry: Entry, vocabulary: Lexicon) -> LeafBinding | None:
-            own: LeafBinding | None = bind(entry, vocabulary)
+            own = gauges.bind(entry, vocabulary)
             return make_fake(own, entry, vocabulary, fakes, connection.bus.clock) if fakes.has(entry.id) else own
 
         connection.bind = bound
         return connection  # type: ignore[no-any-return]
 
 
-def _connect(test: MissionTest, fakes: Fakes) -> _Connect:
-    return _Connect(body_of(test.robot or "simulated"), fakes)
+def _connect(test: MissionTest, fakes: Fakes, gauges: Gauges) -> _Connect:
+    return _Connect(body_of(test.robot or "simulated"), fakes, gauges)
 
 
 def run_test(
@@ -265,21 +282,22 @@ def run_test(
     mission, controls = mission or test.mission, controls or Controls()
     observed, values, fakes = Observations(_commands(test)), Blackboard(), Fakes(test.fakes)
     outcome: Outcome | None = None
-    with Session(_connect(test, fakes), world=mission.world or DEFAULT_WORLD) as session:
+    gauges = Gauges()
+    with Session(_connect(test, fakes, gauges), world=mission.world or DEFAULT_WORLD) as session:
         run = session.prepare(
             mission, speed="max", time_limit=test.limit, seed=seed, controls=controls, values=values,
             sinks=[observed, *sinks],
         )  # fmt: skip
-        script = Script(test, observed, session.robot, controls, values)
+        script = Script(test, observed, session.robot, controls, values, gauges)
         if script.broken is None:
             run.bus.add(script)
             outcome = _execute(run, controls)
-    seconds, is_cut = 0.0, False
-    if outcome is not None:
-        observed.outcome, observed.is_over, seconds = outcome, True, outcome.seconds
-        is_cut = outcome.stopped == "time limit" and test.is_cut
-        if not is_cut:
-            script.end(seconds)
+        seconds, is_cut = 0.0, False
+        if outcome is not None:
+            observed.outcome, observed.is_over, seconds = outcome, True, outcome.seconds
+            is_cut = outcome.stopped == "time limit" and test.is_cut
+            if not is_cut:
+                script.end(seconds)  # while the robot's components still answer
     result = partial(Result, test.name, test.place, seed, seconds, seen=statuses_seen(mission.tree, observed))
     if script.broken is not None:
         return result(
@@ -296,11 +314,12 @@ def run_chaos(test: MissionTest, seed: int, sinks: Iterable[Sink] = ()) -> Resul
     What the test expects doesn't count, but its events at the start and its fakes do. Raises MissionError.
     """
     observed, controls, fakes = Observations({}), Controls(), Fakes(test.fakes)
-    with Session(_connect(test, fakes), world=test.mission.world or DEFAULT_WORLD) as session:
+    gauges = Gauges()
+    with Session(_connect(test, fakes, gauges), world=test.mission.world or DEFAULT_WORLD) as session:
         run = session.prepare(
             test.mission, speed="max", time_limit=test.limit, seed=seed, controls=controls, sinks=[observed, *sinks]
         )
-        Script(test.replace(steps=()), observed, session.robot, controls, Blackboard())  # for its setup
+        Script(test.replace(steps=()), observed, session.robot, controls, Blackboard(), gauges)  # for its setup
         chaos = Chaos(seed, test.limit, observed, session.robot, controls, test.mission.vocabulary)
         run.bus.add(chaos)
         outcome = _execute(run, controls)

@@ -92,7 +92,7 @@ def _read(text: Words, first: int, last: int, vocabulary: Lexicon) -> Iterator[S
         yield _run(text, first, last, vocabulary)
         return
     if word in ("within", "for", "after"):
-        found = vocabulary.values.quantity(text, first + 1)
+        found = vocabulary.values.quantity(text, first + 1, ("duration",))
         if found is None or found[1] != "duration" or found[2] >= last:
             raise _unread(span, word)
         at = found[2] + (words[found[2]] == ",")
@@ -119,7 +119,7 @@ def _run(text: Words, first: int, last: int, vocabulary: Lexicon) -> ScriptState
     seconds, at = None, first + 2
     at_most = words[at : at + 3] == ["for", "at", "most"]
     if at < last and words[at] == "for":
-        found = vocabulary.values.quantity(text, at + 1 + 2 * at_most)
+        found = vocabulary.values.quantity(text, at + 1 + 2 * at_most, ("duration",))
         if found is not None and found[1] == "duration":
             seconds, at = found[0], found[2]
     if words[first + 1][0] != _QUOTE or at != last:

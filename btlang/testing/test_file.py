@@ -24,6 +24,7 @@ from btlang.robots.registry import body_of
 from btlang.support.record import Record
 from btlang.task.execution.missions import read_house_rules
 from btlang.testing.english import MissionEnglish, move_problem
+from btlang.testing.gauges import gauge_words
 from btlang.testing.statements import ScriptStatement, statements_of
 from btlang.testing.test import MissionTest
 from btlang.text.source import Source, Span
@@ -35,6 +36,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Callable
     from typing import TypeAlias
+
+    from btlang.robots.bodies.body import Body
 
     Given: TypeAlias = Callable[[str, str | None], Mission | None]
 
@@ -110,6 +113,7 @@ class _TestFileReader:
         self._statements = list(statements_of(text, block.lines, vocabulary, self._problems))
         self._robot = ""
         self._robot_words: list[str] = []
+        self._body: Body | None = None
         self._world: str | None = None
 
     def test(self) -> MissionTest:
@@ -131,7 +135,8 @@ class _TestFileReader:
         if mission.syntax is not None:
             needed = [path for role, path in mission.syntax.needs if role == NEEDED_WORDS]
             keywords += [included_path(path, mission.syntax.span.source)[0] for path in needed]
-        vocabulary = world_vocabulary([*keywords, WORDS], mission.world)
+        gauges = gauge_words(self._body, world_vocabulary(keywords, mission.world))
+        vocabulary = world_vocabulary([*keywords, WORDS, *gauges], mission.world)
         pieces = MissionEnglish(self._text, vocabulary, mission)
         at_run = self._statements.index(runs[0])
         for number, one in enumerate(self._statements):
@@ -150,9 +155,9 @@ class _TestFileReader:
         world = self._find_file("world") or None
         self._robot = self._find_file("robot")
         if self._robot:
-            body = body_of(self._robot)
-            self._robot_words = words_of(body)
-            world = world or body.world or None
+            self._body = body_of(self._robot)
+            self._robot_words = words_of(self._body)
+            world = world or self._body.world or None
         self._world = world
         if run.file is not None:
             mission = self._given(_name(run.file), world)

@@ -392,7 +392,8 @@ class _Reader:
         whole = bool(table.get("whole", False))
         kind = _kind(name, bool(units), bool(values) or bool(table.get("open")))
         given = tuple(str(v["name"]) for v in values)
-        return ValueType(name, kind, tuple(units), whole, None if least is None else float(least), given), names
+        lowest = None if least is None else float(least)
+        return ValueType(name, kind, tuple(units), whole, lowest, given, self.span(name)), names
 
 
 def _kind(name: str, has_units: bool, has_names: bool) -> str:

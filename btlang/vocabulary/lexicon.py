@@ -68,6 +68,7 @@ class Lexicon:
         folder: str = "",
     ) -> None:
         self._problems: list[Diagnostic] = []
+        self._redeclared: dict[str, Span] = {}  # types that exist already, each where it is declared last
         self._added: TrieNode | None = None
         """What `extended` adds."""
         self._own_nodes: set[int] = set()
@@ -364,12 +365,14 @@ class Lexicon:
         types: dict[str, ValueType] = dict(english.types) if english is not None else {}
         for file in files:
             for kind in file.types:
-                known = types.get(kind.name, kind)
+                known, span = types.get(kind.name, kind), kind.span or Span(file.source, 0, 0)
+                if known is not kind:
+                    self._redeclared[kind.name] = span
                 if known.kind == kind.kind:
                     types[kind.name] = kind.replace(least=known.least) if kind.least is None else kind
                     continue
                 reason = f"the type {kind.name} already exists with another kind"
-                self._problems.append(diagnostic("BT060", Span(file.source, 0, 0), reason=reason))
+                self._problems.append(diagnostic("BT060", span, reason=reason))
         return types
 
     def _add_roles(self) -> None:
@@ -549,6 +552,15 @@ class Lexicon:
         if slot.default is None or kind.kind in ("text", "names"):
             return slot
         value = self.value(slot.type, slot.default)
+        again = self._redeclared.get(kind.name)
+        if value is None and again is not None and again.source.name != entry.file:
+            reason = (
+                f"the type {kind.name} exists already, and here '{slot.default}', which {entry.id} needs, isn't one "
+                "of its values; give this type another name or all its units"
+            )
+            if not any(problem.span is again for problem in self._problems):
+                self._problems.append(diagnostic("BT060", again, reason=reason))
+            return slot
         if value is None:
             reason = (
                 f"the default '{slot.default}' of {{{slot.name}}} isn't a valid {slot.type}, such as {kind.example}"

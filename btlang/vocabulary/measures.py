@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from btlang.text.source import Source
 from btlang.text.words import Orthography, Words, split
-from btlang.vocabulary.value_type import ValueType, format_number, with_unit
+from btlang.vocabulary.value_type import Unit, ValueType, format_number, with_unit
 from btlang.vocabulary.word_tree import END, find, tree_of
 
 TYPE_CHECKING = False
@@ -40,8 +40,13 @@ class Measures:
         self._fractions = tree_of(language["fractions"].items())
         self._times = tree_of(language["times"].items())
         self._number_starts = frozenset((*self._numbers, *self._multipliers, *self._fractions))
-        units = ((kind.name, unit) for kind in types.values() for unit in kind.units)
-        self._units = tree_of((_apart(words), (name, unit)) for name, unit in units for words in unit.words)
+        units: dict[str, dict[str, Unit]] = {}
+        for kind in types.values():
+            for unit in kind.units:
+                for words in unit.words:
+                    units.setdefault(_apart(words), {})[kind.name] = unit
+        self._units = tree_of(units.items())
+        """The words of units. Types may share them (`%`): the slot decides which is meant, or else the first counts."""
         self._facing = [phrase.split() for phrase in roles.get("facing", ())]
 
     def is_number(self, words: Sequence[str]) -> bool:
@@ -120,10 +125,13 @@ class Measures:
         """The words for which `half_of_day` looks, where they are one word."""
         return [word for word, node in self._times.items() if isinstance(node.get(END), int)]
 
-    def quantity(self, text: Words, at: int) -> tuple[float, str, int] | None:
-        """A number with a unit: its value in the base unit, the name of the type, and where it ends."""
+    def quantity(self, text: Words, at: int, wanted: Iterable[str] = ()) -> tuple[float, str, int] | None:
+        """A number with a unit: its value in the base unit, the name of the type, and where it ends.
+
+        Of the types that have the unit it is the first of the `wanted` ones, or else the one that was declared first.
+        """
         if text.words[at] in self._further:
-            return self.quantity(text, at + 1)  # `another 2 m`
+            return self.quantity(text, at + 1, wanted)  # `another 2 m`
         number = self.number(text, at)
         if number is None:
             before = text.words[at - 1] if at else ""
@@ -138,12 +146,23 @@ class Measures:
         unit = find(self._units, text.words, after)
         if unit is None:
             return None
-        (kind, unit_of), end = unit
+        by_type, end = unit
+        kind = next((kind for kind in wanted if kind in by_type), next(iter(by_type)))
+        unit_of = by_type[kind]
         half = find(self._fractions, text.words, end)  # "a minute and a half"
         if half is not None and half[1] > end + 1 and not find(self._units, text.words, half[1]):
             value, end = value + half[0], half[1]
         amount = value * unit_of.numerator / unit_of.denominator
         return (amount, kind, end) if abs(amount) <= _LARGEST else None
+
+    def same_quantities(self, text: Words, at: int) -> tuple[str, ...]:
+        """The types for which a number with a unit is the same amount, the one of `quantity` first."""
+        found = self.quantity(text, at)
+        if found is None:
+            return ()
+        others = (self.quantity(text, at, (kind,)) for kind, one in self.types.items() if one.kind == "quantity")
+        same = (other[1] for other in others if other is not None and other[0] == found[0])
+        return tuple(dict.fromkeys((found[1], *same)))
 
     def number(self, text: Words, at: int) -> tuple[float, int] | None:
         """A number in figures or words, fractions included, and where it ends."""
@@ -191,7 +210,7 @@ class Measures:
         at += 1
         for words in self._facing:
             last = at + len(words)
-            angle = self.quantity(text, last) if text.words[at:last] == words else None
+            angle = self.quantity(text, last, ("angle",)) if text.words[at:last] == words else None
             if angle is not None and angle[1] == "angle":
                 return numbers[0], numbers[1], angle[0], angle[2]
         return numbers[0], numbers[1], None, at
@@ -204,7 +223,7 @@ class Measures:
         return f"{where} {' '.join(self._facing[0])} {with_unit(facing, self.types['angle'].units[0].words[0])}"
 
     def _metres(self, text: Words, at: int) -> tuple[float, int] | None:
-        quantity = self.quantity(text, at)
+        quantity = self.quantity(text, at, ("length",))
         if quantity is not None:
             return (quantity[0], quantity[2]) if quantity[1] == "length" else None
         return self.number(text, at)

@@ -253,7 +253,7 @@ class ReadingContext:
             return (kind,), (self._chosen(kind, text, at) or ("", end))[0], end
         quantity = self.values.quantity(text, at)
         if quantity is not None:
-            return (quantity[1],), format_number(quantity[0]), quantity[2]
+            return self.values.same_quantities(text, at), format_number(quantity[0]), quantity[2]
         sorts = ("number", "names", "time", "text")
         kinds = [name for sort in sorts for name, kind in self.types.items() if kind.kind == sort]
         read = [(kind, self.read(kind, text, at)) for kind in kinds]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from btlang.support.record import Record
+from btlang.text.source import Span
 
 TEXT = "text"
 PLACE = "place"
@@ -30,8 +31,8 @@ def with_unit(number: str, unit: str) -> str:
     return f"{number} {unit}" if unit[0].isalpha() else number + unit
 
 
-class ValueType(Record):
-    """A type that a slot may have.
+class ValueType(Record, uncompared=("span",)):
+    """A type that a slot may have, and where a keyword file declares it.
 
     `kind` is "quantity" (a number with one of `units`), "number" (no unit), "text", "time" (of day) or "names" (one of
     a list).
@@ -43,6 +44,7 @@ class ValueType(Record):
     whole: bool = False
     least: float | None = None
     names: tuple[str, ...] = ()
+    span: Span | None = None
 
     @property
     def example(self) -> str:

@@ -368,7 +368,7 @@ class Values(Measures):
         """The port text of a value of the type and where it ends, or None if there is none."""
         value_type = self.types[kind]
         if value_type.kind == "quantity":
-            quantity = self.quantity(text, at)
+            quantity = self.quantity(text, at, (kind,))
             if quantity is None or quantity[1] != kind or too_small(quantity[0], value_type):
                 return None
             return format_number(quantity[0]), quantity[2]

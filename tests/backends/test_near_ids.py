@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 import btlang
@@ -62,3 +64,20 @@ def test_no_fix(text: str) -> None:
 def test_names_that_are_said_otherwise_are_known() -> None:
     """The language `eo` is said as Esperanto."""
     btlang.parse_tree('talk in Esperanto; do "SpeakLanguage" with language "eo"').check()
+
+
+def test_the_keyword_file_beside_a_tree_that_has_an_id_is_named(tmp_path: Path) -> None:
+    (tmp_path / "broken.toml").write_bytes(b"\xff")
+    (tmp_path / "world.toml").write_text('id = "PourCup"\n', encoding="utf-8")
+    words = tmp_path / "words.toml"
+    words.write_text('[[action]]\nphrase = "pour a cup"\nid = "PourCup"\ncall = "x:y"\n', encoding="utf-8")
+    text = '<root BTCPP_format="4"><BehaviorTree ID="A"><Sequence><PourCup/><PourCap/></Sequence></BehaviorTree></root>'
+    (tmp_path / "tree.xml").write_text(text, encoding="utf-8")
+    with pytest.raises(MissionError) as caught:
+        btlang.parse_file(tmp_path / "tree.xml").check()
+    known, unknown = caught.value.diagnostics
+    assert known.hint == f"The keyword file {words} has it. Add: --keywords {words}"
+    assert "If a keyword file of yours has it, add: --keywords FILE" in unknown.hint
+    hidden = problem_of(text.replace("<PourCap/>", ""))  # of a text from outside the folder isn't read
+    assert str(words) not in hidden.hint
+    btlang.parse_tree(Source(text.replace("<PourCap/>", "")), keywords=[words])

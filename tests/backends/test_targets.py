@@ -16,6 +16,7 @@ import pytest
 import btlang
 from btlang.api import Mission, format_mission
 from btlang.backends.targets import TARGETS, compile_to, target_of
+from btlang.builders import sequence
 from btlang.cli import main
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.frontends.json.reader import read_json
@@ -143,6 +144,42 @@ def test_the_module_does_what_run_does(tmp_path: Path) -> None:
     ran, run = (python(tmp_path, *words, "--speed", "max") for words in runs)
     assert (ran.returncode, ran.stdout) == (run.returncode, run.stdout) == (0, run.stdout)
     assert "going to bay" in run.stdout or "go to bay" in run.stdout
+
+
+def test_the_module_imports_the_functions_of_its_leaves(tmp_path: Path) -> None:
+    (tmp_path / "cells.py").write_text(
+        "import btlang\n\n"
+        '@btlang.action("weld {number} plates")\n'
+        'def weld(robot, number: int):\n    robot.print(f"welding {number}")\n\n'
+        '@btlang.condition("plate is hot")\ndef is_hot():\n    return True\n',
+        encoding="utf-8",
+    )
+    (tmp_path / "write.py").write_text(
+        "import pathlib, btlang, cells\nfrom btlang.builders import leaf, sequence\n"
+        'tree = sequence("plate is hot", leaf(cells.weld, 2), cells.is_hot, "say done")\n'
+        'pathlib.Path("made.py").write_text(sequence(tree, cells.is_hot).to("python"))\n',
+        encoding="utf-8",
+    )
+    for words in (["write.py"], ["made.py", "--speed", "max"]):
+        ran = python(tmp_path, *words, path=ROOT)
+        assert ran.returncode == 0, ran.stderr
+    assert "welding 2" in ran.stdout
+    made = (tmp_path / "made.py").read_text(encoding="utf-8")
+    assert "KEYWORDS = [words_1.is_hot, words_1.weld]" in made or "KEYWORDS = [words_1.weld, words_1.is_hot]" in made
+
+
+def test_functions_that_no_module_can_import_are_refused_by_name() -> None:
+    @btlang.action("polish")
+    def polish() -> None: ...
+
+    @btlang.condition("it shines")
+    def shines() -> bool:
+        return True
+
+    with pytest.raises(MissionError) as caught:
+        sequence(shines, polish).to("python")
+    assert {problem.code for problem in caught.value.diagnostics} == {"BT134"}
+    assert all(name in str(caught.value) for name in ("polish, its function", "shines, its function"))
 
 
 def test_a_deep_module_makes_the_same_tree() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from btlang.api import parse_tree
+from btlang.passes.lint.endings import FAILURE, NEVER, SUCCESS, find_mission_ends
 from btlang.repl.draft import MissionDraft
 from btlang.vocabulary.entry import Entry
 
@@ -183,6 +184,26 @@ def test_never_runs(text: str, reason: str, never: str) -> None:
     [warning] = [warning for warning in parse_tree(text).warnings if warning.code == "BT052"]
     assert (warning.span.text, dict(warning.arguments)["reason"]) == (never, reason)
     assert len(warning.notes) == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "ends"),
+    [
+        ("wait forever", NEVER),
+        ("whenever bumped, try to wave", NEVER),
+        ("wave forever", NEVER | FAILURE),
+        ("go to the lab then wave forever", NEVER | FAILURE),
+        ("look is wave forever. nod then look", NEVER | FAILURE),
+        ("never enter the lab. wave forever", NEVER | FAILURE),
+        ("whenever bumped, nod", NEVER | FAILURE),
+        ("wave. whenever bumped, nod", SUCCESS | FAILURE),
+        ("wave forever until bumped", SUCCESS | FAILURE),
+        ("(wave forever) for 5 s", SUCCESS | FAILURE),
+        ("if bumped, wave forever, otherwise nod", NEVER | SUCCESS | FAILURE),
+    ],
+)
+def test_endings_of_missions(text: str, ends: int) -> None:
+    assert find_mission_ends(parse_tree(text).tree) == ends
 
 
 @pytest.mark.parametrize(

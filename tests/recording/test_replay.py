@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import re
+import sys
 import threading
 import time
 from collections.abc import Callable
@@ -16,6 +18,7 @@ from btlang.engine.compile import outline
 from btlang.recording import replay
 from btlang.recording.reader import RecordedNodes, read_recording
 from btlang.recording.replay import Player, ReplayTimeline
+from btlang.recording.story import fold_lines
 from btlang.run.controls import Controls
 from btlang.run.events import Event, PeriodPassed
 from btlang.run.snapshot import RunState
@@ -24,6 +27,15 @@ from tests.conftest import matches_golden
 from tests.recording.runs import recorded
 
 HERE = Path(__file__).parent
+ROUNDS = """
+if the battery is below 20%, say low
+if there is a cup in the lab, wave
+if someone is near, wave
+repeat 5 times: nod then go to the lab
+repeat 4 times: (look for Carol in the hall then fail) if possible
+for 3 s, wait until the battery is below 50%
+wave
+"""
 FAILING = """
 try to grasp the book up to 2 times, otherwise nod
 set n to 3
@@ -55,12 +67,60 @@ def test_the_lines_of_a_replay_are_those_of_the_run(tmp_path: Path, capsys: pyte
     assert printed(capsys, "replay", str(tmp_path / "run.mcap"), "--lines", "--speed", "max")[1].splitlines() == lines
 
 
+def test_a_replay_that_nobody_watches_prints_at_once(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    speeds: list[float] = []
+    monkeypatch.setattr(Player, "play", lambda self, speed, start: speeds.append(speed))
+    path = str(tmp_path / "run.mcap")
+    run("nod", tmp_path / "run.mcap", "--quiet")
+    for words in ((), ("--lines",), ("--speed", "real"), ("--speed", "3")):
+        assert printed(capsys, "replay", path, *words)[0] == 0
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True, raising=False)
+    printed(capsys, "replay", path, "--lines")
+    assert speeds == [math.inf, math.inf, 1.0, 3.0, 1.0]
+
+
 def test_why_tells_the_story(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     run(FAILING, tmp_path / "run.mcap", "--quiet")
     capsys.readouterr()
     code, story = printed(capsys, "why", str(tmp_path / "run.mcap"))
     assert code == 0
     matches_golden(re.sub(r"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d", "(when)", story), HERE / "why.out")
+
+
+def test_why_folds_rounds_and_shows_what_was_false(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    run(ROUNDS, tmp_path / "run.mcap", "--quiet", "--for", "100s")
+    capsys.readouterr()
+    story = printed(capsys, "why", str(tmp_path / "run.mcap"))[1].splitlines()
+    lines = [re.sub(r"^ *[0-9.]+ s  | is [0-9.]+%|, last at .*", "", line).strip() for line in story[1:-1]]
+    assert lines == [
+        "battery is below 20%: false (battery)",
+        "cup in lab: failed (I know no cup in the lab)",
+        "someone is near: false",
+        "nod",
+        "go to lab",
+        "...  these 2 lines 5 times",
+        "look for Carol in hall: failed (I haven't found Carol in the hall)",
+        "...  this 4 times",
+        "wave",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("said", "lines"),
+    [
+        ("ab", ["a", "b"]),
+        ("aab", ["a", "a", "b"]),
+        ("aaab", ["a", "this 3 times, last at 2.0 s", "b"]),
+        ("cabababab", ["c", "a", "b", "these 2 lines 4 times, last at 7.0 s"]),
+        ("aaabaaab", ["a", "this 3 times, last at 2.0 s", "b", "a", "this 3 times, last at 6.0 s", "b"]),
+        ("aabaabaab", ["a", "a", "b", "these 3 lines 3 times, last at 6.0 s"]),
+    ],
+)
+def test_rounds_of_lines_are_folded(said: str, lines: list[str]) -> None:
+    noted = [(float(at), text, f" ({at})") for at, text in enumerate(said)]
+    assert [re.sub(r" \(\d\)", "", line[12:]) for line in fold_lines(noted)] == lines
 
 
 def test_why_says_that_a_run_was_stopped_or_its_recording_cut(

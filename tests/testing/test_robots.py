@@ -36,6 +36,24 @@ def test_a_test_runs_on_its_robot_in_the_world_of_that(tmp_path: Path) -> None:
         assert run_test(test).problem == ""
 
 
+@pytest.mark.parametrize("runs", ["process", "here"])
+def test_conditions_and_quantities_of_components_are_asked_of_the_robot(tmp_path: Path, runs: str) -> None:
+    robot_file(tmp_path, machine(runs=f'"{runs}"'))
+    (tmp_path / "t.test.txt").write_text(
+        'test "coffee":\n  on the robot "robot.toml"\n  run:\n    wait 1 s then brew a coffee then brew a tea\n'
+        "  after 0.5 s not something was brewed\n  within 9 s something was brewed\n"
+        "  when the number of cups is 2, the battery drops to 15%\n"
+        "  finally the number of cups is at least 2 and the battery is below 20%\n"
+        'test "no coffee":\n  on the robot "robot.toml"\n  run:\n    brew a coffee\n'
+        "  never something was brewed\n",
+        encoding="utf-8",
+    )
+    one, another = map(run_test, read_tests(read_source(str(tmp_path / "t.test.txt"))))
+    assert one.problem == ""
+    assert "never something was brewed" in another.problem
+    assert "not something was brewed" not in another.problem
+
+
 @pytest.mark.parametrize("name", ["absent.toml", "../robot.toml", "broken.toml"])
 def test_a_robot_that_cannot_be_used_is_a_message(tmp_path: Path, name: str) -> None:
     (tmp_path / "broken.toml").write_text("name = 3", encoding="utf-8")

@@ -8,6 +8,7 @@ import pytest
 
 from btlang.api import parse_tree
 from btlang.diagnostics.diagnostic import MissionError
+from btlang.tree.dump import plain
 from btlang.vocabulary.load import load_vocabulary
 
 ACTION = '[[action]]\nphrase = "hop"\nid = "Hop"\n'
@@ -72,6 +73,59 @@ def test_wrong_file(text: str, reason: str, tmp_path: Path) -> None:
     with pytest.raises(MissionError) as caught:
         parse_tree("wave", keywords=[str(file)])
     assert reason in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        (
+            'units = [{ words = ["pct"], factor = "1" }]',
+            "the type percent exists already, and here '100%', which Charge",
+        ),
+        (
+            'units = [{ words = ["%"], factor = "1/100" }]\nleast = 50',
+            "the type percent exists already, and here '100%'",
+        ),
+        ('values = ["5%"]', "the type percent already exists with another kind"),
+    ],
+)
+def test_a_type_that_breaks_the_words_that_ship_is_to_blame(text: str, reason: str, tmp_path: Path) -> None:
+    file = tmp_path / "own.toml"
+    file.write_text(f'[[type]]\nname = "other"\n[[type]]\nname = "percent"\n{text}\n', encoding="utf-8")
+    with pytest.raises(MissionError) as caught:
+        parse_tree("wave", keywords=[str(file)])
+    [problem] = caught.value.diagnostics
+    assert (problem.code, problem.span.place) == ("BT060", f"{file}:4:9")
+    assert reason in problem.message
+
+
+@pytest.mark.parametrize(
+    ("text", "tree"),
+    [
+        ("charge to 50%", "Charge percent=50"),
+        ("check the humidity is above 50%", "Humidity above=50"),
+        ("check the battery is above 50 percent", "Battery above=50"),
+        ("open the valve to 50%", "OpenValve ratio=0.5"),
+        ("dig 2 m", "Dig depth=2000"),
+        ("move forward 2 m", "MoveForward distance=2"),
+    ],
+)
+def test_types_share_units(text: str, tree: str, tmp_path: Path) -> None:
+    """The slot says which type is meant, so that a type with `%` leaves the battery alone."""
+    file = tmp_path / "own.toml"
+    file.write_text(
+        '[[type]]\nname = "humidity"\nunits = [{ words = ["%", "percent"], factor = "1" }]\n'
+        '[[type]]\nname = "ratio"\nunits = [{ words = ["%"], factor = "1/100" }]\n'
+        '[[type]]\nname = "depth"\nunits = [{ words = ["mm"], factor = "1" }, { words = ["m"], factor = "1000" }]\n'
+        '[[quantity]]\nphrase = "humidity"\ntype = "humidity"\nid = "Humidity"\n'
+        '[[action]]\nphrase = "open valve to {ratio}"\nid = "OpenValve"\n'
+        '[[action]]\nphrase = "dig {depth}"\nid = "Dig"\n',
+        encoding="utf-8",
+    )
+    for parser in ("shunting-yard", "lark"):
+        assert plain(parse_tree(text, keywords=[str(file)], parser=parser).tree) == tree
+    used = parse_tree("set level to 50%. check humidity is above level. charge to level", keywords=[str(file)])
+    assert "Charge percent={level}" in plain(used.tree)
 
 
 @pytest.mark.parametrize(

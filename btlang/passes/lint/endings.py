@@ -5,8 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 
+from btlang.passes.compilation import fold_nodes, nodes_by_use
 from btlang.tree.catalogue import CATALOGUE, PRE_CONDITIONS, SUBTREE, NodeKind
-from btlang.tree.node import Node
+from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -25,6 +26,11 @@ def find_ends(node: Node, children: Sequence[Ends], named: dict[str, Ends]) -> E
     """Find the ways in which a node can end, given those of its children and those of the defined names."""
     decided, may_start = _before(node) if any(port in PRE_CONDITIONS for port, _ in node.ports) else (0, True)
     return decided | _ends(node, children, named) if may_start else decided
+
+
+def find_mission_ends(tree: Tree) -> Ends:
+    """Find the ways in which a whole tree can end."""
+    return fold_nodes(nodes_by_use(tree), find_ends)[""]
 
 
 def _before(node: Node) -> tuple[Ends, bool]:
@@ -111,7 +117,7 @@ def _decorator(kind: NodeKind, node: Node, child: Ends) -> Ends:
         return (kept & ~SKIPPED if kind.skipped == "never" else kept) | NEVER
     if kind.interrupts:
         return (child | FAILURE) & ~NEVER
-    return child if kind.takes_time else ANY
+    return child if kind.takes_time or kind.waits else ANY
 
 
 def _sum(names: Iterable[str]) -> Ends:

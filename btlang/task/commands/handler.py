@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 from contextlib import suppress
 from functools import partial
 
@@ -71,6 +71,7 @@ class Handler:
         self._store, self._manager, self._executor, self._emergency = store, manager, executor, emergency
         self._session, self._admit, self._now, self._down, self._needs = session, admit, now, down, needs
         self._reader, self._world_input = StoreReader(store, manager, now, executor.hindrance), world_input
+        self._interrupted: tuple[str, ...] = ()  # the words of the commands at which the latest pause came
         schedules = ScheduleHandler(store, executor.wake, self._mission, now)
         library = LibraryHandler(store, admit, now, getattr(session.robot, "body", None), overs)
         components, world = ComponentHandler(session), WorldHandler(session, world_input)
@@ -243,8 +244,13 @@ class Handler:
         return Answer(True, f"Task {made.id} is queued.", {"task": task_data(made)})
 
     def _pause(self, command: messages.Pause, person: str) -> Answer:
+        run, task = self._executor.run, self._executor.task
+        if not self._executor.is_paused:
+            self._interrupted = () if run is None or task is None else run.snapshot().running
         self._executor.pause()
-        return Answer(True, "The robot is paused.", {})
+        at = _paused_at(task, self._interrupted)
+        text = f"The robot is paused.{f' {at} It goes on with: btc robot resume' if at else ''}"
+        return Answer(True, text, {"task": 0 if task is None else task.id, "interrupted": list(self._interrupted)})
 
     def _step(self, command: messages.Step, person: str) -> Answer:
         if not self._executor.step():
@@ -300,6 +306,8 @@ class Handler:
         if data["question"]:
             asked = f'It waits for an answer to "{one_line(data["question"])}".'
             lines.append(f"{asked} To answer: btc task answer TEXT")
+        if data["paused"] and (at := _paused_at(task, self._interrupted)):
+            lines.append(at)
         lines.append(f"{data['waiting']} waiting." if data["waiting"] else "Nothing waits.")
         return Answer(True, "\n".join(lines), data)
 
@@ -322,6 +330,14 @@ class Handler:
         if task.state in FINAL:
             raise refusal_error(number, f"was already over: {task.state}")
         return task
+
+
+def _paused_at(task: Task | None, interrupted: Sequence[str]) -> str:
+    """Say what a pause interrupted, "" where nothing was under way."""
+    if task is None:
+        return ""
+    words = one_line(", ".join(interrupted))
+    return f"Task {task.id} was under way{f': {words}' if words else ''}."
 
 
 def _cause(reason: str, person: str) -> str:

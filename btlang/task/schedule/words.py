@@ -203,7 +203,7 @@ class ScheduleWords:
     def duration(self) -> float | None:
         """Read a duration, and return seconds. Raises Unread if a number has no unit of time behind it."""
         self._asked.setdefault(self.at, set()).update(self._value_words)
-        found = None if self.is_over else self._values.quantity(self._text, self.at)
+        found = None if self.is_over else self._values.quantity(self._text, self.at, (DURATION,))
         if found is not None and found[1] == DURATION:
             self.at = found[2]
             return found[0]

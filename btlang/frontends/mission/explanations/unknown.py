@@ -140,7 +140,8 @@ def _misfit(
     mentioned = context.named(text, at)
     if mentioned is not None and mentioned[0] is not None:
         return _wrong_type(text.span(at, mentioned[1]), mentioned[0], wanted)
-    quantity, number = vocabulary.values.quantity(text, at), vocabulary.values.number(text, at)
+    quantity = vocabulary.values.quantity(text, at, [kind.name for kind in types])
+    number = vocabulary.values.number(text, at)
     time = explain_time(text, at, quantity is None and any(kind.kind == "time" for kind in types), vocabulary)
     if time is not None:
         return time
