@@ -97,3 +97,21 @@ class BaseWatch(Watch):
             raise ActionFailed(f"stuck after {so_far}: {reason or STUCK}")
         if reason:
             raise ActionFailed(f"stopped after {so_far}: {reason}")
+
+
+def compares(
+    found: float,
+    below: float | None,
+    above: float | None,
+    at_least: float | None,
+    at_most: float | None,
+    equal: float | None,
+) -> bool:
+    """Return whether a number is as each of these limits says; None is no limit."""
+    return (
+        (below is None or found < below)
+        and (above is None or found > above)
+        and (at_least is None or found >= at_least)
+        and (at_most is None or found <= at_most)
+        and (equal is None or found == equal)
+    )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from contextlib import closing
 from typing import Protocol
 
-from btlang.actions.common import DrivingRobot, Watch, spot, things_described
+from btlang.actions.common import DrivingRobot, Watch, compares, spot, things_described
 from btlang.actions.motion import Steps, turn
 from btlang.actions.navigation import accomplish, go_to, travel
 from btlang.actions.sensing import holding
@@ -127,14 +127,7 @@ def counted(
     found = count(blackboard)
     if isinstance(found, Failed):
         return found
-    holds = (
-        (below is None or found < below)
-        and (above is None or found > above)
-        and (at_least is None or found >= at_least)
-        and (at_most is None or found <= at_most)
-        and (equal is None or found == equal)
-    )
-    return holds or Failed(lambda: f"it counted {found}")
+    return compares(found, below, above, at_least, at_most, equal) or Failed(lambda: f"it counted {found}")
 
 
 def _count(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import dist, inf, radians
 
-from btlang.actions.common import where
+from btlang.actions.common import compares, where
 from btlang.engine.leaves.leaf import Failed
 from btlang.robots.geometry import Point
 from btlang.robots.robot import Base, Docking, Hands, Navigation, Power, RobotError, Sensors, SensorSilent
@@ -230,6 +230,20 @@ def person_is_at(robot: Base, person: str, place: str) -> bool:
 def someone_is_at(robot: Base, place: str) -> bool:
     """Return whether anybody is at a place, as far as the robot knows."""
     return bool(robot.described("person", {"at": place}))
+
+
+def people_at(
+    robot: Base,
+    place: str,
+    below: float | None = None,
+    above: float | None = None,
+    at_least: float | None = None,
+    at_most: float | None = None,
+    equal: float | None = None,
+) -> bool | Failed:
+    """Return whether so many people are at a place, as far as the robot knows."""
+    found = len(robot.described("person", {"at": place}))
+    return compares(found, below, above, at_least, at_most, equal) or Failed(lambda: f"it knows of {found} there")
 
 
 def holding(robot: Hands, object: str) -> bool:

@@ -176,6 +176,8 @@ _ALL = (
          "Ask once, and say right after it what depends on the answer, for example: {example}"),
     Code("BT145", "'{words}' goes on with a question, but the command right before it isn't one.",
          "Say first what is done if somebody answers, for example: {example}"),
+    Code("BT146", "'{words}' is about what was counted last, and nothing counts before.", "Write for example: {example}",
+         "warning", "nothing counted"),
     Code("BT147", "Nothing is done with the answer to '{words}'.",
          "Say until when to ask, for example: {example}", "warning", "unused answer"),
     Code("BT148", "'{words}' only picks it up.", "To have it brought, write: {fixed}", "note", "picked up only"),

@@ -27,6 +27,7 @@ from btlang.passes.lint.unlikely_meanings import (
     find_next_day,
     find_picked_up_only,
     find_restarts,
+    find_uncounted,
     find_unused_answers,
 )
 from btlang.passes.lower import lower_names
@@ -56,6 +57,7 @@ PASSES = (
     Pass("rounds end", find_ended_rounds, needs_text=True),
     Pass("asks from afar", find_distant_questions, needs_text=True),
     Pass("picked up only", find_picked_up_only, needs_text=True),
+    Pass("nothing counted", find_uncounted, needs_text=True),
     Pass("unused answers", find_unused_answers, needs_text=True),
     Pass("only rules", find_rules_only, needs_text=True),
     Pass("unused", find_unused, needs_text=True),

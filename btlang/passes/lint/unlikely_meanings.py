@@ -1,5 +1,5 @@
-"""Lints on commands that mean something else than most people expect (BT147, BT148, BT149, BT163, BT169, BT170, BT175,
-BT050).
+"""Lints on commands that mean something else than most people expect (BT050, BT146 to BT149, BT163, BT169, BT170,
+BT175).
 
 - `turn around three times` are half turns, as most people mean whole turns;
 - `turn around and drive back 1 m`: backwards, or the way back that the robot faces then;
@@ -7,6 +7,7 @@ BT050).
 - `go to the lab until someone is near` starts again, though the command comes to an end by itself;
 - `every 10 min, go to the lab` ends when a round fails;
 - `ask Bob "Tea?". If he says no, ask again` does nothing with the second answer;
+- `if there are more than 3 people, A` where nothing is counted;
 - `fetch the cup` only picks it up;
 - `ask Bob "Tea?"` asks from where the robot is.
 """
@@ -24,6 +25,7 @@ from btlang.text.source import Span
 from btlang.text.time_of_day import seconds_of
 from btlang.tree import ast
 from btlang.tree.answers import ABOUT_ANSWERS, ASK, asking_verbs, asks
+from btlang.tree.sums import COMPARED, COUNTING
 from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import choice_of
@@ -35,6 +37,7 @@ if TYPE_CHECKING:
 
 _LOOPS = (ast.Repeat, ast.Retry, ast.Every, ast.While)
 _KEEP_ASKING = 'keep asking Alice "Tea?" until she says yes'
+_COUNTED = "count the people. If there are more than 3, wave"
 _ENDLESS, _PICK_UP = "-1", "PickUp"
 _PACES = ("every", "every_day", "weekly", "on_days", "at", "until_time")
 """The roles of the words that say when the rounds of a loop begin."""
@@ -212,6 +215,15 @@ def find_unused_answers(compilation: Compilation) -> Iterator[Diagnostic]:
                 before = (each.arguments for each in asked if each.span.start < again.span.start)
                 if isinstance(again, ast.Phrase) and again.arguments in before:
                     yield diagnostic("BT147", again.span, words=again.span.text, example=_KEEP_ASKING)
+
+
+def find_uncounted(compilation: Compilation) -> Iterator[Diagnostic]:
+    """Report the first comparison of what was counted in a mission that counts nothing."""
+    mission = compilation.mission
+    phrases = [each for body in ast.bodies(mission) for each in _phrases(compilation.syntax(body))]
+    asked = next((each for each in phrases if each.entry.id == COMPARED), None)
+    if asked is not None and not any(each.entry.id in COUNTING for each in phrases):
+        yield diagnostic("BT146", asked.span, words=asked.span.text, example=_COUNTED)
 
 
 def _phrases(nodes: Iterable[ast.Ast]) -> list[ast.Phrase]:
