@@ -176,7 +176,7 @@ def test_help_on_a_phrase_tells_all() -> None:
 charge [to {percent}]
     Docks and waits until the battery is full or reaches the percentage.
     also: charge/recharge [up] [to [at least] {percent}]
-          charge/recharge battery [to {percent}]
+          charge/recharge battery [[up] to {percent}]
           charge/recharge [fully] until full
           charge/recharge [fully] until it is full/charged
           charge/recharge [fully] until you are full/charged

@@ -52,7 +52,8 @@ class Requests(Questions):
         if is_so and entry.id in (SAY, TELL) and (said := self._asked_of()):  # `if you can't find it, say so`
             self._set_text(command, value.name, said)
             return 0
-        if (is_pronoun or is_so) and value.last == value.first + 1 and entry.id in (SAY, TELL):
+        goes_on = self._text.source.text[self._text.ends[value.first] :][:1] == "'"  # `tell her it's late`
+        if (is_pronoun or is_so) and value.last == value.first + 1 and not goes_on and entry.id in (SAY, TELL):
             self._doubt(entry, value.first)  # `say it again`
             return 0
         again = self._phrase(value.first)
