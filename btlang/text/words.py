@@ -193,6 +193,18 @@ class Words:
         }
         self._distinct = None
 
+    def replace(self, at: int, words: Sequence[str]) -> None:
+        """Put words in the place of one, where it stands; only before anybody has looked for anything."""
+        more, count = len(words) - 1, len(words)
+        self.words[at : at + 1] = words
+        self.starts[at : at + 1], self.ends[at : at + 1] = [self.starts[at]] * count, [self.ends[at]] * count
+        self.lines = [
+            line.replace(first=line.first + more * (line.first > at), last=line.last + more * (line.last > at))
+            for line in self.lines
+        ]
+        self.articles = {place + more * (place > at): where for place, where in self.articles.items()}
+        self._distinct = None
+
     def begin(self, at: int) -> int:
         """Return the character at which a word begins, or the article before it."""
         return self.articles[at][0] if at in self.articles else self.starts[at]

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 _LONGEST_FRONT = 2  # words
 _LONGEST_NAME = 4  # words
-_MOST_ITEMS = 16  # of a list whose last one ends them all
+_MOST_ITEMS = 16  # of a list whose last one ends them all, and of a range
 
 
 class SharedHeads:
@@ -38,6 +38,15 @@ class SharedHeads:
         if (at, kind) not in memo:
             memo[at, kind] = self._read(kind, text, at)
         return memo[at, kind]  # type: ignore[no-any-return]
+
+    def between(self, kind: str, words: Sequence[str], at: int, last: str) -> list[str]:
+        """The numbers behind the first of `rooms 201 to 206` up to the last, if each is in a name; else none."""
+        one, number = self._plurals(kind)[0].get(words[at], ""), words[at + 1]
+        if not (one and number.isdecimal() and last.isdecimal() and 0 < int(last) - int(number) <= _MOST_ITEMS):
+            return []
+        numbers = [str(each).zfill(len(number)) for each in range(int(number), int(last) + 1)]
+        tree = self._names(kind)
+        return numbers[1:] if all(_name(tree, [one, each]) is not None for each in numbers) else []
 
     def behind_last(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
         """The name of which the last word stands at a word, and the others behind it: `the door of the kitchen`."""

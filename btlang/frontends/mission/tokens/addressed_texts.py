@@ -2,26 +2,19 @@
 
 from __future__ import annotations
 
-import re
-
 from btlang.diagnostics.diagnostic import diagnostic
-from btlang.frontends.mission.token import JOINTS, STATEMENT_ENDS, Called, Listed, Token, run_start, statement_start
-from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, searches
-from btlang.frontends.mission.tokens.settling import FAILS, WORKS, is_about
-from btlang.frontends.mission.tokens.word_matches import words_of
+from btlang.frontends.mission.token import Called, Listed, Token
+from btlang.frontends.mission.tokens.told_words import ToldWords
 from btlang.text.words import Words
-from btlang.tree.answers import ABOUT_ANSWERS, ASK
+from btlang.tree.answers import ASK
 from btlang.vocabulary.entry import RECIPIENT, Entry
 from btlang.vocabulary.match import SlotValue
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE, WORLD, ZONE
+from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE, ZONE
 from btlang.vocabulary.word_tree import find
 
 TELL = "TellPerson"
-_ASKED_BY = frozenset(("if", "whenever", "first_time", "as_soon_as"))
-_IN_CONDITIONS = frozenset(("condition", "not", "either", "neither", "or"))
-_LINE_ENDS = frozenset(("semi", "newline", "otherwise"))
 _SOMEBODY = "may be somebody else for whoever hears it"
 _NEXT = "may be a part of it, or go on with the mission"
 _NO_QUESTION = "begins no question that I know"
@@ -32,7 +25,7 @@ _DONE = ("command", "at", "wait", "wait_until", "wait_forever")
 _BEHIND = ("politeness", "then", "and")
 
 
-class AddressedTexts(SentenceReader):
+class AddressedTexts(ToldWords):
     """Texts without quotes that one text has for people."""
 
     def _ends(self, at: int) -> bool:
@@ -95,70 +88,6 @@ class AddressedTexts(SentenceReader):
         command.end = text.ends[end - 1]
         self._tokens.append(command)
         return end
-
-    def _asked_of(self) -> str:
-        """The words of the one condition that the command being read depends on, with names for pronouns; else ""."""
-        tokens = self._tokens
-        failed = next((at for at in reversed(range(len(tokens))) if tokens[at].kind in (*_LINE_ENDS, "or")), 0)
-        if tokens and tokens[failed].value == FAILS:
-            works = (at for at in reversed(range(failed)) if tokens[at].kind == WORKS)
-            form = next(works, 0) if tokens[failed].kind == "otherwise" else failed
-            return self._failed(run_start(tokens, form, JOINTS | STATEMENT_ENDS))
-        form = next((at for at in reversed(range(len(self._tokens))) if self._tokens[at].kind in _ASKED_BY), 0)
-        if self._tokens and self._tokens[form].start == self._tokens[form].end:
-            return ""  # of a question: its words ask
-        asked = [token for token in self._tokens[form:] if token.kind in _IN_CONDITIONS]
-        if len(asked) > 1 and asked[0].kind == "not" and asked[0].start == asked[0].end:
-            del asked[0]  # of `isn't`, which the words of the condition have
-        if not self._tokens or self._tokens[form].kind not in _ASKED_BY or len(asked) != 1:
-            return ""
-        if any(token.kind in _LINE_ENDS for token in self._tokens[form:]) or not isinstance(asked[0].value, Called):
-            return ""
-        text, pronouns = self._text, self._vocabulary.values.pronoun_words
-        types = {slot.name: slot.type for slot in asked[0].value.entry.slots}
-        named = [(types[name], value) for name, value in asked[0].value.arguments if types[name] in WORLD]
-        if asked[0].value.entry.id in ABOUT_ANSWERS:  # `if she says yes, tell Bob`: of who was asked
-            named = [(PERSON, person) for person in [self._context.latest.get(PERSON, "")] if person]
-        words: list[str] = []
-        things = [value for kind, value in named if kind in (OBJECT, DOOR)]
-        done = (token for token in self._tokens[form:] if token.kind == "command")
-        is_over = any(is_about(token, {thing}) for token in done for thing in things)
-        happened = self._vocabulary.happened if is_over else {}
-        for at in words_of(text, asked[0]):
-            pronoun = find(pronouns, text.words, at)
-            kinds = self._context.pronouns[pronoun[0]] if pronoun is not None else ()
-            meant = [value for kind, value in named if kind in kinds]
-            if pronoun is not None and PLACE not in kinds and (len(meant) != 1 or meant[0][:1] == "{"):
-                return ""
-            is_there = PLACE in kinds  # `if she isn't there, tell me`
-            words.append(meant[0] if meant and not is_there else happened.get(text.words[at]) or self._written(at))
-        said, of_robot = " ".join(words), self._vocabulary.of_robot
-        if of_robot:
-            pattern = "|".join(map(re.escape, sorted(of_robot, key=len, reverse=True)))
-            said = re.sub(rf"\b(?:{pattern})\b", lambda match: of_robot[match[0].lower()], said, flags=re.IGNORECASE)
-        return said[:1].upper() + said[1:]
-
-    def _failed(self, end: int) -> str:
-        """`pick up the cup. If you can't find it, tell Bob`: that the command before some token has failed."""
-        tried = self._tokens[end - 1] if end else None
-        if tried is None or tried.kind != "command" or end - 1 != statement_start(self._tokens, end):
-            return ""
-        words = [at for at in words_of(self._text, tried) if self._text.words[at][0] != '"']
-        people = self._vocabulary.values.texts.of_persons
-        if any(self._text.words[at] in people or self._text.words[at] in self._context.pronouns for at in words):
-            return ""
-        front, done = self._vocabulary.asking["failing"][0], " ".join(map(self._written, words))
-        if searches(tried):
-            things = (at for at in words for kind in (OBJECT, PERSON) if self._context.read(kind, self._text, at))
-            words = words[words.index(next(things, words[0])) :]
-            done = " ".join((self._vocabulary.asking["search"][0], *map(self._written, words)))
-        return f"{front[:1].upper()}{front[1:]} {done[:1].lower()}{done[1:]}".replace(" ,", ",")
-
-    def _written(self, at: int) -> str:
-        """A word as it is written, with its article."""
-        text = self._text
-        whole = text.source.text[text.begin(at) : text.ends[at]]
-        return whole if whole.lower().endswith(text.words[at]) else text.words[at]
 
     def _ask(self, entry: Entry, value: SlotValue, command: Token) -> int:
         """`ask Bob if he is hungry`: the question that the clause stands for.

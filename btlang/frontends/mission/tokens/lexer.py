@@ -25,7 +25,7 @@ from btlang.text.source import Source, Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, split
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import Known, ReadingContext
-from btlang.vocabulary.value_type import OBJECT, PLACE, TEXT, ZONE
+from btlang.vocabulary.value_type import OBJECT, PLACE, TEXT, WORLD, ZONE
 from btlang.vocabulary.word_tree import find
 
 
@@ -53,6 +53,7 @@ class Lexer:
         _drop_words_of_turns(self.text, vocabulary)
         _drop_still(self.text, vocabulary)
         _drop_commas(self.text, vocabulary)
+        _list_ranges(self.text, vocabulary)
         self.problems += _drop_untold_sizes(self.text, vocabulary)
         self.problems += _drop_untold_contents(self.text, vocabulary)
         self.names = Names(self.text, vocabulary, load, known)
@@ -163,6 +164,22 @@ def _drop_commas(text: Words, vocabulary: Lexicon) -> None:
     for at in reversed([at for at in range(1, len(words) - 1) if words[at] == ","]):
         if words[at - 1] in joints and words[at + 1] in vocabulary.before_conditions:
             text.drop(at, at + 1)
+
+
+def _list_ranges(text: Words, vocabulary: Lexicon) -> None:
+    """Put all names of a range in the place of the last one: `rooms 1 to 3` as `rooms 1, 2 and 3`."""
+    words, heads = text.words, vocabulary.values.shared_heads
+    joints = set(vocabulary.asking["between_joint"]).difference(vocabulary.roles["and"])
+    if joints.isdisjoint(text.distinct):
+        return  # as often
+    for at in reversed(range(len(words) - 3)):
+        if words[at + 2] not in joints or not words[at + 1].isdecimal():
+            continue
+        numbers = next((found for kind in WORLD if (found := heads.between(kind, words, at, words[at + 3]))), [])
+        if numbers:
+            listed = [word for number in numbers for word in (",", number)]
+            text.replace(at + 3, [*listed[1:-2], vocabulary.word("and"), numbers[-1]] if len(numbers) > 1 else numbers)
+            text.replace(at + 2, [","] if len(numbers) > 1 else [vocabulary.word("and")])
 
 
 def _drop_untold_sizes(text: Words, vocabulary: Lexicon) -> Iterator[Diagnostic]:
