@@ -13,6 +13,10 @@ from btlang.tree import ast
 from btlang.tree.sums import COMPARED, COUNTING
 from btlang.tree.visit import fold
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
 _STOP = "Stop"
 
 
@@ -76,12 +80,16 @@ def _split(node: ast.Ast) -> tuple[ast.Ast, list[ast.Ast]]:
     return first, [items[0] if len(items) == 1 else node.replace(items=items)]
 
 
-def _with_last(rounds: ast.Ast, item: ast.Ast, span: Span) -> ast.Ast:
-    """Return rounds with one more command at their end."""
-    part = ast.parts(rounds)[0]
-    items = part.items if isinstance(part, ast.Chain) and part.operator == "sequence" else (part,)
-    inner = ast.Chain("sequence", (*items, item), True, Span(span.source, part.span.start, span.end))
-    made: ast.Ast = ast.with_parts(rounds, [inner]).replace(span=span)
+def _with_last(rounds: Any, item: ast.Ast, span: Span) -> ast.Ast:
+    """Return rounds with one more command at their end, within the hours at which they are done."""
+    part = ast.parts(rounds)[-1] if isinstance(rounds, ast.If) else ast.parts(rounds)[0]
+    if isinstance(part, ast.If) and part.otherwise is None:
+        inner = _with_last(part, item, Span(span.source, part.span.start, span.end))
+    else:
+        items = part.items if isinstance(part, ast.Chain) and part.operator == "sequence" else (part,)
+        inner = ast.Chain("sequence", (*items, item), True, Span(span.source, part.span.start, span.end))
+    parts = [inner if each is part else each for each in ast.parts(rounds)]
+    made: ast.Ast = ast.with_parts(rounds, parts).replace(span=span)
     return made
 
 

@@ -287,10 +287,11 @@ class GoingOn(SentenceReader):
         has_left = any(drives(token.value) for token in self._tokens[at:])
         if has_left and any(PLACE in pronouns.get(word, ()) for word in said):
             return False  # `if he is there, go to the lab. If he isn't there, A`: it may be about the lab
+        cannot = {phrase.split()[-1] for phrase in self._vocabulary.asking["unable"]}
         denied = (
             [*asked[:at], *way.split(), *asked[at + 1 :]]
             for at, verb in enumerate(asked)
-            for way in self._vocabulary.negations.get(verb, ())
+            for way in (*self._vocabulary.negations.get(verb, ()), *(f"{word} {verb}" for word in cannot))
         )
         return any(said[-len(each) :] == each for each in denied)
 

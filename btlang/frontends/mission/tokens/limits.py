@@ -66,11 +66,13 @@ class Limits(GoingOn):
             del tokens[behind]
 
     def _limit_sought(self, is_last: bool) -> None:
-        """`look for Bob for up to 5 min`, `wait for Bob, but no longer than 5 min`: without him it has failed then."""
+        """`look for Bob for up to 5 min` fails then without him; `wait for Bob, but no longer than 5 min` is over."""
         tokens, limit = self._tokens, self._tokens[-1]
         behind = run_start(tokens, len(tokens) - 1, ("comma",)) if limit.kind == "up_to" else 0
-        if behind and (searches(tokens[behind - 1]) or self._awaits(tokens[behind - 1])):
+        if behind and searches(tokens[behind - 1]):
             limit.kind = "within"
+        elif behind and self._awaits(tokens[behind - 1]):
+            pass  # it may be over without anybody, unless that is asked about
         elif is_last or not behind or self._words_of(limit)[0] not in self._vocabulary.roles["but"]:
             return
         del tokens[behind:-1]  # `charge, but no longer than 5 min, then wave`
@@ -91,8 +93,12 @@ class Limits(GoingOn):
         if tokens[at].kind == "condition" and wait.kind == "wait_up_to":
             tokens.insert(at + 1, Token("within", wait.start, wait.end, wait.value))
             wait.kind, wait.value = "wait_until", None
-        elif tokens[at].kind == "condition" and at + 1 < len(tokens) and tokens[at + 1].kind in ("for", "up_to"):
+        elif at + 1 < len(tokens) and tokens[at + 1].kind in ("for", "up_to") and self._waits(tokens[at]):
             tokens[at + 1].kind = "within"
+
+    def _waits(self, token: Token) -> bool:
+        """Whether a token is what is waited for, or a command that waits for somebody."""
+        return token.kind == "condition" or self._awaits(token)
 
     def _may_ask_again(self, at: int, form: int, end: int) -> bool:
         """Whether a condition behind `wait up to 5 min until C` asks what is so then."""

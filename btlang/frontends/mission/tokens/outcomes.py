@@ -84,6 +84,9 @@ class Outcomes(Limits):
             self._ask_alone()
             if role == WORKS:
                 self._doubt_so(match.last, at)
+        if role == FAILS and WORKS in self._statement(len(tokens) - 1)[1]:
+            if self._denies_what_worked(self._text.span(at, match.last)):
+                role = "otherwise"  # `if you find it, A, and if you can't find it, B`
         if role in (FAILS, ONE_FAILS, "if_unanswered", "otherwise"):
             token.kind = "or" if role != "otherwise" else role
             token.value = FAILS if said != "otherwise" else None
