@@ -47,7 +47,8 @@ def find_asked_once(compilation: Compilation) -> Iterator[Diagnostic]:
             if type(node) is ast.If and not node.negated and node.otherwise is None:
                 items, at = before.get(id(node), ((), 0))
                 sentence = _sentence_before(items, at)
-                if _is_statement(node, vocabulary):
+                joins_rule = at > 0 and isinstance(items[at - 1], ast.Whenever) and "\n" not in node.span.text
+                if joins_rule or _is_statement(node, vocabulary):
                     is_first = not sentence and at + 1 < len(items)
                     warnings = list(_warn(node, sentence[-1] if sentence else None, vocabulary, is_first))
                     yield from warnings or _too_late(node, sentence, vocabulary)
@@ -231,7 +232,9 @@ def _warn(node: ast.If, before: ast.Ast | None, vocabulary: Lexicon, is_first: b
     if _is_answered(node):
         return
     word = next(iter(source.text[node.span.start : condition.start].split(maxsplit=1)), "")  # none before a question
-    if word.lower() in vocabulary.asked_once or _is_event(node.condition, vocabulary):
+    asked = node.condition
+    is_watched = before is None and isinstance(asked, ast.Phrase) and asked.entry.id in ON_THE_WAY
+    if word.lower() in vocabulary.asked_once or is_watched or _is_event(asked, vocabulary):
         rest = source.text[node.span.start + len(word) : node.span.end].lstrip()
         yield _asked_once(node, f"{word} {condition.text}", f"{{}} {rest}", vocabulary)
 

@@ -87,13 +87,19 @@ def with_ends(tokens: list[Token], vocabulary: Lexicon, span: Callable[[int, int
 
 
 def _end_whole_rules(tokens: list[Token], vocabulary: Lexicon, span: Callable[[int, int], Span]) -> None:
-    """Make `never enter the hall, and if C, A` two statements: what is always forbidden isn't so for A alone."""
+    """Make `never enter the hall, and if C, A` two statements: what is always forbidden isn't so for A alone.
+
+    The same for `avoid the hall while C, and if D, A`.
+    """
     for at, token in enumerate(tokens):
-        behind = run_end(tokens, at + 1, JOINTS) if _keeps_out(token) and _begins(tokens, at) else 0
-        if behind > at + 1 and tokens[behind : behind + 1] and tokens[behind].kind in ("if", "unless"):
+        if not _keeps_out(token) or not _begins(tokens, at):
+            continue
+        is_while = tokens[at + 1 : at + 2] and tokens[at + 1].kind in _WHILE and begins_condition(tokens, at + 2)
+        last, behind = _condition_end(tokens, at + 2) if is_while else (at + 1, run_end(tokens, at + 1, JOINTS))
+        if behind > last and tokens[behind : behind + 1] and tokens[behind].kind in ("if", "unless"):
             said = span(tokens[at - 1].end if at else 0, token.end).text.lower().split()
-            if not set(vocabulary.asking["whole"]).isdisjoint(said):
-                tokens[at + 1 : behind] = [Token("semi", token.end, tokens[behind].start)]
+            if is_while or not set(vocabulary.asking["whole"]).isdisjoint(said):
+                tokens[last:behind] = [Token("semi", tokens[last - 1].end, tokens[behind].start)]
 
 
 def _keeps_out(token: Token) -> bool:
