@@ -7,7 +7,7 @@ by `and` or a comma and neither travels nor names a place.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Sequence, Set
 
 from btlang.support.record import Record
 from btlang.text.source import Source
@@ -30,7 +30,7 @@ def with_rounds(mission: ast.Program, vocabulary: Lexicon) -> ast.Program:
     tries = (
         isinstance(node, ast.Retry) or (isinstance(node, ast.Chain) and node.operator == "fallback") for node in nodes
     )
-    if not any(map(_set_of, nodes)) and not any(tries):
+    if not any(map(_choice_of, nodes)) and not any(tries):
         return mission
     if mission.facts:
         vocabulary = vocabulary.with_places(tuple(fact.name for fact in ast.all_facts(mission)))
@@ -65,37 +65,64 @@ class _Round(Record):
 
 
 def _with_loops(root: ast.Ast, vocabulary: Lexicon) -> ast.Ast:
+    if any(map(_choice_of, ast.parents_first(root))):
+        root = _chosen_anew(root)
     if any(map(_set_of, ast.parents_first(root))):
-        root = _add_loops(_ended_by_times(root), vocabulary)
+        root = _add_loops(root, vocabulary)
     return fold(root, ast.parts, lambda node, done: _with_each_tried(node, done, vocabulary))
 
 
-def _ended_by_times(root: ast.Ast) -> ast.Ast:
-    """Return a mission in which a time of day ends a round: `tell everyone "Lunch", and at 1 pm tell them "Work"`.
+def _chosen_anew(root: ast.Ast) -> ast.Ast:
+    """Return a mission in which what speaks of a thing chooses it where it isn't chosen by then.
 
-    What speaks of the thing behind it is a new round over the same things.
+    - A time of day ends a round: `tell everyone "Lunch", and at 1 pm tell them "Work"`;
+    - the other branch hasn't chosen: `if C, take a cup to the lab, otherwise take it to the hall`.
     """
-    sets, over, renewed = dict[str, Choice](), set[str](), dict[int, str]()
+    renewed = dict[int, Choice]()
+    known, over = dict[str, Choice](), set[str]()
     for node in ast.parents_first(root):
-        own = _set_of(node)
+        own = _choice_of(node)
         if isinstance(node, ast.WaitTime):
-            over |= sets.keys()
+            over |= {key for key, choice in known.items() if choice.how == ALL}
         elif own is not None:
-            sets[own.key] = own
+            known[own.key] = own
             over.discard(own.key)
         elif isinstance(node, ast.Phrase | ast.Name) and (
             again := next(iter(over.intersection(ast.keys_of(node))), "")
         ):
-            renewed[id(node)] = again
+            renewed[id(node)] = known[again]
             over.discard(again)
+        if isinstance(node, ast.If | ast.IfWorks) and node.otherwise is not None:
+            _renew_otherwise(node.body, node.otherwise, known.keys(), renewed)
+    if not renewed:
+        return root
 
     def renew(node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
-        key = renewed.get(id(node), "")
-        if key and isinstance(node, ast.Phrase | ast.Name):
-            return _replace_argument(node, f"{{{key}}}", sets[key].text)
+        choice = renewed.get(id(node))
+        if choice is not None and isinstance(node, ast.Phrase | ast.Name):
+            return _replace_argument(node, f"{{{choice.key}}}", choice.text)
         return ast.with_parts(node, done)
 
-    return fold(root, ast.parts, renew) if renewed else root
+    return fold(root, ast.parts, renew)
+
+
+def _renew_otherwise(body: ast.Ast, otherwise: ast.Ast, known: Set[str], renewed: dict[int, Choice]) -> None:
+    """Find the first commands of a branch that speak of what only the other one has chosen."""
+    choices = (own for node in ast.parents_first(body) if (own := _choice_of(node)) is not None)
+    missing = {own.key: own for own in choices if own.key not in known}
+    for node in ast.parents_first(otherwise) if missing else ():
+        own = _choice_of(node)
+        if own is not None:
+            missing.pop(own.key, None)
+        for key in set(missing).intersection(ast.keys_of(node)):
+            renewed[id(node)] = missing.pop(key)
+
+
+def _choice_of(node: ast.Ast) -> Choice | None:
+    """Return what the robot chooses for a command."""
+    if not isinstance(node, ast.Phrase | ast.Name):
+        return None
+    return next((choice for _, text in node.arguments if (choice := choice_of(text)) is not None), None)
 
 
 def _add_loops(root: ast.Ast, vocabulary: Lexicon) -> ast.Ast:

@@ -11,7 +11,7 @@ from btlang.vocabulary.entry import MANNER
 from btlang.vocabulary.match import SlotValue
 from btlang.vocabulary.nouns import Description
 from btlang.vocabulary.references import ALL, LATEST, NAMES, SELF, Choice, Parts, choice_of, is_one, is_related
-from btlang.vocabulary.value_type import DOOR, OBJECT, PLACE, WORLD, ZONE, format_number
+from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE, WORLD, ZONE, format_number
 from btlang.vocabulary.values import Values, key_of
 from btlang.vocabulary.word_tree import find
 
@@ -46,7 +46,7 @@ class ReadingContext:
     `known` are the values that it names, by key; None where any name in braces is one. `latest` are the values that
     pronouns stand for, by type; each reader of a text sets them, on its own context. `lacked` says that a pronoun
     stood for nothing: behind other values it might stand for one. `keys` are those for what is chosen, by type, where
-    they aren't the names of the types; `met` are those that have been chosen by now.
+    they aren't the names of the types; `met` are those that have been chosen by now, each with whether that is a set.
     """
 
     __slots__ = (
@@ -74,7 +74,7 @@ class ReadingContext:
         self.listed: dict[str, str] = {}
         """Where the latest values of a type are a list, the set of them; "" where no word stands for it."""
         self.lacked = False
-        self.met: set[str] = set()
+        self.met: dict[str, bool] = {}
         self.keys: Mapping[str, str] = {}
         self.known: Mapping[str, Known] | None = {}
         self.untyped: Set[str] = frozenset()
@@ -350,6 +350,12 @@ class ReadingContext:
         latest = self.latest.get(kind, "") if kind == DOOR and at in text.articles else ""
         return (latest, at + 1) if latest.lower().endswith(f" {text.words[at]}") else None
 
+    def _are_things(self, types: Sequence[str]) -> bool:
+        """Whether a word in the plural stands for a set of things, and somebody who is spoken of is one alone."""
+        things = self.latest.get(OBJECT, "")
+        is_set = OBJECT in types and things[:1] == "{" and self.met.get(things[1:-1], False)
+        return is_set and PERSON not in self.listed and self.latest.get(PERSON, "{")[:1] != "{"
+
     def _stands_for_several(self, kind: str) -> bool:
         """Whether a word in the plural can't be the latest value alone: `the cup. Put them down`."""
         latest = self.latest.get(kind, "")
@@ -373,6 +379,8 @@ class ReadingContext:
             is_one = self.latest.get(ZONE, "") == self.latest.get(PLACE, "")
         if is_one and word in self.values.ones:
             return self._another(kind, text, end)
+        if kind == PERSON and word in self.values.plural_pronouns and self._are_things(types):
+            return None  # `if Alice is near, take the cups to the lab, otherwise take them to the hall`
         if is_one and word in self.values.plural_pronouns and self._stands_for_several(kind):
             self.lacked |= not self.listed.get(kind)
             return (self.listed[kind], end) if self.listed.get(kind) else None

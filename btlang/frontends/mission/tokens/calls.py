@@ -272,7 +272,7 @@ class Calls:
             latest = value.group or (value.more[-1] if value.more else value.text)
             choice = choice_of(latest) if latest[:1] == "{" else None
             if choice is not None:
-                self._context.met.add(choice.key)
+                self._context.met[choice.key] = choice.how == ALL
             self._context.latest[value.type] = f"{{{choice.key}}}" if choice is not None else latest
             if value.type == PLACE and latest in self._vocabulary.values.listed(ZONE):
                 self._context.latest[ZONE] = latest  # `go to the lab, then leave it`
