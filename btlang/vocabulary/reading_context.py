@@ -137,6 +137,11 @@ class ReadingContext:
                 parts = spoken or self._settled(kind, meant.parts)
                 choice = Choice(ALL, kind, self.keys.get(kind, kind), parts)
                 yield "" if self.values.likenesses.members(choice) == () else choice.text, meant, end
+                is_there = PLACE in self.pronouns.get(text.words[end], ()) and PLACE not in self.listed
+                there = self.latest.get(PLACE, "{") if is_there else "{"
+                if there[:1] != "{" and kind in (PERSON, OBJECT) and "inside" not in dict(parts):  # `everyone there`
+                    placed = meant.replace(parts=tuple(sorted((*parts, ("inside", there)))))
+                    yield choice.replace(parts=placed.parts).text, placed, end + 1
 
     def _spoken_of(self, meant: Description, text: Words, at: int) -> Parts | None:
         """`in each room`, `in both rooms` behind journeys: the names to which the statement or the one before led.
