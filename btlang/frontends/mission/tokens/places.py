@@ -18,7 +18,6 @@ from btlang.frontends.mission.token import (
     run_end,
     run_start,
     statement_start,
-    texts_of,
 )
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, leads_to
 from btlang.frontends.mission.tokens.silent_words import TRAVELS, begins
@@ -112,7 +111,7 @@ class Places(SentenceReader):
             return 0
         journey = self._journey(tokens[:-1])
         said = tokens[-1].value
-        if isinstance(said, Called | Listed) and TRAVELS in said.entry.needs and len(set(texts_of(said))) > 1:
+        if isinstance(said, Listed) and TRAVELS in said.entry.needs:
             return 0  # `go to the lab and the hall and greet everybody there`
         behind = self._phrase(pronoun[1])
         is_polite = behind is not None and behind.meaning.role == "politeness"  # `there, too`
