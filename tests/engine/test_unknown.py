@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import pytest
 
 from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine, Failure
+from btlang.engine.instance import EngineError
 from btlang.engine.leaves.leaf import LeafBinding, Unknown
 from btlang.engine.status import FAILURE, RUNNING, SUCCESS
 from btlang.tree.node import Node, Tree
@@ -127,3 +130,42 @@ def test_a_script_that_cannot_be_worked_out_is_unknown(root: Node) -> None:
     engine = world.engine(Node("IfThenElse", (root, ACT, OTHER)))
     assert (engine.tick(), world.done) == (FAILURE, [])
     assert [failure.node for failure in world.told] == [root]
+
+
+@pytest.mark.parametrize(
+    ("answer", "reason"),
+    [
+        (None, "it returned nothing, and a condition has to return True or False"),
+        (2, "it returned 2, which is no answer: return True or False, as in bool(...)"),
+        (0, "it returned 0, which is no answer: return True or False, as in bool(...)"),
+    ],
+)
+def test_what_is_no_answer_is_neither_yes_nor_no(answer: object, reason: str) -> None:
+    bindings = {"Sense": LeafBinding(lambda: answer, condition=True), "Act": LeafBinding(lambda: None)}
+    engine = Engine(Tree(Node("IfThenElse", (SENSE, ACT, ACT))), bindings.__getitem__, clock=Clock())
+    assert engine.tick() == FAILURE
+    assert engine.failure is not None
+    assert engine.failure.reason == reason
+
+
+def test_a_condition_does_not_yield() -> None:
+    def sense() -> Iterator[bool]:
+        yield True
+
+    with pytest.raises(EngineError, match="it has to return its answer"):
+        Engine(Tree(SENSE), lambda _: LeafBinding(sense, condition=True), clock=Clock())
+
+
+def test_an_action_yields_no_end() -> None:
+    closed = list[str]()
+
+    def act() -> Iterator[int]:
+        try:
+            yield FAILURE
+        finally:
+            closed.append("act")
+
+    engine = Engine(Tree(ACT), lambda _: LeafBinding(act), clock=Clock())
+    assert (engine.tick(), closed) == (FAILURE, ["act"])
+    assert engine.failure is not None
+    assert engine.failure.reason == "it yielded False: to end, return that; a yield says that it runs"

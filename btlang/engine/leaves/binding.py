@@ -7,7 +7,14 @@ from functools import partial
 from weakref import WeakKeyDictionary
 
 from btlang.engine.instance import NodeInstance, blackboard_key
-from btlang.engine.leaves.callables import KEPT, GeneratorLeaf, class_leaf, function_leaf, resumable_leaf
+from btlang.engine.leaves.callables import (
+    KEPT,
+    GeneratorLeaf,
+    answering,
+    class_leaf,
+    function_leaf,
+    resumable_leaf,
+)
 from btlang.engine.leaves.leaf import LeafBinding, LeafSignature, describe_exception
 
 TYPE_CHECKING = False
@@ -43,6 +50,8 @@ def bind_leaf(instance: NodeInstance, signature: LeafSignature) -> Compiled:
         signature.calls[key] = _find_call(instance, signature)
     call, stored, given = signature.calls[key]
     if kind == "generator":
+        if binding.condition:
+            raise instance.error(f"{instance.node.id} is a condition: it has to return its answer, and can't yield")
         if KEPT in given:
             return resumable_leaf(instance, call, stored)
         generator = GeneratorLeaf(instance, call, stored)
@@ -73,7 +82,14 @@ def _find_call(instance: NodeInstance, signature: LeafSignature) -> tuple[Callab
     for name in given:
         if name not in beside and name not in _OWN.get(signature.kind, ()):
             constants[name] = instance.service(name)
-    return partial(binding.call, **constants) if constants else binding.call, stored, given
+    call = partial(binding.call, **constants) if constants else binding.call
+    is_asked = binding.condition and signature.kind == "function"
+    return answering(call) if is_asked and not _promises_truth(binding.call) else call, stored, given
+
+
+def _promises_truth(call: Callable[..., Any]) -> bool:
+    """Whether a function says that it returns a truth, so that what it returns needn't be looked at each time."""
+    return "bool" in str(getattr(call, "__annotations__", {}).get("return", ""))
 
 
 def _arguments(instance: NodeInstance, ports: dict[str, str], binding: LeafBinding) -> tuple[dict[str, Any], Stored]:

@@ -97,8 +97,12 @@ class GeneratorLeaf:
                 if interrupts or self.trace is not None:
                     _begin(interrupts, self.trace)
                 self.generator = self.call() if values is None else self.call(**values)
-            next(self.generator)
-            return RUNNING
+            given = next(self.generator)
+            if given is None or given == RUNNING:
+                return RUNNING
+            running, self.generator = self.generator, None
+            running.close()
+            status = self.instance.cannot_know(f"it yielded {given!r}: to end, return that; a yield says that it runs")
         except StopIteration as stop:
             self.generator = None
             status = status_of(self.instance, stop.value)
@@ -236,6 +240,20 @@ def _is_question(instance: NodeInstance, problem: ActionFailed) -> bool:
     """
     signature = instance.state.signatures[instance.node.id]
     return signature.binding.condition or (isinstance(problem, Unknown) and signature.kind == "function")
+
+
+def answering(call: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a condition that raises Unknown where what it returns is no answer: nothing, or a number."""
+
+    def ask(**given: Any) -> Any:
+        answer = call(**given)
+        if answer is None:
+            raise Unknown("it returned nothing, and a condition has to return True or False")
+        if type(answer) is int:
+            raise Unknown(f"it returned {answer}, which is no answer: return True or False, as in bool(...)")
+        return answer
+
+    return ask
 
 
 def status_of(instance: NodeInstance, result: object) -> int:
