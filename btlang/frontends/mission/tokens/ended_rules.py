@@ -33,7 +33,7 @@ from btlang.vocabulary.value_type import PLACE
 
 _EXAMPLE = "it is after 6 pm"
 _HEADS = frozenset(("every", "every_day", "at", "delay"))
-_OPEN, GO = "OpenZone", "GoTo"
+_OPEN, GO, _TIME_OF_DAY = "OpenZone", "GoTo", "TimeOfDay"
 _NOT_DONE = "a definition is done once, and this holds all the time"
 _IN_THE_MISSION = "Write it as a sentence of the mission."
 _ENDS = frozenset(("newline", "semi", "stop", "dedent", "close"))
@@ -63,6 +63,9 @@ def with_ends(tokens: list[Token], vocabulary: Lexicon, span: Callable[[int, int
         begins = _begins(tokens, at)
         is_next = until.kind in WAITING and _is_next(tokens, at)
         constraint = constraint_of(tokens[at]) if (begins or is_next) and until.kind in _ENDING else None
+        if constraint is not None and constraint.kind == "keep out" and until.kind == "until_time":
+            tokens[at + 1 : at + 2] = _when_it_is(until, vocabulary)
+            until = tokens[at + 1]
         if constraint is not None and constraint.kind == "keep in" and until.kind in WAITING:
             _wait(tokens, at, vocabulary)
         elif constraint is not None and until.kind != "until":
@@ -288,10 +291,26 @@ def _condition_end(tokens: list[Token], at: int) -> tuple[int, int]:
     return at, at
 
 
+def _when_it_is(until: Token, vocabulary: Lexicon) -> list[Token]:
+    """Return `until 6 pm` as the condition that it is so late, which may also be so at once."""
+    entry = vocabulary.entry(_TIME_OF_DAY)
+    if entry is None or not isinstance(until.value, str):
+        return [until]
+    asked = Called(entry, (("above", until.value),))
+    return [Token("until", until.start, until.end), Token("condition", until.start, until.end, asked)]
+
+
 def _open_again(tokens: list[Token], at: int, opening: Entry) -> None:
     until, command = tokens[at + 1], _opened(tokens[at], opening)
     last, behind = _condition_end(tokens, at + 2)
-    if behind > last:  # `avoid the hall until bumped, then wave`
+    further = behind if behind > last else run_end(tokens, last, STATEMENT_ENDS | JOINTS)
+    if any(token.kind == "then" for token in tokens[last:further]):  # `avoid the hall until 6 pm, then go to the hall`
+        here = tokens[last].start
+        waits = [Token("then", until.start, until.start), Token("wait_until", until.start, until.end)]
+        opens = [Token("then", here, here), Token("command", here, here, command), Token("then", here, here)]
+        tokens[at + 1 : further] = [*waits, *tokens[at + 2 : last], *opens]
+        return
+    if behind > last:  # `avoid the hall until bumped, wave`
         tokens[last:behind] = [Token("semi", tokens[last].start, tokens[last].end)]
     end = tokens[last - 1].end
     tokens[last:last] = [Token("comma", end, end), Token("command", end, end, command)]
