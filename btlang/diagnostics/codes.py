@@ -207,7 +207,7 @@ _ALL = (
     Code("BT167", "'{words}' doesn't say how often: this doesn't fail, so it would be done each time.", "Write: {fixed}"),
     Code("BT168", "It isn't clear whether '{words}' is about the first command or about what is done if that fails.",
          "Say what is done if it works first, for example: {example}"),
-    Code("BT169", "'{words}' waits until tomorrow: what comes before ends at {ended}.", "{advice}", "warning", "next day"),
+    Code("BT169", "'{words}' waits until tomorrow: what comes before {ended}.", "{advice}", "warning", "next day"),
     Code("BT170", "'{words}' starts again each time it has ended.",
          "To keep that, write: {again}\nTo do it once, write: {once}", "warning", "starts again"),
     Code("BT171", "All that follows waits for '{condition}', too.",

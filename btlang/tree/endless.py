@@ -10,6 +10,7 @@ from collections.abc import Sequence
 
 from btlang.text.source import Span
 from btlang.tree import ast
+from btlang.tree.answers import asks
 from btlang.tree.sums import COMPARED, COUNTING
 from btlang.tree.visit import fold
 
@@ -58,7 +59,7 @@ def _join_pair(before: Sequence[ast.Ast], item: ast.Ast) -> tuple[int, list[ast.
         stop, behind = _split(item.body)
         if _is_stop(stop) and item.otherwise is None:
             return at, [ast.StopWhen(item.condition, rounds, span), *behind]
-        if _mentions(item.condition, (COMPARED,)) and _mentions(rounds, COUNTING):
+        if asks(item.condition, (COMPARED,)) and asks(rounds, COUNTING):
             return at, [_with_last(rounds, item, span)]
     return len(before), [item]
 
@@ -100,10 +101,6 @@ def _is_endless(node: ast.Ast) -> bool:
 
 def _is_stop(node: ast.Ast | None) -> bool:
     return isinstance(node, ast.Phrase) and node.entry.id == _STOP
-
-
-def _mentions(node: ast.Ast, ids: Sequence[str] | frozenset[str]) -> bool:
-    return any(isinstance(each, ast.Phrase) and each.entry.id in ids for each in ast.parents_first(node))
 
 
 def _between(left: ast.Ast, right: ast.Ast) -> str:

@@ -13,6 +13,8 @@ from btlang.support.record import Record
 from btlang.text.source import Source
 from btlang.text.words import split
 from btlang.tree import ast
+from btlang.tree.answers import asks
+from btlang.tree.sums import COMPARED, COUNTING
 from btlang.tree.visit import fold
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import ALL, Choice, choice_of
@@ -255,11 +257,19 @@ def _goes_along(chain: ast.Chain, first: int, last: int, choice: Choice) -> int:
     goes = isinstance(node, ast.Phrase) and _TRAVELS in node.entry.needs
     if choice.type in (PLACE, PERSON) and goes:
         tells = isinstance(node, ast.Phrase) and any(slot.type == TEXT for slot in node.entry.slots)
-        while last + 1 < len(chain.items) and _is_joined(chain, last) and not _travels(chain.items[last + 1]):
+        while last + 1 < len(chain.items) and _is_joined(chain, last) and _goes_with(chain, last):
             if tells and isinstance(chain.items[last + 1], ast.Wait):
                 break  # `tell everyone "Bye", wait 1 min and dock`
             last += 1
     return last
+
+
+def _goes_with(chain: ast.Chain, at: int) -> bool:
+    """Whether the part behind one leads nowhere, or depends on what is counted in that one."""
+    before, item = chain.items[at : at + 2]
+    if isinstance(item, ast.If) and asks(item.condition, (COMPARED,)) and asks(before, COUNTING):
+        return True
+    return not _travels(item)
 
 
 def _is_joined(chain: ast.Chain, at: int) -> bool:

@@ -92,12 +92,15 @@ def find_next_day(compilation: Compilation) -> Iterator[Diagnostic]:
         for node in nodes:
             if type(node) is not ast.Chain or node.operator != "sequence":
                 continue
-            ended = ""
+            ended = begun = ""
             for item in node.items:
                 wait = waits.get(id(item))
                 if wait is not None and ended:
                     is_first = item is wait or (isinstance(item, ast.Chain) and item.items[0] is wait)
                     yield from _next_day(wait, ended, is_first, compilation.vocabulary)
+                elif wait is not None and begun:
+                    yield from _morning(wait, begun)
+                begun = begun if wait is None else wait.time
                 if isinstance(item, ast.Whenever):
                     continue
                 end = ends.get(id(item))
@@ -112,8 +115,23 @@ def _next_day(wait: ast.WaitTime, ended: str, is_first: bool, vocabulary: Lexico
     words = vocabulary.word("whenever"), *vocabulary.asking["time_is"], *vocabulary.asking["hours"][:1], over
     advice = "Leave it out." if over == ended else f"To do it meanwhile, write: {' '.join(words)}, ..."
     if over:
-        end = "that time" if over == ended else ended
+        end = f"ends at {'that time' if over == ended else ended}"
         yield diagnostic("BT169", wait.span, words=wait.span.text, ended=end, advice=advice)
+
+
+def _morning(wait: ast.WaitTime, begun: str) -> Iterator[Diagnostic]:
+    """Report `at 2 pm, A, then B at 2:10`: a time before noon, behind one in the afternoon that it may go on from."""
+    try:
+        first, then = seconds_of(begun), seconds_of(wait.time)
+    except ValueError:  # a value of the mission, or several times
+        return
+    hour, _, minute = wait.time.partition(":")
+    words = wait.span.text
+    is_bare = words.lower().split()[-1] == f"{int(hour)}:{minute}" and not words.split()[-1].startswith("0")
+    if is_bare and then < first < then + _HALF_DAY:
+        later = f"{int(hour) + 12}:{minute}"
+        advice = f"If it is meant in the afternoon, write: {later}"
+        yield diagnostic("BT169", wait.span, words=words, ended=f"is done at {begun}", advice=advice)
 
 
 def _is_over(time: str, ended: str) -> bool:
