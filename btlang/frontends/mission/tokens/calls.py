@@ -18,7 +18,7 @@ from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.references import ALL, NAMES, SELF, Choice, choice_of, free_key, keys_in, point_ports, renamed
 from btlang.vocabulary.trie import TrieNode, longest
-from btlang.vocabulary.value_type import OBJECT, PERSON, PLACE, WORLD, ZONE
+from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE, WORLD, ZONE
 from btlang.vocabulary.values import key_of
 from btlang.vocabulary.word_tree import find
 
@@ -274,6 +274,8 @@ class Calls:
             if choice is not None:
                 self._context.met[choice.key] = choice.how == ALL
             self._context.latest[value.type] = f"{{{choice.key}}}" if choice is not None else latest
+            if value.type in (PLACE, ZONE) and latest in self._vocabulary.values.listed(DOOR):
+                self._context.latest[DOOR] = latest  # `if somebody is at the front door, open it`
             if value.type == PLACE and latest in self._vocabulary.values.listed(ZONE):
                 self._context.latest[ZONE] = latest  # `go to the lab, then leave it`
             if value.type == ZONE and latest in self._vocabulary.values.listed(PLACE):

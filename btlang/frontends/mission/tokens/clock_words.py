@@ -45,7 +45,7 @@ class ClockWords(SentenceReader):
                 break
             found.append(more)
         is_front = not tokens or tokens[-1].kind in BEGINS
-        goes_on = is_front and text.words[found[-1].last] == ","
+        goes_on = is_front and self._begins_there(found[-1].last)
         if len(found) < 2 or not (goes_on or self._is_end(found[-1].last)):
             return 0
         times = [time for each in found for time in each.values[0].texts]
