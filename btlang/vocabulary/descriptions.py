@@ -15,6 +15,7 @@ from btlang.text.words import Words
 from btlang.vocabulary.adjectives import Adjectives
 from btlang.vocabulary.pattern import ways
 from btlang.vocabulary.references import ADJECTIVES, ALL, DENIED, LATEST, QUALITIES, RELATIONS, SECOND, SELF, Parts
+from btlang.vocabulary.value_type import PERSON, PLACE
 from btlang.vocabulary.word_tree import WordTree, find, tree_of
 
 TYPE_CHECKING = False
@@ -168,6 +169,9 @@ class Modifiers:
         if to_self is not None and kind in RELATIONS[to_self[0]] and depth == 1:
             yield ((to_self[0], SELF),), to_self[1]
         found = find(self._relations, text.words, at)
+        place = find(names(PLACE), text.words, found[1]) if found is not None and kind == PERSON else None
+        if found is not None and found[0] == "on" and place is not None:
+            yield (("at", place[0]),), place[1]  # `the nurse on ward 3`
         if found is not None and kind in RELATIONS[found[0]]:
             for value, end in self._thing(text, found[1], names, depth):
                 if found[0] != "between":
