@@ -17,10 +17,12 @@ _NOT_IN_NAMES = frozenset((",", ";", ":", "(", ")", END_OF_TEXT))
 
 
 class Antecedents:
-    """The nouns before a word. `ones` are the words in their place, `names` gives the words of the names of a type."""
+    """The nouns before a word. `ones` are the words in their place, `definite` is the article of what was spoken of,
+    `names` gives the words of the names of a type.
+    """
 
-    def __init__(self, ones: Set[str], names: Callable[[str], WordTree], likenesses: Likenesses) -> None:
-        self._ones, self._names, self._likenesses = ones, names, likenesses
+    def __init__(self, ones: Set[str], definite: str, names: Callable[[str], WordTree], likenesses: Likenesses) -> None:
+        self._ones, self._definite, self._names, self._likenesses = ones, definite, names, likenesses
 
     def resolved(self, found: tuple[Description, int], text: Words, at: int) -> tuple[Description, int] | None:
         """What is described, with the kind of the thing before where `one` is its head; None where nothing is meant.
@@ -46,6 +48,15 @@ class Antecedents:
                 found = find(self._names(kind), words, 0)
                 return (found[0], end + 1) if found is not None and found[1] == len(words) - 1 else None
         return None
+
+    def is_same(self, text: Words, at: int, latest: str) -> bool:
+        """Whether a noun with a definite article may be that of the place spoken of before: `the room` for the lab.
+
+        Of what is chosen in rounds it isn't known which it is: the noun may be that of any.
+        """
+        article = text.articles.get(at)
+        is_definite = article is not None and text.source.text[slice(*article)].lower() == self._definite
+        return is_definite and (latest[:1] == "{" or text.words[at] == self._likenesses.kind_of(PLACE, latest))
 
     def _before(self, kind: str, text: Words, at: int) -> tuple[str, str]:
         """The kind, and the last word, of the latest name or noun of a type before a word in its statement."""

@@ -116,6 +116,10 @@ class ReadingContext:
             if named is None and not self.values.ones.isdisjoint(text.distinct):
                 named = self.values.antecedents.named(kind, text, at)
             named = named or self.values.shared_heads.behind_last(kind, text, at) or self._said_again(kind, text, at)
+            latest = self.latest.get(kind, "") if kind == PLACE and named is None and chosen is not None else ""
+            is_set = kind in self.listed or self.met.get(latest[1:-1], False)
+            if (is_set or latest[:1] not in ("", "{")) and self.values.antecedents.is_same(text, at, latest):
+                return None if is_set else (latest, at + 1)  # `go to A and B. If nobody is in the room`
             return named if named is not None and (chosen is None or named[1] > chosen[1]) else chosen
         return chosen if found is None or (chosen is not None and chosen[1] > found[1]) else found
 
