@@ -17,7 +17,7 @@ from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import SlotValue
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.references import ALL
-from btlang.vocabulary.value_type import PERSON, ValueType
+from btlang.vocabulary.value_type import PERSON, PLACE, ValueType
 
 _MOST_NAMES = 12  # that a message lists
 KIND_NAMES = {"kinds": "kind"}
@@ -60,6 +60,17 @@ def explained(text: Words, value: SlotValue, vocabulary: Lexicon, context: Readi
 def _misfit(text: Words, value: SlotValue, reason: str, advice: str) -> Diagnostic:
     span = text.span(value.first, value.last)
     return diagnostic("BT152", span, words=span.text, reason=reason, advice=advice)
+
+
+def unknown_place(text: Words, at: int, end: int, vocabulary: Lexicon) -> Diagnostic | None:
+    """BT013 for `from ward 3 to the lab` where another word could stand than a place, such as a day: it's a place."""
+    ways = vocabulary.values.role_words.introducing.values()
+    introducing = {words[-1] for each in ways for words in each} | set(vocabulary.asking["located"])
+    begin = at + (text.words[at] in introducing)
+    if begin == at and text.words[at - 1] not in introducing:
+        return None
+    last = next((i for i in range(begin + 1, end) if text.words[i] in introducing), max(end, begin + 1))
+    return unnamed(text.span(begin, last), [vocabulary.types[PLACE]], "", vocabulary)
 
 
 def unnamed(span: Span, kinds: Sequence[ValueType], understood: str, vocabulary: Lexicon) -> Diagnostic:

@@ -13,7 +13,7 @@ from btlang.frontends.mission.explanations.fragments import explain_fragment
 from btlang.frontends.mission.explanations.lacking import not_two, unreferred, untold, value_example
 from btlang.frontends.mission.explanations.misfits import Misfit, misfits_of
 from btlang.frontends.mission.explanations.mission_values import unknown_value
-from btlang.frontends.mission.explanations.nameless import KIND_NAMES, near_names, unnamed
+from btlang.frontends.mission.explanations.nameless import KIND_NAMES, near_names, unknown_place, unnamed
 from btlang.frontends.mission.explanations.roles import explain_role
 from btlang.frontends.mission.explanations.spelling_rule import is_respelling
 from btlang.frontends.mission.explanations.times import explain_time, without_hour
@@ -176,7 +176,7 @@ def _misfit(
             example=value_example(named[0], vocabulary),
         )
     if named and not any(kind.name in WORLD for kind in named):
-        place = _unknown_place(text, at, end, vocabulary)
+        place = unknown_place(text, at, end, vocabulary)
         if place is not None:
             return place
     if named:
@@ -195,17 +195,6 @@ def _listed(text: Words, at: int, before: list[Token], vocabulary: Lexicon) -> V
         return None
     kind = said.entry.slot(arguments_of(said)[-1][-1][0]).type
     return vocabulary.types[kind] if kind in WORLD else None
-
-
-def _unknown_place(text: Words, at: int, end: int, vocabulary: Lexicon) -> Diagnostic | None:
-    """BT013 for `from ward 3 to the lab` where another word could stand than a place, such as a day: it's a place."""
-    ways = vocabulary.values.role_words.introducing.values()
-    introducing = {words[-1] for each in ways for words in each} | set(vocabulary.asking["located"])
-    begin = at + (text.words[at] in introducing)
-    if begin == at and text.words[at - 1] not in introducing:
-        return None
-    last = next((i for i in range(begin + 1, end) if text.words[i] in introducing), max(end, begin + 1))
-    return unnamed(text.span(begin, last), [vocabulary.types[PLACE]], "", vocabulary)
 
 
 def _wrong_type(span: Span, known: Known, wanted: str) -> Diagnostic:
