@@ -25,7 +25,7 @@ def with_ends(mission: ast.Program) -> ast.Program:
     """Return the mission with what belongs to rounds without an end where it is done."""
 
     def body(root: ast.Ast) -> ast.Ast:
-        return fold(root, ast.parts, _join) if any(map(_is_endless, ast.parents_first(root))) else root
+        return fold(root, ast.parts, _join) if any(map(_never_ends_before, ast.parents_first(root))) else root
 
     def program(part: ast.Program) -> ast.Program:
         return ast.with_bodies(part, body, program)
@@ -36,7 +36,7 @@ def with_ends(mission: ast.Program) -> ast.Program:
 def _join(node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
     """Return a node with its parts, a sequence with what belongs to endless rounds of it in these."""
     whole = ast.with_parts(node, done)
-    if not isinstance(whole, ast.Chain) or whole.operator != "sequence" or not any(map(_is_endless, whole.items)):
+    if not isinstance(whole, ast.Chain) or not _never_ends_before(whole):
         return whole
     made: list[ast.Ast] = []
     for item in whole.items:
@@ -92,6 +92,11 @@ def _with_last(rounds: Any, item: ast.Ast, span: Span) -> ast.Ast:
     parts = [inner if each is part else each for each in ast.parts(rounds)]
     made: ast.Ast = ast.with_parts(rounds, parts).replace(span=span)
     return made
+
+
+def _never_ends_before(node: ast.Ast) -> bool:
+    """Whether something stands behind rounds without an end."""
+    return isinstance(node, ast.Chain) and node.operator == "sequence" and any(map(_is_endless, node.items[:-1]))
 
 
 def _is_endless(node: ast.Ast) -> bool:

@@ -124,7 +124,8 @@ def _choice_of(node: ast.Ast) -> Choice | None:
     """Return what the robot chooses for a command."""
     if not isinstance(node, ast.Phrase | ast.Name):
         return None
-    return next((choice for _, text in node.arguments if (choice := choice_of(text)) is not None), None)
+    choices = (choice_of(text) for _, text in node.arguments if text[:1] == "{")
+    return next((choice for choice in choices if choice is not None), None)
 
 
 def _add_loops(root: ast.Ast, vocabulary: Lexicon) -> ast.Ast:

@@ -226,10 +226,13 @@ def find_unused_answers(compilation: Compilation) -> Iterator[Diagnostic]:
             continue  # as nearly always
         repeated = {id(each) for node in nodes if isinstance(node, _LOOPS) for each in ast.parents_first(node)}
         used = max((each.span.start for each in phrases if each.entry.id in ABOUT_ANSWERS), default=-1)
+        last = {id(each) for each in asked if each.span.start > used}
+        if not last:
+            continue
         for node in nodes:
             if not isinstance(node, ast.If) or not asks(node.condition) or id(node) in repeated:
                 continue
-            for again in (each for each in ast.parents_first(node) if each in asked and each.span.start > used):
+            for again in (each for each in ast.parents_first(node) if id(each) in last):
                 before = (each.arguments for each in asked if each.span.start < again.span.start)
                 if isinstance(again, ast.Phrase) and again.arguments in before:
                     yield diagnostic("BT147", again.span, words=again.span.text, example=_KEEP_ASKING)

@@ -95,7 +95,7 @@ def _end_whole_rules(tokens: list[Token], vocabulary: Lexicon, span: Callable[[i
     The same for `avoid the hall while C, and if D, A`.
     """
     for at, token in enumerate(tokens):
-        if not _keeps_out(token) or not _begins(tokens, at):
+        if not _begins(tokens, at) or not _keeps_out(token):
             continue
         is_while = tokens[at + 1 : at + 2] and tokens[at + 1].kind in _WHILE and begins_condition(tokens, at + 2)
         last, behind = _condition_end(tokens, at + 2) if is_while else (at + 1, run_end(tokens, at + 1, JOINTS))

@@ -152,10 +152,11 @@ class GoingOn(SentenceReader):
     def turns(self, otherwise: Token) -> None:
         """`A. If that fails, B. Otherwise C`: C is done if A works; see `turn_branches`. Not so in a bracket of B."""
         kinds = self._statement(len(self._tokens) - 1)[1]
-        form = next((at for at in reversed(range(len(self._tokens))) if self._tokens[at].value == FAILS), 0)
+        if FAILS not in kinds or WORKS in kinds or not kinds.isdisjoint(FORMS):
+            return
+        form = next(at for at in reversed(range(len(self._tokens))) if self._tokens[at].value == FAILS)
         brackets = [token.kind for token in self._tokens[form:] if token.kind in ("open", "close")]
-        is_beside = brackets.count("open") == brackets.count("close")
-        if FAILS in kinds and WORKS not in kinds and kinds.isdisjoint(FORMS) and is_beside:
+        if brackets.count("open") == brackets.count("close"):
             otherwise.role = TURNED
 
     def _ask_alone(self) -> None:

@@ -183,14 +183,16 @@ def with_stays(tokens: list[Token], source: Source, standing: Container[str]) ->
     if not any(token.kind in RULES for token in tokens):
         return  # as nearly always
     depth, outside = 0, list[int]()
+    begins = True
     for at, token in enumerate(tokens):
-        value = token.value
-        if not token.role and drives(value) and first_word(token, source) in standing and names_place(value):
-            token.role = STAYS
-        depth += (token.kind == "indent") - (token.kind == "dedent")
-        begins = at == 0 or tokens[at - 1].kind in STATEMENT_ENDS
-        if depth == 0 and begins and token.kind not in ("define", *STATEMENT_ENDS):
+        kind, value = token.kind, token.value
+        if kind == "command" and not token.role and drives(value) and first_word(token, source) in standing:
+            token.role = STAYS if names_place(value) else ""
+        depth += (kind == "indent") - (kind == "dedent")
+        ends = kind in STATEMENT_ENDS
+        if depth == 0 and begins and not ends and kind != "define":
             outside.append(at)
+        begins = ends
     commands = [at for at in outside if tokens[at].kind not in RULES]
     if len(commands) == len(outside) or not commands:
         return
@@ -231,11 +233,11 @@ def find_unclear_things(tokens: Sequence[Token], vocabulary: Lexicon, text: Word
             asked = thing
         if token.kind != "command" or not thing or not takes(token):
             continue
-        words = text.source.text[token.start : token.end].lower().split()
-        pronoun = next((word for word in words if word in pronouns), "")
-        if pronoun and carried not in ("", asked) and thing == asked:
+        if carried not in ("", asked) and thing == asked:
             span = Span(text.source, token.start, token.end)
-            yield diagnostic("BT151", span, words=pronoun, one=carried, other=asked)
+            pronoun = next((word for word in span.text.lower().split() if word in pronouns), "")
+            if pronoun:
+                yield diagnostic("BT151", span, words=pronoun, one=carried, other=asked)
         carried = "" if _is_delivered(value) else thing
 
 

@@ -181,8 +181,10 @@ class WordReader:
 
     def _without_measure(self, match: Match | None, at: int) -> Match | None:
         """The same without a text that begins how long it may take: `welcome Bob with a limit of 5 s`."""
-        text = match.values[-1] if match is not None and match.values else None
-        if match is None or text is None or text.type != TEXT or not (match.last == text.last == text.first + 1):
+        if match is None or not match.values or match.values[-1].type != TEXT:
+            return match  # as nearly always
+        text = match.values[-1]
+        if not match.last == text.last == text.first + 1:
             return match
         other = longest(self._vocabulary.trie, self._text, text.first - 1, self._context)
         if other is None or other.meaning.entry is not None or other.last <= match.last:
