@@ -5,8 +5,6 @@ from __future__ import annotations
 import re
 from bisect import bisect_left
 from collections.abc import Iterable
-from functools import lru_cache
-from itertools import takewhile
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.explanations.fragments import explain_fragment
@@ -14,6 +12,7 @@ from btlang.frontends.mission.explanations.lacking import not_two, unreferred, u
 from btlang.frontends.mission.explanations.misfits import Misfit, misfits_of
 from btlang.frontends.mission.explanations.mission_values import unknown_value
 from btlang.frontends.mission.explanations.nameless import KIND_NAMES, near_names, unknown_place, unnamed
+from btlang.frontends.mission.explanations.nearest_phrases import nearest_phrases
 from btlang.frontends.mission.explanations.roles import explain_role
 from btlang.frontends.mission.explanations.spelling_rule import is_respelling
 from btlang.frontends.mission.explanations.times import explain_time, without_hour
@@ -31,9 +30,8 @@ from btlang.frontends.mission.token import (
 )
 from btlang.text.formatting import joined
 from btlang.text.source import Span
-from btlang.text.spelling import nearest, nearest_start
+from btlang.text.spelling import nearest
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
-from btlang.vocabulary.language_tables import NOT_ALONE
 from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
 from btlang.vocabulary.node_words import BEHIND_ID, near_commands, role_end
 from btlang.vocabulary.pattern import forms, spelled
@@ -107,14 +105,6 @@ def _journey_before(before: list[Token]) -> bool:
     """Whether the latest command drives somewhere: `go to the lab, then to the attic`."""
     said = next((token for token in reversed(before) if token.kind == "command"), None)
     return said is not None and drives(said.value)
-
-
-_NOT_OFFERED = NOT_ALONE | {
-    *NODE_ROLES, "never", "called", "with", "giving", "node", "newline", "character", "main_name", "given",
-    "needs_world", "needs_words", "set_to", "by", "add_to", "subtract_from", "remember_as", "each_in",
-    "all_names", "except", "may", "or_stay",
-}  # fmt: skip
-"""Roles that say nothing alone or are for texts that programs write: what is like their words was hardly meant so."""
 
 
 def _misfit(
@@ -297,7 +287,7 @@ def _unknown_phrase(
     if listed is not None:
         return unnamed(span, [listed], "", vocabulary)
     inside = [(name, end - at) for name in names if f" {name} " in written]
-    near = dict(inside) | dict(_nearest_phrases(tuple(text.words[at:end]), vocabulary, tuple(names))) | dict(inside)
+    near = dict(inside) | dict(nearest_phrases(tuple(text.words[at:end]), vocabulary, tuple(names))) | dict(inside)
     if not near:  # a value alone, in a list or where the other words are left out: `if Allice or Bob is near`
         values = [name for kind in WORLD if kind in vocabulary.types for name in vocabulary.values.said_names(kind)]
         word = text.words[at]
@@ -352,41 +342,6 @@ def example_commands(vocabulary: Lexicon) -> list[str]:
 def nearest_known(words: Iterable[str]) -> str:
     """The advice that lists what was probably meant."""
     return "Similar: " + ", ".join(re.sub(r"\{\w+\}", "...", phrase) for phrase in words)
-
-
-@lru_cache(maxsize=4)  # a text full of unknown words asks for them at each
-def _phrases(vocabulary: Lexicon) -> dict[str, tuple[str, list[str]]]:
-    """What can be said, as people would write it: its id, and the words up to the first slot; each such start once."""
-    entries = [(entry.id, entry.phrases) for entries in vocabulary.entries.values() for entry in entries]
-    known: dict[tuple[str, ...], tuple[str, str]] = {}
-    roles = ((role, patterns) for role, patterns in vocabulary.roles.items() if role not in _NOT_OFFERED)
-    for id, patterns in (*entries, *roles):
-        for form in (form for pattern in patterns for form in reversed(forms(pattern, vocabulary.articles))):
-            start = tuple(str(part) for part in takewhile(lambda part: isinstance(part, str), form))
-            known.setdefault(start, (spelled(form), id))
-    return {written: (id, list(start)) for start, (written, id) in known.items() if start}
-
-
-@lru_cache(maxsize=256)  # mistakes repeat
-def _nearest_phrases(
-    all_written: tuple[str, ...], vocabulary: Lexicon, names: tuple[str, ...]
-) -> list[tuple[str, int]]:
-    """Phrases and names that may have been meant, each with the number of words that stand for it; one of each id."""
-    phrases = {name: (name, name.split()) for name in names} | _phrases(vocabulary)
-    written = list(takewhile(lambda word: word[0].isalpha(), all_written))  # a value stands for no word
-    found = nearest_start(written, {key: start for key, (_, start) in phrases.items()})
-    near = [key for key in found if _begins_like(written, phrases[key][1], vocabulary)]
-    best = {phrases[key][0]: key for key in reversed(near)}
-    return [(key, len(phrases[key][1])) for key in near if best[phrases[key][0]] == key][:3]
-
-
-def _begins_like(written: list[str], start: list[str], vocabulary: Lexicon) -> bool:
-    """Whether the first words are the same but for spelling: `lookaround` and `look around`, too."""
-    if not (written and start):
-        return False
-    first, joined = written[0], "".join(start)
-    pairs = (first, start[0]), (first, joined), ("".join(written), joined)
-    return any(one == other or is_respelling(one, other, vocabulary) for one, other in pairs)
 
 
 def _article(word: str) -> str:
