@@ -146,9 +146,10 @@ class Answers(AddressedTexts):
 
         `ask Bob "Tea?". If he says yes, go to Alice. If he says no, wave at him`
         """
-        if self._question_before() is None or not self._calls.speaks_of_people:
+        question = next((token for token in reversed(self._tokens) if is_question(token)), None)
+        if question is None or not self._calls.speaks_of_people:
             return
-        asked = self._asked_person() or self._met
+        asked = self._asked_person() or (self._met if self._question_before() is not None else _person_in(question))
         choice = choice_of(asked)
         if asked:
             self._context.latest[PERSON] = asked if choice is None else f"{{{choice.key}}}"
@@ -281,3 +282,11 @@ class Answers(AddressedTexts):
                 return None
             last = run_start(tokens, begin, JOINTS) if begin > first else first
         return None
+
+
+def _person_in(question: Token) -> str:
+    """Return the one person whom a question names, "" for none."""
+    value = question.value
+    if not isinstance(value, Called):
+        return ""
+    return next((text for name, text in value.arguments if value.entry.slot(name).type == PERSON), "")

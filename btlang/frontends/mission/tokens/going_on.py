@@ -235,7 +235,7 @@ class GoingOn(SentenceReader):
         start, kinds = self._statement(len(self._tokens))
         at = asked_about(self._tokens, len(self._tokens), searches)
         at = at if at is not None else self._first_about(start, words)
-        if at is None or not BRANCHES.isdisjoint(kinds):
+        if at is None or not FORMS.isdisjoint(kinds):
             if at is not None and at < start and role == FAILS:
                 self._unclear(words)  # `look for the book. If bumped, wave. If you can't find it, nod`
             return role

@@ -6,7 +6,7 @@ from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import IN_CONDITIONS, JOINTS, STATEMENT_ENDS, Called, Listed, Token, run_start
 from btlang.frontends.mission.tokens.going_on import GoingOn
 from btlang.frontends.mission.tokens.sentence_reader import hears, searches
-from btlang.frontends.mission.tokens.settling import FAILS, MEASURES, STAYS, asked_about, lasting
+from btlang.frontends.mission.tokens.settling import FAILS, MEASURES, STAYS, asked_about, lasting, misses
 from btlang.frontends.mission.tokens.silent_words import BEGINS
 from btlang.text.source import Span
 from btlang.vocabulary.match import Match
@@ -37,6 +37,12 @@ class Limits(GoingOn):
         tokens.insert(at + 1, Token("count", count.start, count.end, count.value))
         tokens.insert(at, Token("retry", tokens[at].start, tokens[at].start))
         return tries.last
+
+    def _misses_before(self, at: int, asked: Token) -> int | None:
+        """The place of the command before one that takes the same thing, and fails where it isn't there."""
+        if self._tokens[at].kind != "command" or not misses(self._tokens[at], asked):
+            return None
+        return asked_about(self._tokens, at, lambda token: token.kind == "command" and misses(token, asked))
 
     def _ask_later(self) -> None:
         """`if nobody is near five minutes later, A`: it waits, and asks then."""

@@ -6,8 +6,6 @@ The command fails where the condition doesn't hold. So its denial means that the
 
 from __future__ import annotations
 
-from collections.abc import Container
-
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import (
     JOINTS,
@@ -29,6 +27,8 @@ from btlang.frontends.mission.tokens.settling import (
     WORKS,
     asked_about,
     is_about,
+    is_presence,
+    is_somebody_else,
     misses,
     named_by,
     names_of,
@@ -45,7 +45,7 @@ from btlang.vocabulary.word_tree import find
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.frontends.mission.token import Value
+    pass
 
 _ASKING = frozenset(("if", "as_soon_as", "once"))
 _HOLDS, _WHERE = "Holding", ("PersonIsAt", "ObjectIsAt")
@@ -75,7 +75,7 @@ class Outcomes(Limits):
         if role == ONE_FAILS and not self._in_round():
             words = self._text.span(at, match.last - (self._text.words[match.last - 1] == ","))
             self._calls.problems.append(diagnostic("BT067", words, words=words.text))
-        if role == "delay":
+        if role in ("delay", "at"):
             self._ask_later()
         if role in (FAILS, WORKS) and len(tokens) > 2:
             last = run_start(tokens, len(tokens) - 1, JOINTS | STATEMENT_ENDS | MEASURES) - 1
@@ -129,6 +129,8 @@ class Outcomes(Limits):
         if denied and tokens[form].kind == "if" and tokens[form - 1].kind in ("semi", "newline"):
             waited = asked_about(tokens, form, lambda token: token.kind != "command" and self._is_settled(token, asked))
             at = asked_about(tokens, form, lambda token: self._is_settled(token, asked)) if waited is None else waited
+            while at is not None and (before := self._misses_before(at, asked)) is not None:
+                at = before  # `grab the cup from the lab and take it to the hall. If it isn't there, A`
             is_free = BRANCHES.isdisjoint(self._statement(form - 1)[1])
             may_ask = at is None or not is_free or self._may_ask_again(at, form, end)
             if at is None and is_free and self._is_event(asked):
@@ -137,6 +139,9 @@ class Outcomes(Limits):
             if at is not None and not may_ask and settle(tokens[:form], at):
                 return self._settle(at, form, asked.end, end)
         command = self._before(form)
+        somebody = self._vocabulary.negative_subjects
+        if command is not None and not denied and is_somebody_else(tokens[command], asked, somebody):
+            return end  # `count the people and tell Bob. If anybody is there, A`
         if command is None:
             if denied and tokens[form].kind == "if":
                 self._join_otherwise(form)
@@ -171,7 +176,7 @@ class Outcomes(Limits):
         if token.kind == "command":
             return _achieves(token, asked) or (misses(token, asked) and not self._is_event(asked))
         somebody = self._vocabulary.negative_subjects
-        return token.value == asked.value or all(_is_presence(each.value, somebody) for each in (token, asked))
+        return token.value == asked.value or all(is_presence(each.value, somebody) for each in (token, asked))
 
     def _settle(self, at: int, form: int, stop: int, end: int) -> int:
         """Makes words from a form up to a character, and a word, ask whether the command at a place failed."""
@@ -372,13 +377,6 @@ class Outcomes(Limits):
             while tokens and tokens[-1].kind in ("comma", "stop"):
                 tokens.pop()
             tokens += [Token("stop", form.start, form.start), Token(WORKS, form.start, form.end)]
-
-
-def _is_presence(value: Value, somebody: Container[str]) -> bool:
-    """Whether a condition is about somebody whom it doesn't name."""
-    if not isinstance(value, Called) or any(slot.type == PERSON for slot in value.entry.slots):
-        return False
-    return any(word in somebody for phrase in value.entry.phrases[:1] for word in phrase.split())
 
 
 def _has_it(search: Token, asked: Token) -> bool:

@@ -179,9 +179,13 @@ class Questions(Answers):
 
     def _how_many(self, at: int, end: int, command: Token | None = None, slot: str = "") -> int:
         """`how many people are there?`"""
-        counted = self._counted(end)
+        counted, count = self._counted(end), self._vocabulary.entry(COUNT)
         if counted is None:
             return self._say_last_count(at, end, command, slot)
+        is_over = not set(self._vocabulary.asking["counted"]).isdisjoint(self._text.words[end : counted.last])
+        if is_over and count is not None and self._has_counted():  # `say how many people you saw`
+            self._say(at, Match(Meaning("quantity", count), counted.last), command, slot)
+            return counted.last
         return self._say_count(at, counted, command, slot) if self._ends(counted.last) else 0
 
     def _say_last_count(self, at: int, end: int, command: Token | None, slot: str) -> int:

@@ -332,3 +332,18 @@ def misses(command: Token, asked: Token) -> bool:
         return False
     things = {text for name, text in condition.arguments if condition.entry.slot(name).type == OBJECT}
     return condition.entry.id in _THERE and bool(things) and things <= named_by(value)
+
+
+def is_presence(value: object, somebody: Container[str]) -> bool:
+    """Whether a condition is about somebody whom it doesn't name."""
+    if not isinstance(value, Called) or any(slot.type == PERSON for slot in value.entry.slots):
+        return False
+    return any(word in somebody for phrase in value.entry.phrases[:1] for word in phrase.split())
+
+
+def is_somebody_else(command: Token, asked: Token, somebody: Container[str]) -> bool:
+    """Whether a condition asks for anybody, and the command before it is about one person."""
+    value = command.value
+    if not isinstance(value, Called) or not is_presence(asked.value, somebody):
+        return False
+    return any(value.entry.slot(name).type == PERSON and text[:1] != "{" for name, text in value.arguments)
