@@ -18,6 +18,7 @@ from btlang.vocabulary.match import SlotValue
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.references import ALL
 from btlang.vocabulary.value_type import PERSON, PLACE, ValueType
+from btlang.vocabulary.word_tree import find
 
 _MOST_NAMES = 12  # that a message lists
 KIND_NAMES = {"kinds": "kind"}
@@ -67,7 +68,8 @@ def unknown_place(text: Words, at: int, end: int, vocabulary: Lexicon) -> Diagno
     ways = vocabulary.values.role_words.introducing.values()
     introducing = {words[-1] for each in ways for words in each} | set(vocabulary.asking["located"])
     begin = at + (text.words[at] in introducing)
-    if begin == at and text.words[at - 1] not in introducing:
+    is_known = find(vocabulary.values.names_tree(PLACE), text.words, begin) is not None
+    if is_known or (begin == at and text.words[at - 1] not in introducing):
         return None
     last = next((i for i in range(begin + 1, end) if text.words[i] in introducing), max(end, begin + 1))
     return unnamed(text.span(begin, last), [vocabulary.types[PLACE]], "", vocabulary)
