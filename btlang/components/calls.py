@@ -65,11 +65,16 @@ def pack_error(problem: BaseException) -> dict[str, Any]:
     return {"problem": failure_reason(problem), "unknown": isinstance(problem, Unknown)}
 
 
+def pack_result(result: object) -> dict[str, Any]:
+    """Return the answer for what a method returned. `Failed` stays a plain no: it is no error of a condition."""
+    return {"refusal": reason_text(result.reason)} if isinstance(result, Failed) else {"value": result}
+
+
 def value_of(answer: Mapping[str, Any]) -> Any:
     """Return the value of an answer. Raises ActionFailed, or Unknown, for one that `pack_error` has made."""
     if "problem" in answer:
         raise (Unknown if answer.get("unknown") else ActionFailed)(answer["problem"])
-    return answer.get("value")
+    return Failed(str(answer["refusal"])) if "refusal" in answer else answer.get("value")
 
 
 def _other(value: object) -> Any:
@@ -144,7 +149,7 @@ class MethodCall(RobotQuestions):
 
     def _work(self) -> None:
         try:
-            self._worker.report_end(self.number, {"value": self._result(), "stored": self._stored})
+            self._worker.report_end(self.number, {**pack_result(self._result()), "stored": self._stored})
         except BaseException as problem:
             self._worker.report_end(self.number, pack_error(problem))
 
@@ -168,8 +173,6 @@ class MethodCall(RobotQuestions):
                 result = end.value
             finally:
                 generator.close()
-        if isinstance(result, Failed):
-            raise ActionFailed(reason_text(result.reason))
         return result
 
 

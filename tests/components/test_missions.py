@@ -13,7 +13,7 @@ import pytest
 import btlang
 from btlang.components import connection
 from btlang.components.words import robot_words
-from btlang.run.events import Event, PartChanged, RobotEvent
+from btlang.run.events import Event, PartChanged, RobotEvent, Warned
 from tests.components.robots import machine, robot_file
 
 WHERE = pytest.mark.parametrize("runs", ["process", "here"])
@@ -55,6 +55,29 @@ def test_what_it_raises_is_the_reason(tmp_path: Path, runs: str) -> None:
     outcome, _ = run(robot, "brew tea")
     assert not outcome.succeeded
     assert "no water" in outcome.why()
+
+
+@WHERE
+def test_a_refusal_is_a_plain_no(tmp_path: Path, runs: str) -> None:
+    robot = robot_file(tmp_path, machine(runs=f'"{runs}"'))
+    outcome, events = run(
+        robot, "whenever the tray is full, print full\nif the tray is full, print yes otherwise print no"
+    )
+    assert outcome.succeeded, outcome.why()
+    assert (printed(events), [each for each in events if isinstance(each, Warned)]) == (["no"], [])
+    outcome, _ = run(robot, "check that the tray is full")
+    assert "it has brewed 0 of 3" in outcome.why()
+    outcome, _ = run(robot, "serve from the tray")
+    assert "the tray is empty" in outcome.why()
+
+
+@WHERE
+def test_an_answer_that_was_forgotten_is_not_known(tmp_path: Path, runs: str) -> None:
+    robot = robot_file(tmp_path, machine(runs=f'"{runs}"', parameters='{ wrong = "forget it" }'))
+    outcome, events = run(robot, "if the tray is full, print yes otherwise print no")
+    assert not outcome.succeeded
+    assert printed(events) == []
+    assert "it returned nothing" in outcome.why()
 
 
 @pytest.mark.parametrize("wrong", ["raise", "exit"])

@@ -3,6 +3,7 @@
 import os
 import time
 
+import btlang
 from btlang import Component, Parameter
 from btlang.devices.kinds import WheelSpeeds
 
@@ -44,6 +45,16 @@ class Machine(Component):
 
     def has_brewed(self):
         return self.cups > 0
+
+    def is_full(self):
+        if self.wrong == "forget it":
+            return None
+        if self.wrong == "slip":
+            return self.cups > self.capacity
+        return btlang.Failed(lambda: f"it has brewed {self.cups} of 3")
+
+    def serve(self):
+        return btlang.Failed("the tray is empty")
 
     def count(self):
         return self.cups
