@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 import btlang
+from btlang.cli import main
 from btlang.components import connection
 from btlang.components.words import robot_words
 from btlang.run.events import Event, PartChanged, RobotEvent, Warned
@@ -212,3 +213,39 @@ def test_what_cannot_be_loaded_says_why(tmp_path: Path, table: str, reason: str)
     robot = robot_file(tmp_path, f"{table}\nrestarts = 0")
     with btlang.Session(robot) as session:
         assert reason in session.connection.manager.statuses()[0].why  # type: ignore[attr-defined]
+
+
+@WHERE
+def test_no_run_starts_without_a_class(tmp_path: Path, runs: str, capsys: pytest.CaptureFixture[str]) -> None:
+    robot = robot_file(tmp_path, machine(runs=f'"{runs}"'))
+    path = tmp_path / "coffee.py"
+    path.write_text(path.read_text(encoding="utf-8").replace("def configure(self):", "def configure(self)"), "utf-8")
+    assert main(["robot", "check", robot]) == 2
+    said = capsys.readouterr().err
+    assert "SyntaxError" in said
+    for text in ("whenever something was brewed, print oh. go to the lab", "go to the lab"):
+        assert main(["run", "-c", text, "--robot", robot, "--speed", "max"]) == 2
+        out, err = capsys.readouterr()
+        assert (out, err) == ("", said)
+    mission = btlang.parse_tree("whenever something was brewed, print oh. go to the lab", keywords=robot_words(robot))
+    with btlang.Session(robot) as session, pytest.raises(btlang.MissionError, match="SyntaxError"):
+        session.prepare(mission)
+    with btlang.Session(robot) as session:
+        outcome = session.run("go to the lab", speed="max").outcome
+        assert outcome is not None
+        assert outcome.succeeded
+
+
+@WHERE
+def test_a_rule_that_never_knew_is_told_at_the_end(
+    tmp_path: Path, runs: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    robot = robot_file(tmp_path, machine(runs=f'"{runs}"', parameters='{ wrong = "slip" }'))
+    outcome, events = run(robot, "whenever the tray is full, print full. go to the lab")
+    assert outcome.succeeded
+    [told] = outcome.unanswered
+    assert told.startswith("A rule did nothing: 'tray is full' was never known (AttributeError: ")
+    assert str(outcome).splitlines()[1:] == [told]
+    assert [event.text for event in events if isinstance(event, Warned)][-1] == told
+    assert main(["run", "-c", "whenever the tray is full, print full. wave", "--robot", robot, "--speed", "max"]) == 0
+    assert told in capsys.readouterr().out.splitlines()[-1]
