@@ -124,7 +124,7 @@ class LeafBinding(Record):
 
     `outputs` are the ports that the leaf writes, `refusal` is the reason for a returned False.
     With `thread` a plain function is called in a separate thread. With `condition` the leaf is a question: whatever it
-    raises means that its answer isn't known.
+    raises means that its answer isn't known. `measured` says what it measured at the latest call that was true.
     """
 
     call: Callable[..., Any]
@@ -134,6 +134,7 @@ class LeafBinding(Record):
     refusal: str = REFUSED
     thread: bool = False
     condition: bool = False
+    measured: Callable[[], str] | None = None
 
 
 class LeafSignature:
