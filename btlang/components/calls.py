@@ -11,7 +11,7 @@ from queue import Empty, SimpleQueue
 
 from btlang.devices import kinds
 from btlang.devices.kinds import Command, Reading
-from btlang.engine.leaves.leaf import ActionFailed, Failed, Unknown, failure_reason, reason_text
+from btlang.engine.leaves.leaf import ActionFailed, Failed, Unknown, failure_reason, locate_failure, reason_text
 from btlang.robots.geometry import Pose
 from btlang.robots.robot import Robot
 from btlang.support.record import Record
@@ -60,9 +60,13 @@ def unpack(data: bytes) -> Any:
     return load_json(data, _record)
 
 
-def pack_error(problem: BaseException) -> dict[str, Any]:
-    """Return the answer for an exception; `value_of` raises it on the other side."""
-    return {"problem": failure_reason(problem), "unknown": isinstance(problem, Unknown)}
+def pack_error(problem: BaseException, locate: bool = False) -> dict[str, Any]:
+    """Return the answer for an exception; `value_of` raises it on the other side, which has no traceback of it.
+
+    With `locate` the reason names the line that raised it.
+    """
+    reason = locate_failure(problem) if locate else failure_reason(problem)
+    return {"problem": reason, "unknown": isinstance(problem, Unknown)}
 
 
 def pack_result(result: object) -> dict[str, Any]:
@@ -151,7 +155,7 @@ class MethodCall(RobotQuestions):
         try:
             self._worker.report_end(self.number, {**pack_result(self._result()), "stored": self._stored})
         except BaseException as problem:
-            self._worker.report_end(self.number, pack_error(problem))
+            self._worker.report_end(self.number, pack_error(problem, locate=True))
 
     def _result(self) -> object:
         method: Callable[..., Any] = getattr(self._worker.component, self._method)

@@ -56,6 +56,15 @@ def test_what_it_raises_is_the_reason(tmp_path: Path, runs: str) -> None:
     outcome, _ = run(robot, "brew tea")
     assert not outcome.succeeded
     assert "no water" in outcome.why()
+    assert "raised in _go_wrong, coffee.py:" in outcome.why()
+
+
+@WHERE
+@pytest.mark.parametrize("hook", ["configure", "activate", "step"])
+def test_where_a_hook_raised_is_said(tmp_path: Path, runs: str, hook: str) -> None:
+    robot = robot_file(tmp_path, machine(runs=f'"{runs}"', parameters=f'{{ wrong = "raise in {hook}" }}', restarts=0))
+    outcome, _ = run(robot, "wait 0.5 s then brew tea", speed="real")
+    assert "RuntimeError: no water (raised in _go_wrong, coffee.py:" in outcome.why()
 
 
 @WHERE
@@ -245,6 +254,11 @@ def test_a_rule_that_never_knew_is_told_at_the_end(
     assert outcome.succeeded
     [told] = outcome.unanswered
     assert told.startswith("A rule did nothing: 'tray is full' was never known (AttributeError: ")
+    warned = next(event.text for event in events if isinstance(event, Warned))
+    assert warned.startswith(
+        "'tray is full' is not known: AttributeError: 'Machine' object has no attribute 'capacity'"
+    )
+    assert warned.count("(raised in is_full, coffee.py:") == 1
     assert str(outcome).splitlines()[1:] == [told]
     assert [event.text for event in events if isinstance(event, Warned)][-1] == told
     assert main(["run", "-c", "whenever the tray is full, print full. wave", "--robot", robot, "--speed", "max"]) == 0

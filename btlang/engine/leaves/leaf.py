@@ -119,6 +119,12 @@ def failure_reason(problem: BaseException) -> str:
     return str(problem) if isinstance(problem, ActionFailed) else describe_exception(problem)
 
 
+def locate_failure(problem: BaseException) -> str:
+    """Return why something failed, with the line of Python that raised it, unless it is an ActionFailed."""
+    place = "" if isinstance(problem, ActionFailed) else find_raising_line(problem)
+    return failure_reason(problem) + (f" (raised in {place})" if place else "")
+
+
 class LeafBinding(Record):
     """The Python side of a leaf id: what to call, how to convert the text of each port, and values for missing ports.
 

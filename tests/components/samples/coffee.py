@@ -10,6 +10,7 @@ from btlang.devices.kinds import WheelSpeeds
 
 class Machine(Component):
     version = "1.0"
+    rate = 10
     heat = Parameter(90.0, low=60, high=95, unit="°C")
     wrong = Parameter("")  # what goes wrong
 
@@ -19,6 +20,9 @@ class Machine(Component):
 
     def activate(self):
         self._go_wrong("activate")
+
+    def step(self, seconds):
+        self._go_wrong("step")
 
     def brew(self, drink, robot):
         self._go_wrong("brew")
