@@ -280,6 +280,17 @@ def test_one_goes_on_and_back_and_to_the_next_failure(tmp_path: Path) -> None:
     assert not thread.is_alive()
 
 
+def test_a_condition_that_is_false_is_no_failure(tmp_path: Path) -> None:
+    text = """whenever the battery is below 99.9% or Alice is near, wait 30 s
+if the battery is below 20% or Alice is near, nod otherwise wave
+go to the lab but stop when Alice is near
+wait until the battery is below 99.9%
+{}"""
+    assert timeline_of(text.format(""), tmp_path).failures == []
+    failing = timeline_of(text.format("try to grasp the book, otherwise nod"), tmp_path)
+    assert len(failing.failures) == 1
+
+
 def test_the_robot_file_is_in_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     robot, file = tmp_path / "small.toml", str(tmp_path / "r.mcap")
     robot.write_text((Path(BODIES) / "small.toml").read_text())
