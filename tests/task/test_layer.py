@@ -396,22 +396,3 @@ def test_status_between_two_commands_has_words(tmp_path: Path) -> None:
         wait_for(layer, number, TaskState.UNDERWAY)
         wait_until(lambda: not ask(layer, "status")["running"])
         assert layer.handle({"command": "status"}, "ann").text == f"Task {number} is under way.\nNothing waits."
-
-
-def test_a_pause_and_its_end_are_kept_with_the_task(tmp_path: Path) -> None:
-    with layer_in(tmp_path, speed=20) as layer:
-        number = submit(layer, "go to the lab")
-        wait_for(layer, number, TaskState.UNDERWAY)
-        ask(layer, "pause")
-        ask(layer, "pause")  # is no second one
-        assert task(layer, number).reason == "paused"
-        ask(layer, "resume")
-        ask(layer, "resume")
-        assert wait_for(layer, number, *FINAL).state is TaskState.COMPLETED
-        shown = ask(layer, "show", task=number)["task"]["changes"]
-    texts = [(each["state"], each["cause"]) for each in shown]
-    assert texts[-4:] == [
-        ("underway", "it begins"),
-        ("underway", "paused"), ("underway", "it goes on after a pause"), ("completed", ""),
-    ]  # fmt: skip
-    assert [each["person"] for each in shown[3:5]] == ["ann", "ann"]

@@ -1,4 +1,4 @@
-"""The lines of `btc robot up`: nothing that people do to the robot goes unreported, and the last line is true."""
+"""What is reported of a robot that is up: the lines of `btc robot up`, and pauses among the changes of a task."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from pathlib import Path
 from btlang.cli.robot_log import RobotLog
 from btlang.task import messages
 from btlang.task.layer import TaskLayer
-from btlang.task.store.records import FINAL
+from btlang.task.store.records import FINAL, TaskState
 
-from .layers import layer_in, submit, wait_for, wait_until
+from .layers import ask, layer_in, submit, task, wait_for, wait_until
 
 
 def said(lines: list[str]) -> list[str]:
@@ -74,3 +74,22 @@ def test_a_terminal_that_is_gone_stops_nothing(tmp_path: Path) -> None:
         wait_for(layer, number, *FINAL)
         do(layer, log, messages.Pause(), "ann")
         log.close()
+
+
+def test_a_pause_and_its_end_are_kept_with_the_task(tmp_path: Path) -> None:
+    with layer_in(tmp_path, speed=20) as layer:
+        number = submit(layer, "go to the lab")
+        wait_for(layer, number, TaskState.UNDERWAY)
+        ask(layer, "pause")
+        ask(layer, "pause")  # is no second one
+        assert task(layer, number).reason == "paused"
+        ask(layer, "resume")
+        ask(layer, "resume")
+        assert wait_for(layer, number, *FINAL).state is TaskState.COMPLETED
+        shown = ask(layer, "show", task=number)["task"]["changes"]
+    texts = [(each["state"], each["cause"]) for each in shown]
+    assert texts[-4:] == [
+        ("underway", "it begins"),
+        ("underway", "paused"), ("underway", "it goes on after a pause"), ("completed", ""),
+    ]  # fmt: skip
+    assert [each["person"] for each in shown[3:5]] == ["ann", "ann"]
