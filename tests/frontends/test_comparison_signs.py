@@ -58,4 +58,5 @@ def test_no_correction_that_cannot_be_read(text: str) -> None:
 def test_other_mistakes_stay() -> None:
     assert [p.code for p in problems("if battery < 30%, frobnicate")] == ["BT250", "BT010"]
     assert [p.code for p in problems("if battery < 30%, wave\nfrobnicate")] == ["BT250", "BT010"]
+    assert [p.code for p in problems("wals = []")] == ["BT010", "BT250", "BT003"]
     assert [p.code for p in problems("if the battery @ 5%, wave")][-1:] != ["BT250"]

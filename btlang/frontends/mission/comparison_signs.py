@@ -38,17 +38,16 @@ def explain_signs(lexer: Lexer, problems: list[Diagnostic], errors_of: ErrorsOf 
         return problems
     changes = [_in_words(span, text, lexer.vocabulary) for span in signs]
     is_mended = errors_of is not None and _reads(lexer, changes, errors_of)
-    found = [
-        diagnostic("BT250", sign, sign=sign.text, fix=change if is_mended else None, help="" if is_mended else _EXAMPLE)
-        for sign, change in zip(signs, changes, strict=True)
-    ]
     lines = {span.source.position(span.start)[0] for span in signs}
+    found: list[Diagnostic] = []
     for problem in problems:
         if problem.span in signs:
+            change, help = (changes[signs.index(problem.span)], "") if is_mended else (None, _EXAMPLE)
+            found.append(diagnostic("BT250", problem.span, sign=problem.span.text, fix=change, help=help))
             continue
         is_here = problem.span.source is text.source  # and not in what the text includes
         is_beside = problem.is_error and is_here and problem.span.source.position(problem.span.start)[0] in lines
-        misleads = any(_ends_before(problem.span, sign) for sign in signs)
+        misleads = problem.code == "BT012" and any(_ends_before(problem.span, sign) for sign in signs)
         if not (is_beside and (is_mended or misleads)):
             found.append(problem)
     return found
