@@ -13,6 +13,7 @@ from btlang import __version__
 from btlang.cli import main
 from btlang.cli.parser import parse_arguments
 from btlang.cli.verbs import VERBS
+from btlang.task.commands import client
 
 RUN = ["--speed", "max", "--lines"]
 
@@ -59,12 +60,42 @@ def test_a_file_wins_over_a_mission_of_the_same_words(capsys: pytest.CaptureFixt
         ("help wave", "btc: there's no verb 'wave'\nRun 'btc help' for help.\n"),
         ("run --sped max -c wave", "btc run: there's no option '--sped'\nDid you mean: --speed\n"),
         ("tea.txt --xyz", "btc run: there's no option '--xyz'\nRun 'btc help run' for help.\n"),
+        ("robot stpo", "btc robot: there's no act 'stpo'\nDid you mean: btc robot stop\n"),
+        ("robot halt", "btc robot: there's no act 'halt'\nDid you mean: btc robot stop\n"),
+        ("robot cancel 3", "btc robot: there's no act 'cancel'\nDid you mean: btc task cancel\n"),
+        ("task pause 3", "btc task: there's no act 'pause'\nDid you mean: btc task interrupt\n"),
+        ("task lst --json", "btc task: there's no act 'lst'\nDid you mean: btc task list\n"),
+        ("task xyzzy", "btc task: there's no act 'xyzzy'\nRun 'btc help task' for help.\n"),
+        ("estop", "btc: there's no verb or file 'estop'\nTo stop the robot that is up: btc robot stop\n"),
+        ("emergency stop", "btc: there's no verb or file 'emergency stop'\n"
+         "To stop the robot that is up: btc robot stop\n"),
         ("tree tea.txt wave", "btc tree: unexpected argument 'wave'\nRun 'btc help tree' for help.\n"),
     ],
 )  # fmt: skip
 def test_a_usage_error_is_a_line_and_a_hint(line: str, error: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert typed(*line.split()) == 2
     assert capsys.readouterr().err == error
+
+
+@pytest.mark.parametrize("line", [["stop"], ["halt!"], ["stop now"], ["stop", "now"], ["stop", "--speed", "max"]])
+def test_stop_alone_is_refused_while_a_robot_is_up(
+    line: list[str], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if line == ["stop"]:
+        assert typed("stop", *RUN) == 0
+        capsys.readouterr()
+    monkeypatch.setattr(client, "names_up", lambda: ["museum"])
+    assert typed(*line) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert "stops a simulation, not the robot that is up\nTo stop the robot that is up: btc robot stop\n" in err
+    assert typed("go to the lab, then stop", *RUN) == 0
+
+
+def test_no_word_stands_for_two_acts() -> None:
+    for verb in VERBS.values():
+        words = [*verb.acts, *(word for act in verb.acts.values() for word in act.also)]
+        assert len(words) == len(set(words))
 
 
 def test_a_word_that_is_neither_is_read_as_a_mission(capsys: pytest.CaptureFixture[str]) -> None:

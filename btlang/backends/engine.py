@@ -88,7 +88,9 @@ def leaf_binding(
         return leaf_words(entry.id, {**ports, "equal": value}, vocabulary) or f"it is {value}"
 
     try:
-        return LeafBinding(compare_quantity(call, say), converters, defaults, (MEASURED,), condition=True)
+        compare = compare_quantity(call, say)
+        measured = compare.measured  # type: ignore[attr-defined]
+        return LeafBinding(compare, converters, defaults, (MEASURED,), condition=True, measured=measured)
     except (TypeError, ValueError) as error:
         raise EngineError(f"{entry.call} cannot be a quantity: {error}", Node(entry.id, span=entry.span)) from error
 
@@ -175,25 +177,37 @@ def compare_quantity(
     """Make a function that calls the quantity and holds if all comparisons with given ports hold.
 
     What the quantity gives goes to the function in the output port first, so without comparisons it is just remembered.
-    `say` gives the words for what was read, of the arguments of the quantity and the value as a text. Raises ValueError
+    `say` gives the words for what was read, of the arguments of the quantity and the value as a text. Its `measured`
+    returns these words for the latest call that held. Raises ValueError
     where the quantity has a parameter that is named as one of these ports.
     """
 
+    latest: tuple[Mapping[str, Any], Any, Mapping[str, Any]] | None = None
+
     def compare(**given: Any) -> bool | Failed:
+        nonlocal latest
         store = given.pop(MEASURED, None)
         limits = {name: given.pop(name) for name in _HOLDS if name in given}
         value = quantity(**given)
         if store is not None:
             store(value)
         if _hold(limits, value):
+            latest = given, value, limits
             return True
         if value != value:
             raise Unknown("it is not a number")
         return Failed(lambda: say(given, _round(value, limits)))
 
+    def measured() -> str:
+        if latest is None:
+            return ""
+        arguments, value, limits = latest
+        return say(arguments, _round(value, limits, True))
+
     own = signature(quantity)
     ports = [Parameter(name, Parameter.KEYWORD_ONLY, default=None) for name in (*_HOLDS, MEASURED)]
     compare.__signature__ = own.replace(parameters=[*own.parameters.values(), *ports])  # type: ignore[attr-defined]
+    compare.measured = measured  # type: ignore[attr-defined]
     compare.__name__ = getattr(quantity, "__name__", "quantity")
     return compare
 
@@ -202,12 +216,12 @@ def _hold(limits: Mapping[str, Any], value: Any) -> bool:
     return all(_HOLDS[name](value, limit) for name, limit in limits.items() if limit is not None)
 
 
-def _round(value: Any, limits: Mapping[str, Any]) -> str:
-    """Return the value in three digits, or in more if so few would hold: 19.96 is not at least 20."""
+def _round(value: Any, limits: Mapping[str, Any], holds: bool = False) -> str:
+    """Return the value in three digits, or in more if the answer would be another one: 19.96 is not at least 20."""
     if isinstance(value, str):
         return value
     texts = (f"{value:.{digits}g}" for digits in range(3, _MOST_DIGITS + 1))
-    return next((text for text in texts if not _hold(limits, float(text))), str(value))
+    return next((text for text in texts if _hold(limits, float(text)) is holds), str(value))
 
 
 def find_awaited(tree: Tree) -> frozenset[str]:

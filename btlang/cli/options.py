@@ -55,12 +55,13 @@ class VerbAct(Record):
     """One of the things that a verb does: `add` of `btc task`.
 
     `options` are the destinations of the options that it takes, beside `name`, and `words` the most arguments. Where
-    `options` is None, the handler checks both.
+    `options` is None, the handler checks both. `also` are words that people type instead: they get a hint.
     """
 
     about: str
     options: tuple[str, ...] | None = None
     words: float = 1
+    also: tuple[str, ...] = ()
 
 
 class Verb(Record):

@@ -145,7 +145,24 @@ def verb_parser(verb: Verb) -> OptionParser:
 
 def _add_act(parser: OptionParser, verb: Verb) -> None:
     usual: dict[str, Any] = {"nargs": "?", "default": verb.usual_act} if verb.usual_act else {}
-    parser.add_argument("act", choices=verb.acts, metavar="ACT", help="what to do: see below", **usual)
+
+    def act(text: str) -> str:
+        if text not in verb.acts:
+            near = _near_acts(verb, text)
+            parser.refuse(f"there's no act '{text}'", f"Did you mean: btc {near[0]}" if near else "")
+        return text
+
+    parser.add_argument("act", type=act, metavar="ACT", help="what to do: see below", **usual)
+
+
+def _near_acts(verb: Verb, text: str) -> list[str]:
+    """List acts that somebody may mean, the likeliest first, each with its verb."""
+    from btlang.text.spelling import respellings
+
+    word = text.lower()
+    found = [verb.name + " " + name for name, each in verb.acts.items() if word == name or word in each.also]
+    found += [f"{verb.name} {name}" for name in respellings(word, verb.acts) if name in verb.acts]
+    return found + [f"{other.name} {word}" for other in VERBS.values() if word in other.acts and other is not verb]
 
 
 def _settings(option: Option) -> dict[str, Any]:
@@ -180,6 +197,7 @@ def _with_verb(words: list[str]) -> list[str]:
     near = _near_verbs(first) or [f"{verb.name} {first}" for verb in VERBS.values() if first in verb.acts]
     is_alone = len(words) == 1 or words[1].startswith("-")
     mission = " ".join(words)
+    _refuse_stop(" ".join(takewhile(lambda word: not word.startswith("-"), words)))
     if first.startswith("-"):
         _main_parser().refuse(f"unexpected option '{first}'", f"A verb comes first: btc VERB {shlex.join(words)}")
     if is_alone and (looks_like_path(first) or not near or reads_as_mission(first)):
@@ -188,6 +206,30 @@ def _with_verb(words: list[str]) -> list[str]:
     if not is_alone and reads_as_mission(mission):
         hint = f"Put a mission in quotes: btc {quote_mission(mission)}"
     return _main_parser().refuse(f"there's no verb or file '{first}'", hint)
+
+
+def _refuse_stop(text: str) -> None:
+    """End with a usage error if somebody wants to stop a robot: a simulated mission that stops would look the same."""
+    word = "-".join(text.lower().rstrip("!. ").split())
+    parser, hint = _main_parser(), "To stop the robot that is up: btc robot stop"
+    if word in VERBS["robot"].acts["stop"].also and not reads_as_mission(text):
+        parser.refuse(f"there's no verb or file '{text}'", hint)
+    if "stop" not in word and "halt" not in word:
+        return
+    from btlang.task.commands.client import names_up
+
+    if names_up() and _only_stops(text):
+        parser.refuse(f"'{text}' as a mission stops a simulation, not the robot that is up", hint)
+
+
+def _only_stops(text: str) -> bool:
+    from btlang.api import parse_tree
+    from btlang.diagnostics.diagnostic import MissionError
+
+    try:
+        return parse_tree(text).tree.root.id == "Stop"
+    except MissionError:
+        return False
 
 
 def _near_verbs(word: str) -> list[str]:

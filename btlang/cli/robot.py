@@ -12,6 +12,7 @@ from contextlib import suppress
 from functools import partial
 
 from btlang.cli.parser import check_act, check_count
+from btlang.cli.robot_log import RobotLog
 from btlang.cli.task import ask
 from btlang.components.words import words_of
 from btlang.diagnostics.diagnostic import MissionError
@@ -126,9 +127,17 @@ def _up(options: argparse.Namespace) -> int:
     """Bring a robot up until `btc robot down`, Ctrl-C or SIGTERM."""
     name, ended = options.name or USUAL_NAME, threading.Event()
     layer: TaskLayer
+    log: RobotLog | None = None
+
+    def handle(data: dict[str, Any], person: str) -> messages.Answer:
+        answer = layer.handle(data, person)
+        if log is not None:
+            log.look(person)
+        return answer
+
     server = SocketServer(
         name,
-        lambda data, person: layer.handle(data, person),
+        lambda data, person: handle(data, person),
         lambda person: layer.stop(person),
         lambda *wanted: layer.feed.watch(*wanted),
     )
@@ -167,12 +176,16 @@ def _up(options: argparse.Namespace) -> int:
                     show(
                         f"It is stopped: {layer.emergency.reason}. To let it move: btc robot release", stream=sys.stderr
                     )
+                log = RobotLog(layer, show)
                 with companions(options, name, show) as code:
                     while not code and not ended.wait(1.0):
                         pass
             finally:
                 server.close()
         finally:
+            layer.halt()
+            if log is not None:  # it reads the store, which closes with the layer
+                log.close()
             ended_well = layer.close()
     show(f"The robot '{name}' is down.")
     return code or (0 if ended_well else 1)

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from btlang.robots.bodies.body import Body
     from btlang.robots.registry import Connector
     from btlang.run.events import Sink
+    from btlang.text.source import Source
 
 _SUCCESS, _FAILED = 0, 1
 
@@ -62,7 +63,7 @@ def _run_shown(options: argparse.Namespace, mission: Mission, robot: Connector, 
     ):
         return run_mission(
             mission,
-            partial(Session, robot, world=mission.world),
+            partial(_open_session, robot, mission.world),
             speed=options.speed,
             rate=options.rate,
             time_limit=options.time_limit,
@@ -76,6 +77,19 @@ def _run_shown(options: argparse.Namespace, mission: Mission, robot: Connector, 
             open_monitors=[*_groot(options.groot), *monitors],
             limit_option="--for 60s",
         )
+
+
+def _open_session(robot: Connector, world: str | Source | None) -> Session:
+    """Open a session. Raises MissionError, also if a component can't be loaded: its rules would never act."""
+    session = Session(robot, world=world)
+    check = getattr(session.connection, "check_loaded", None)
+    try:
+        if check is not None:
+            check()
+    except BaseException:
+        session.close()
+        raise
+    return session
 
 
 def _note_robots_up() -> None:

@@ -357,17 +357,26 @@ _TABLE = (
             ),
         ),
         acts={
-            "up": VerbAct("brings a robot up: btc robot up --robot museum.toml", _UP, 0),
-            "down": VerbAct("ends the process of the robot", ("json",), 0),
-            "status": VerbAct("shows what the robot is doing, or why it can't work", ("json",), 0),
+            "up": VerbAct("brings a robot up: btc robot up --robot museum.toml", _UP, 0, also=("start", "boot")),
+            "down": VerbAct("ends the process of the robot", ("json",), 0, also=("shutdown", "quit", "exit")),
+            "status": VerbAct(
+                "shows what the robot is doing, or why it can't work", ("json",), 0,
+                also=("state", "info"),
+            ),
             "report": VerbAct(
                 'reports what was done, and why something wasn\'t: btc robot report --since "2 hours ago"',
-                ("since", "json"), 0,
+                ("since", "json"), 0, also=("log", "logs", "history"),
             ),
-            "stop": VerbAct("emergency stop: stops the robot at once", ("reason", "json"), inf),
-            "release": VerbAct("lets the robot move again after a stop", ("json",), 0),
+            "stop": VerbAct(
+                "emergency stop: stops the robot at once", ("reason", "json"), inf,
+                also=("estop", "e-stop", "emergency", "emergency-stop", "halt", "kill"),
+            ),
+            "release": VerbAct(
+                "lets the robot move again after a stop", ("json",), 0,
+                also=("unlock", "reset", "enable"),
+            ),
             "pause": VerbAct("brings the robot to rest in the middle of a task", ("json",), 0),
-            "resume": VerbAct("continues after a pause", ("json",), 0),
+            "resume": VerbAct("continues after a pause", ("json",), 0, also=("continue",)),
             "step": VerbAct("advances a paused robot by one tick", ("json",), 0),
             "say": VerbAct(
                 "says a text, whatever else the robot is doing: btc robot say we close in ten minutes", ("json",), inf
@@ -445,25 +454,36 @@ _TABLE = (
         acts={
             "add": VerbAct(
                 'gives the robot a task: btc task add "go to the lab", btc task add patrol.txt',
-                (*_ADD, "at", "by"),
+                (*_ADD, "at", "by"), also=("run", "start", "submit", "new"),
             ),
             "list": VerbAct(
                 "lists the tasks that aren't over, the next one first: btc task list --live",
-                ("all", "live", "limit", "label", "json"), 0,
+                ("all", "live", "limit", "label", "json"), 0, also=("status", "ls", "queue"),
             ),
             "show": VerbAct("shows everything about a task: btc task show 3", ("json",)),
             "why": VerbAct("explains what happened in a task, and why it failed: btc task why 3", ("json",)),
-            "cancel": VerbAct("ends a task, and halts its commands: btc task cancel 3", ("reason", "json")),
+            "cancel": VerbAct(
+                "ends a task, and halts its commands: btc task cancel 3", ("reason", "json"),
+                also=("stop", "remove", "rm", "abort", "halt"),
+            ),
             "kill": VerbAct("ends a task at once, like an emergency stop: btc task kill 3", ("reason", "json")),
             "interrupt": VerbAct(
-                "halts a task, which can continue later: btc task interrupt 3 --reason lunch", ("reason", "json")
+                "halts a task, which can continue later: btc task interrupt 3 --reason lunch", ("reason", "json"),
+                also=("pause", "suspend"),
             ),
-            "resume": VerbAct("ends an interruption: btc task resume 3 --token 1f2e", ("token", "json")),
+            "resume": VerbAct(
+                "ends an interruption: btc task resume 3 --token 1f2e", ("token", "json"),
+                also=("continue",),
+            ),
             "skip": VerbAct("skips a task that hasn't begun: btc task skip 3", ("reason", "json")),
             "move": VerbAct(
-                "gives a task another place in the queue: btc task move 3 --before 1", ("priority", "before", "json")
+                "gives a task another place in the queue: btc task move 3 --before 1", ("priority", "before", "json"),
+                also=("priority", "prioritise", "reorder"),
             ),
-            "again": VerbAct("adds a copy of an earlier task: btc task again 3", ("json",)),
+            "again": VerbAct(
+                "adds a copy of an earlier task: btc task again 3", ("json",),
+                also=("retry", "repeat", "rerun"),
+            ),
             "schedule": VerbAct(
                 'adds a schedule: btc task schedule patrol.txt --every "every day at 9:00"',
                 (*_ADD, "every", "zone", "overlap", "missed", "within"),
@@ -481,7 +501,8 @@ _TABLE = (
                 "lists the library, or the revisions of one item: btc task library tour", ("kind", "json")
             ),
             "trail": VerbAct(
-                "lists the latest commands, and who gave them: btc task trail --limit 10", ("limit", "json"), 0
+                "lists the latest commands, and who gave them: btc task trail --limit 10", ("limit", "json"), 0,
+                also=("log", "logs", "history"),
             ),
             "answer": VerbAct("answers a question of the robot: btc task answer yes", ("json",), inf),
         },

@@ -11,7 +11,7 @@ from queue import Empty, SimpleQueue
 
 from btlang.devices import kinds
 from btlang.devices.kinds import Command, Reading
-from btlang.engine.leaves.leaf import ActionFailed, Failed, Unknown, failure_reason, reason_text
+from btlang.engine.leaves.leaf import ActionFailed, Failed, Unknown, failure_reason, locate_failure, reason_text
 from btlang.robots.geometry import Pose
 from btlang.robots.robot import Robot
 from btlang.support.record import Record
@@ -60,16 +60,25 @@ def unpack(data: bytes) -> Any:
     return load_json(data, _record)
 
 
-def pack_error(problem: BaseException) -> dict[str, Any]:
-    """Return the answer for an exception; `value_of` raises it on the other side."""
-    return {"problem": failure_reason(problem), "unknown": isinstance(problem, Unknown)}
+def pack_error(problem: BaseException, locate: bool = False) -> dict[str, Any]:
+    """Return the answer for an exception; `value_of` raises it on the other side, which has no traceback of it.
+
+    With `locate` the reason names the line that raised it.
+    """
+    reason = locate_failure(problem) if locate else failure_reason(problem)
+    return {"problem": reason, "unknown": isinstance(problem, Unknown)}
+
+
+def pack_result(result: object) -> dict[str, Any]:
+    """Return the answer for what a method returned. `Failed` stays a plain no: it is no error of a condition."""
+    return {"refusal": reason_text(result.reason)} if isinstance(result, Failed) else {"value": result}
 
 
 def value_of(answer: Mapping[str, Any]) -> Any:
     """Return the value of an answer. Raises ActionFailed, or Unknown, for one that `pack_error` has made."""
     if "problem" in answer:
         raise (Unknown if answer.get("unknown") else ActionFailed)(answer["problem"])
-    return answer.get("value")
+    return Failed(str(answer["refusal"])) if "refusal" in answer else answer.get("value")
 
 
 def _other(value: object) -> Any:
@@ -144,9 +153,9 @@ class MethodCall(RobotQuestions):
 
     def _work(self) -> None:
         try:
-            self._worker.report_end(self.number, {"value": self._result(), "stored": self._stored})
+            self._worker.report_end(self.number, {**pack_result(self._result()), "stored": self._stored})
         except BaseException as problem:
-            self._worker.report_end(self.number, pack_error(problem))
+            self._worker.report_end(self.number, pack_error(problem, locate=True))
 
     def _result(self) -> object:
         method: Callable[..., Any] = getattr(self._worker.component, self._method)
@@ -168,8 +177,6 @@ class MethodCall(RobotQuestions):
                 result = end.value
             finally:
                 generator.close()
-        if isinstance(result, Failed):
-            raise ActionFailed(reason_text(result.reason))
         return result
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Generator, Mapping
+from collections.abc import Callable, Collection, Generator, Mapping
 from inspect import Parameter, Signature, isgeneratorfunction, signature
 
 from btlang.backends.engine import leaf_binding
@@ -18,6 +18,7 @@ from btlang.devices.driver import DeviceError
 from btlang.devices.kinds import KINDS, Command, Reading
 from btlang.devices.simulated import twin
 from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.files import read_source
 from btlang.robots.bodies.body_file import unusable_robot
 from btlang.robots.platforms import NODES, import_function
 from btlang.robots.simulation.connection import Simulation
@@ -123,7 +124,25 @@ class ComponentConnection:
         return bound.replace(call=_guard_leaf(keeper, bound.call))  # type: ignore[no-any-return]
 
     def check(self, tree: Tree, vocabulary: Lexicon) -> None:
+        """Implement Connection. A mission can't use words of a component whose class can't be loaded."""
         self._inner.check(tree, vocabulary)
+        entries = map(vocabulary.entry, {node.id for node in tree.walk()})
+        calls = [entry.call for entry in entries if entry is not None and isinstance(entry.call, str)]
+        self.check_loaded({call.rpartition(".")[0] for call in calls})
+
+    def check_loaded(self, places: Collection[str | None] | None = None) -> None:
+        """Raise MissionError (BT071) if a class can't be loaded, with all that `btc robot check` finds.
+
+        `places` are the classes that are looked at, as `module:Class`; by default all.
+        """
+        keepers = [keeper for keeper in self.manager.keepers if places is None or keeper.class_place in places]
+        failed = next((keeper for keeper in keepers if keeper.has_failed and not keeper.is_loaded), None)
+        if failed is None:
+            return
+        from btlang.components.checking import check_robot  # most robots are sound
+
+        found = check_robot(read_source(self._body.file))[1] if self._body.file else []
+        raise MissionError(found) if found else unusable_robot(ComponentError(f"the {failed.part.name} {failed.why}"))
 
     def begin(self, bus: Bus) -> None:
         self._used.clear()

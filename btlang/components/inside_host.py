@@ -9,7 +9,7 @@ from inspect import isgenerator, signature
 
 from btlang.components.component import ACTIVE, TRANSITIONS, UNCONFIGURED, Component, ComponentError
 from btlang.components.location import describe, load_class
-from btlang.engine.leaves.leaf import ActionFailed, NotThere, describe_exception, failure_reason
+from btlang.engine.leaves.leaf import ActionFailed, NotThere, describe_exception, locate_failure
 from btlang.robots.command_gate import RobotProxy
 
 TYPE_CHECKING = False
@@ -67,7 +67,7 @@ class InsideHost:
         if problems:
             self.state = transition.fails
             self._fail(problems[0])
-            raise ComponentError(failure_reason(problems[0])) from problems[0]
+            raise ComponentError(locate_failure(problems[0])) from problems[0]
         self.state = transition.ends
 
     def look(self) -> str | None:
@@ -87,7 +87,7 @@ class InsideHost:
         except KeyboardInterrupt:
             raise
         except BaseException as problem:
-            self.state, self.problem = UNCONFIGURED, f"failed in its step: {failure_reason(problem)}"
+            self.state, self.problem = UNCONFIGURED, f"failed in its step: {locate_failure(problem)}"
             self._fail(problem)
             self._changed()
 
@@ -121,7 +121,7 @@ class InsideHost:
                 problem if isinstance(problem, Exception) else ComponentError(describe_exception(problem))
             )
         except Exception as another:
-            self.problem = f"failed in its error hook: {describe_exception(another)}"
+            self.problem = f"failed in its error hook: {locate_failure(another)}"
 
 
 def _call(method: Callable[..., Any], ports: Mapping[str, Any], robot: Any) -> Any:

@@ -196,6 +196,8 @@ class ComponentKeeper:
         self._active_since: float | None = None
         self._due = 0.0
         self._given_up = self._absent = self.gone = self.leaving = False
+        self.is_loaded = True
+        """Whether its class could be loaded at the latest start."""
         self._thread = threading.Thread(target=self._keep, name=f"btlang component {part.name}", daemon=True)
 
     def start(self) -> None:
@@ -283,7 +285,7 @@ class ComponentKeeper:
         self.leaving, self._starts = False, self._starts + 1
         try:
             self.class_place = class_of(self.part)
-            known = host.load()
+            known = self._load(host)
             self._absent = False
             self.version, self.needs = known["version"], tuple({*self.part.needs, *known["needs"]})
             host.transition("configure")
@@ -305,6 +307,17 @@ class ComponentKeeper:
             self._fail(describe_exception(problem))
         finally:
             host.close()
+
+    def _load(self, host: Host) -> Mapping[str, Any]:
+        try:
+            known = host.load()
+        except ComponentAbsent:
+            raise
+        except BaseException:
+            self.is_loaded = self.part.node is not None  # a ROS 2 node has no class
+            raise
+        self.is_loaded = True
+        return known
 
     def _must_end(self) -> bool:
         """Return whether the component is to end or to be replaced, and may."""

@@ -142,12 +142,12 @@ class ProcessHost:
         leaf = RemoteLeaf(self, method, (), robot, news.set, set())
         leaf.start(**ports)
         until = time.monotonic() + _ANSWER
-        while (answer := leaf.tick()) is None:
+        while not leaf.poll():
             if not news.wait(until - time.monotonic()):
                 leaf.halt()
                 raise Unknown(f"the {self._part.name} hasn't answered")
             news.clear()
-        return answer
+        return leaf.result()
 
     def begin(self, method: str, arguments: dict[str, Any], wake: Callable[[], object]) -> WorkerRequest:
         """Call a method. Raises ActionFailed if it can't be called now."""

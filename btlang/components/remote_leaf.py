@@ -8,7 +8,7 @@ from collections import deque
 from collections.abc import Callable
 
 from btlang.components.calls import pack_error, value_of
-from btlang.engine.leaves.leaf import ActionFailed
+from btlang.engine.leaves.leaf import ActionFailed, Failed
 from btlang.robots.command_gate import RobotProxy
 
 TYPE_CHECKING = False
@@ -82,14 +82,24 @@ class RemoteLeaf:
 
     def tick(self) -> object:
         """Answer the method's questions, and check whether it has ended."""
+        if not self.poll():
+            return None
+        value = self.result()
+        return True if value is None else value
+
+    def poll(self) -> bool:
+        """Answer a question of the method; return whether it has ended."""
         request = self._request
         assert request is not None
         if request.asked:
             asked = request.asked.popleft()
             self._host.answer(request, asked, self._do(asked))
-        if not request.done.is_set():
-            return None
-        self._request = None
+        return request.done.is_set()
+
+    def result(self) -> Any:
+        """Return what the method has returned. Raises ActionFailed."""
+        request, self._request = self._request, None
+        assert request is not None
         self._beside.discard(self)
         try:
             value = request.value
@@ -98,7 +108,9 @@ class RemoteLeaf:
         except BaseException:
             self._proxy.let_go()
             raise
-        return True if value is None else value
+        if isinstance(value, Failed):
+            self._proxy.let_go()
+        return value
 
     def halt(self) -> None:
         """End the method, and what it has started."""

@@ -33,7 +33,7 @@ from btlang.components.component import (
     Transition,
 )
 from btlang.components.location import describe, load_class
-from btlang.engine.leaves.leaf import describe_exception
+from btlang.engine.leaves.leaf import describe_exception, locate_failure
 from btlang.robots.bodies.body_file import load_body
 
 TYPE_CHECKING = False
@@ -169,7 +169,7 @@ class ComponentLifeCycle:
                 due = last = time.monotonic()
                 worker.report_end(message["id"], {"value": value})
             except BaseException as problem:
-                worker.report_end(message["id"], pack_error(problem))
+                worker.report_end(message["id"], pack_error(problem, locate=True))
 
     def _load(self, worker: Worker, message: dict[str, Any]) -> object:
         if self._loaded is None:
@@ -217,7 +217,7 @@ class ComponentLifeCycle:
         try:
             self.component.step(seconds)
         except BaseException as problem:
-            self.problem = f"failed in its step: {describe_exception(problem)}"
+            self.problem = f"failed in its step: {locate_failure(problem)}"
             self._fail(problem, UNCONFIGURED)
             for worker in tuple(self.workers):
                 worker.report()
@@ -231,7 +231,7 @@ class ComponentLifeCycle:
                 problem if isinstance(problem, Exception) else ComponentError(describe_exception(problem))
             )
         except Exception as another:
-            self.problem = f"failed in its error hook: {describe_exception(another)}"
+            self.problem = f"failed in its error hook: {locate_failure(another)}"
 
     def _report_event(self, kind: str, data: Mapping[str, Any]) -> None:
         for worker in tuple(self.workers):

@@ -7,7 +7,7 @@ BT10x ROS 2, BT11x missions as ROS 2 nodes, BT12x trees in XML, BT13x trees that
 BT14x nodes said by their ids, BT15x lists, words that stand for names, and what is forbidden,
 BT16x times of day, BT17x sentences that people mean in two ways, BT18x tests and robots
 that are up, BT19x tasks and schedules, BT20x the server, BT21x editors, BT23x what is allowed in XML but
-probably not meant, BT24x what is made of files of others.
+probably not meant, BT24x what is made of files of others, BT25x signs in missions.
 
 BT05x and others that are warnings have a `name`, by which a mission silences them: `# allow: two readings`.
 Each code has a page in `pages/`, which `btc explain` prints.
@@ -279,6 +279,7 @@ _ALL = (
          "Write '{text}' in single quotes, which all versions take.", "warning", "double quotes"),
     Code("BT243", "This {parent} starts {id} again at each tick while a later child runs.",
          "Put {id} before it, in a Sequence around both.", "warning", "restarted action"),
+    Code("BT250", "'{sign}' isn't a word.", "Write comparisons in words."),
 )  # fmt: skip
 
 CODES = {entry.code: entry for entry in _ALL}

@@ -135,6 +135,12 @@ class Engine:
         """How many failures so far were no answers: a condition could not know (`btlang.Unknown`)."""
         return self._state.unknowns
 
+    @property
+    def unanswered(self) -> list[Failure]:
+        """Why conditions of rules haven't been known a single time so far: those rules have done nothing."""
+        found = {id(fault): fault for _, fault in sorted(self._state.unanswered.items())}
+        return [self._failure(fault) for fault in found.values()]
+
     def halt(self, emergency: bool = False) -> None:
         """Halt every running leaf, children before parents, and reset all nodes; the next tick starts over.
 

@@ -103,6 +103,7 @@ class EngineState:
         "services",
         "signatures",
         "stopwatch",
+        "unanswered",
         "unknown",
         "unknowns",
         "warned",
@@ -129,6 +130,7 @@ class EngineState:
         self.fault: Fault | NodeInstance | None = None  # the latest failure
         self.unknown: Fault | NodeInstance | None = None  # the latest failure that isn't an answer
         self.unknowns = 0  # how many there have been
+        self.unanswered: dict[int, Fault | NodeInstance] = {}  # why the condition of a rule has never been known so far
         self.warned: set[int] = set()  # which of them `on_warning` knows of
         self.on_warning: Callable[[Fault | NodeInstance], object] | None = None
         # exceptions that leaves raised while they were halted; only the latest, should nobody ask for them
@@ -137,6 +139,13 @@ class EngineState:
         # what reactive nodes that are at another child want stopped before an action starts there
         self.interrupts: list[Callable[[], None]] = []
         self.node_trace: LeafTrace | None = None  # of the node that is being compiled
+
+    def note_answer(self, index: int, known: bool) -> None:
+        """Note whether the condition of the rule with this number had an answer at last."""
+        if known:
+            self.unanswered.pop(index, None)
+        elif self.unknown is not None:
+            self.unanswered[index] = self.unknown
 
 
 class NodeInstance:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from _thread import get_ident  # `threading` takes longer to import
 from collections.abc import Callable, Iterator, Mapping
 
+from btlang.engine.instance import Fault
 from btlang.engine.leaves.callables import FunctionLeaf, fail_with, find_function, status_of
 from btlang.engine.status import FAILURE, IDLE, NAMES, RUNNING, SUCCESS
 from btlang.tree.catalogue import CATALOGUE, ON_SUCCESS
@@ -13,7 +14,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, TypeAlias
 
-    from btlang.engine.instance import Compiled, EngineState, Fault, Halt, NodeInstance, Tick
+    from btlang.engine.instance import Compiled, EngineState, Halt, NodeInstance, Tick
     from btlang.tree.node import Node
 
     Call: TypeAlias = Callable[[], Any]
@@ -29,13 +30,19 @@ def reports_each_round(node: Node) -> bool:
     return kind is not None and bool(kind.again) and (kind.again == ON_SUCCESS or not kind.is_endless(node.ports))
 
 
+def is_rule(node: Node) -> bool:
+    """Return whether a node is a rule, whose first child is its condition."""
+    kind = CATALOGUE.get(node.id)
+    return kind is not None and kind.roles[:1] == ("whenever",)
+
+
 _SUCCESS = tuple(before << 3 | SUCCESS for before in range(len(NAMES)))  # the code of a success, by the status before
 
 
 class Changes:
     """Changes of statuses, oldest first. Iterating yields for each the index of the node in preorder, its new status,
     the one before (IDLE in a new run of its parent), and for a FAILURE what had failed latest then: this node or one
-    below.
+    below. For the SUCCESS of a condition of a rule it is what was measured, where that is known.
 
     They are kept as collections of numbers so that a change makes no new object: the garbage collector, which new
     objects call for, took longer than the rest of a tick.
@@ -173,12 +180,15 @@ class NodeTrace:
     def _trace_function(self, leaf: FunctionLeaf) -> Tick:
         """Wrap the function itself, and do what FunctionLeaf.tick does: the two calls become one."""
 
+        measures = _find_measured(leaf.instance)
+
         # defaults and not cells, as in control.py: there are many of them
         def traced_tick(
             self: NodeTrace = self,
             call: Call = leaf.call,
             trace: StatusTrace = self.trace,
             after: tuple[int, ...] = _SUCCESS,
+            measured: Callable[[], str] | None = measures,
         ) -> int:
             try:
                 status = call()
@@ -197,6 +207,8 @@ class NodeTrace:
                 if status is SUCCESS:
                     self.recorded = now
                     changes = trace.pending
+                    if measured is not None:
+                        changes.faults[len(changes.codes)] = Fault(self.index, measured())
                     changes.indices.append(self.index)
                     changes.codes.append(after[before])
                 else:
@@ -239,3 +251,20 @@ class NodeTrace:
             stack += [child for child in node.below if child.last != IDLE]
         for node in reversed(unrecorded):
             node._record()
+
+
+_MOST_ABOVE = 4  # nodes between a rule and a condition in it: `not`, `and`, `or`
+
+
+def _find_measured(instance: NodeInstance) -> Callable[[], str] | None:
+    """Return what says what a leaf measured, if it is in the condition of a rule; nobody asks for it elsewhere."""
+    signature = instance.state.signatures.get(instance.node.id)
+    measured = signature.binding.measured if signature is not None else None
+    below, above = instance, instance.above
+    for _ in range(_MOST_ABOVE) if measured is not None else ():
+        if above is None:
+            break
+        if is_rule(above.node):
+            return measured if below.position == 0 else None
+        below, above = above, above.above
+    return None

@@ -9,14 +9,15 @@ from collections.abc import Callable, Sequence
 from functools import cached_property
 
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.engine.status import FAILURE
+from btlang.engine.status import FAILURE, RUNNING
 from btlang.recording.reader import RecordedNodes
 from btlang.robots.bodies.body_file import standard_body
 from btlang.robots.geometry import Point, Pose
 from btlang.run.controls import Controls
 from btlang.run.events import Event, PeriodPassed, StatusesChanged
 from btlang.run.robot_state import RobotState
-from btlang.run.snapshot import RunState, Shape
+from btlang.run.snapshot import RunState, Shape, find_asked
+from btlang.tree.catalogue import CATALOGUE, ON_FAILURE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -76,7 +77,8 @@ class ReplayTimeline:
         self.events = events
         self._times = [event.t for event in events]
         self._nodes = [nodes.node(index) for index in range(nodes.size)]
-        self._shape = Shape([nodes.parent(index) for index in range(nodes.size)])
+        self._parents = [nodes.parent(index) for index in range(nodes.size)]
+        self._shape = Shape(self._parents)
         self._kept: list[tuple[int, RunState]] = []  # how many events each has taken
 
     def count_before(self, t: float) -> int:
@@ -85,12 +87,23 @@ class ReplayTimeline:
 
     @cached_property
     def failures(self) -> list[float]:
-        """Return when nodes failed, in seconds of the mission."""
+        """Return when nodes failed, in seconds of the mission. Conditions that say no are no failures."""
+        asked = find_asked(self._nodes, self._parents)
         found: dict[float, None] = {}
         for event in self.events:
-            if isinstance(event, StatusesChanged) and FAILURE in {status for _, status, _, _ in event.changes}:
-                found[event.t] = None
+            for index, status, before, _ in event.changes if isinstance(event, StatusesChanged) else ():
+                if status == FAILURE and not asked[index] and not self._is_awaited(index, before):
+                    found[event.t] = None
         return list(found)
+
+    def _is_awaited(self, index: int, before: int) -> bool:
+        """Whether the mission waits until a leaf says yes: it is asked again and again, and takes no time itself."""
+        node, parent = self._nodes[index], self._parents[index]
+        kind = CATALOGUE.get(self._nodes[parent].id) if parent >= 0 else None
+        is_question = not node.children and before != RUNNING
+        return (
+            is_question and kind is not None and kind.again == ON_FAILURE and kind.is_endless(self._nodes[parent].ports)
+        )
 
     def state(self, count: int) -> RunState:
         """Return the state after so many events; the caller may change it."""

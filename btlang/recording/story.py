@@ -8,18 +8,34 @@ from operator import itemgetter
 
 from btlang.api import Mission
 from btlang.engine.engine import Failure
-from btlang.engine.status import FAILURE, IDLE, NAMES, RUNNING, SKIPPED
+from btlang.engine.status import FAILURE, IDLE, NAMES, RUNNING, SKIPPED, SUCCESS
+from btlang.engine.status_trace import is_rule
 from btlang.recording.reader import RecordedNodes, open_recording
 from btlang.run.events import Chosen, Ended, Event, FaultInjected, InTheWorld, Notice, PartChanged, StatusesChanged
 from btlang.run.failure_history import FailureHistory, failure_report
 from btlang.run.logs import is_asked_wait
 from btlang.text.formatting import one_line
 from btlang.tree.catalogue import CATALOGUE, ON_FAILURE
-from btlang.tree.node import Node
+from btlang.tree.node import Node, Tree
 from btlang.tree.visit import children_first
 
 _NO_REASON = ("", "it is not true")  # which say no more than "false"
 _ENDINGS = {FAILURE: "failed", IDLE: "was halted", SKIPPED: "was skipped"}
+
+
+class _Triggered:
+    """A rule whose condition became true: what was measured, and the commands that it halted."""
+
+    def __init__(self, t: float, index: int, words: str, measured: list[str]) -> None:
+        self.t, self.index, self.words, self.measured = t, index, words, measured
+        self.halted: list[str] = []
+
+    def line(self) -> tuple[float, str, str]:
+        """Return it as a line of a story: when, what, and what else to write."""
+        measured = f" ({', '.join(self.measured)})" if self.measured else ""
+        named = " and ".join(f"'{words}'" for words in self.halted)
+        halted = f", so it halted {named}" if named else ""
+        return self.t, f"{self.words}: true", measured + halted
 
 
 class Story:
@@ -33,6 +49,8 @@ class Story:
         """The things that were done: when each began, the number of the node (-1: none), and the words."""
         # conditions that were false, and choices that found nothing: when, what, and why
         self._answers: list[tuple[float, str, str]] = []
+        self._rules: list[_Triggered] = []
+        self._measured: dict[int, tuple[float, str]] = {}  # by condition of a rule: when it became true, and how much
         self._ended: Ended | None = None
         self._latest = 0.0
 
@@ -43,6 +61,7 @@ class Story:
             self._history(event)
             if isinstance(event, StatusesChanged):
                 for change in event:
+                    self._follow_rules(change.index, change.status, change.t, change.reason)
                     node = event.valued.get(change.index, change.node)
                     if self._is_said(node) or is_asked_wait(change.node):
                         self._take_change(change.index, change.status, change.t, node, change.reason)
@@ -71,7 +90,9 @@ class Story:
         )
         yield one_line(f"{name}, {when}{on}:")
         done = ((t, text, "") for t, text in self._noted())
-        yield from fold_lines([*self._answers, *done])  # an answer comes before what it begins
+        yield from fold_lines(
+            [*self._answers, *(rule.line() for rule in self._rules), *done]
+        )  # an answer comes before what it begins
         yield from self.ending()
 
     def body(self) -> Iterator[str]:
@@ -113,6 +134,28 @@ class Story:
     def _failure(self, ended: Ended) -> Failure:
         index = next(at for at in range(self._nodes.size) if self._nodes.path(at) == ended.path)
         return Failure(index, self._nodes.node(index), ended.path, ended.reason, None, self._nodes.span(index))
+
+    def _follow_rules(self, index: int, status: int, t: float, reason: str) -> None:
+        """Note the conditions of rules that become true, and the commands that are halted for their reactions."""
+        if status == SUCCESS:
+            if reason:
+                self._measured[index] = t, reason
+            above = self._nodes.parent(index)
+            if index == above + 1 and above >= 0 and is_rule(self._nodes.node(above)):
+                node, span = self._nodes.node(index), self._nodes.span(index)
+                words = self._mission.label(node) if not node.children or span is None else span.text.splitlines()[0]
+                below = range(index, index + sum(1 for _ in Tree(node).walk()))
+                told = [text for at, (when, text) in self._measured.items() if when == t and at in below]
+                self._rules.append(_Triggered(t, above, words, told))
+        elif status == IDLE and index in self._began and self._rules:
+            rule, node = self._rules[-1], self._nodes.node(index)
+            if rule.t == t and self._is_said(node) and self._is_below(index, rule.index):
+                rule.halted.append(self._mission.label(self._began[index][1]))
+
+    def _is_below(self, index: int, above: int) -> bool:
+        while index > above:
+            index = self._nodes.parent(index)
+        return index == above
 
     def _is_said(self, node: Node) -> bool:
         """Return whether it is a command that somebody has said."""

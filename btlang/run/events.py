@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterator, Mapping
 from time import time
 
-from btlang.engine.status import FAILURE, IDLE
+from btlang.engine.status import FAILURE, IDLE, SUCCESS
 from btlang.support.record import Record
 from btlang.tree.node import Node
 
@@ -101,8 +101,8 @@ class Event(Record):
 class StatusChanged(Event):
     """A node has a new status. `index` is its number in preorder, `path` its place.
 
-    `before` is its last status in this round: IDLE if its parent has started again. `reason` says why a node failed. It
-    is "" for any other status, and if only a node below it has the reason.
+    `before` is its last status in this round: IDLE if its parent has started again. `reason` says why a node failed, or
+    what the condition of a rule measured when it became true. It is "" otherwise, and if only a node below it has it.
     """
 
     path: str
@@ -132,7 +132,8 @@ class StatusesChanged(Event):
     def without_paths(self) -> Iterator[tuple[int, int, int, str]]:
         """Yield index, new status, status before and reason of each change. Paths cost more than all the rest."""
         for index, status, before, fault in self.changes:
-            yield index, status, before, self.nodes.reason(index, fault) if status == FAILURE else ""
+            is_told = status == FAILURE or (status == SUCCESS and fault is not None)
+            yield index, status, before, self.nodes.reason(index, fault) if is_told else ""
 
     def values_now(self) -> dict[int, Node]:
         """Return `valued` without nodes that are IDLE again, whose keys may have the values of a later round by now."""

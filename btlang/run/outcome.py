@@ -65,6 +65,8 @@ class Outcome(Record, uncompared=("why", "statuses", "exceptions")):
     by their words. `exceptions` are those that leaves have raised, except ActionFailed: the latest of each leaf, also
     where the mission went on.
 
+    `unanswered` says, in a sentence each, which conditions of rules were never known: these rules have done nothing.
+
     `stopped` is "" where the tree completed, else (status IDLE) "time limit", "interrupted", "suspended" (it can go on
     in another run) or "emergency stop". `seconds` are those of the mission, without the time in which the robot came to
     rest. `overruns` are the ticks that took too long, `worst` the slowest leaf in one and its seconds; None where no
@@ -82,12 +84,16 @@ class Outcome(Record, uncompared=("why", "statuses", "exceptions")):
     why: Callable[..., str] = str
     statuses: Callable[[], Mapping[str, Status]] = dict
     exceptions: tuple[BaseException, ...] = ()
+    unanswered: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         failure = f": {self.failure.reason}" if self.failure is not None else ""
         return f"<Outcome {self.stopped or self.status.name} after {self.seconds:.1f} s{failure}>"
 
     def __str__(self) -> str:
+        return "\n".join((self._ending(), *self.unanswered))
+
+    def _ending(self) -> str:
         if self.failure is not None:
             return self.why() or f"The mission failed after {self.seconds:.1f} s."
         seconds = f"{self.seconds:.1f} s"

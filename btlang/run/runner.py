@@ -187,7 +187,26 @@ class Runner:
         standstill = Standstill() if standstill is None else standstill
         raised = tuple(getattr(self._engine, "raised", {}).values())
         seconds = self._clock.now - self._began if seconds is None else seconds
-        return Outcome(status, seconds, self.ticks, failure, stopped, count, worst, standstill, exceptions=raised)
+        return Outcome(
+            status,
+            seconds,
+            self.ticks,
+            failure,
+            stopped,
+            count,
+            worst,
+            standstill,
+            exceptions=raised,
+            unanswered=tuple(text for text, _ in self._unanswered()),
+        )
+
+    def _unanswered(self) -> list[tuple[str, Failure]]:
+        """Say which rules did nothing, as their conditions were never known."""
+        texts: dict[str, Failure] = {}
+        for failure in getattr(self._engine, "unanswered", ()):
+            words = failure.node.source_text
+            texts.setdefault(f"A rule did nothing: '{words}' was never known ({failure.reason}).", failure)
+        return list(texts.items())
 
     def between_ticks(self, call: Callable[[], Any]) -> Any:
         """Return what `call` returns or raises, between two ticks of `run`. From any thread; waits until then."""
@@ -241,6 +260,8 @@ class Runner:
         if self.controls.emergency:
             status, stopped = IDLE, EMERGENCY
         outcome = self.completed(Status(status), stopped, seconds, standstill)
+        for text, failure in self._unanswered():
+            self._bus.emit(Warned, text, failure.path, _place(failure))
         self._bus.emit(Ended, *_ending(outcome))
         return outcome
 

@@ -12,6 +12,7 @@ from btlang.run.events import Arrived, Ended, Heard, NavigationStarted, PeriodPa
 from btlang.run.robot_state import RobotState
 from btlang.run.statuses import Status
 from btlang.support.record import Record
+from btlang.tree.catalogue import CATALOGUE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -80,6 +81,18 @@ HALTED = IDLE + 1
 """The status of a node that was RUNNING and was halted."""
 SUSPENDED = HALTED + 1
 """The status of a node that was halted by a pause, or by the end of the run."""
+
+
+def find_asked(nodes: Sequence[Node], parents: Sequence[int]) -> list[bool]:
+    """Return for each node whether its failure is an answer: it belongs to the condition of a rule, an `if` or a
+    `while`. `parents` are the numbers of the nodes above, -1 for none.
+    """
+    asked = [False] * len(nodes)
+    for index, parent in enumerate(parents):
+        if parent >= 0:
+            kind = CATALOGUE.get(nodes[parent].id)
+            asked[index] = asked[parent] or (index == parent + 1 and kind is not None and kind.asks_first)
+    return asked
 
 
 class Snapshot(Record):

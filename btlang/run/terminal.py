@@ -146,7 +146,7 @@ def run_mission(
     for slow in run.bus.slow:
         show(f"An event sink was too slow: the run waited {slow.seconds:.1f} s for it.", sys.stderr)
     if outcome.status == FAILURE:
-        show(outcome.why(colour=has_colour(sys.stderr)), stream=sys.stderr)
+        show("\n".join((outcome.why(colour=has_colour(sys.stderr)), *outcome.unanswered)), stream=sys.stderr)
     elif not quiet:
         show(str(outcome))
     lost = [error for error in run.sink_errors if isinstance(error, OSError)]

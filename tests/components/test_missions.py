@@ -11,9 +11,10 @@ from typing import Any
 import pytest
 
 import btlang
+from btlang.cli import main
 from btlang.components import connection
 from btlang.components.words import robot_words
-from btlang.run.events import Event, PartChanged, RobotEvent
+from btlang.run.events import Event, PartChanged, RobotEvent, Warned
 from tests.components.robots import machine, robot_file
 
 WHERE = pytest.mark.parametrize("runs", ["process", "here"])
@@ -55,6 +56,38 @@ def test_what_it_raises_is_the_reason(tmp_path: Path, runs: str) -> None:
     outcome, _ = run(robot, "brew tea")
     assert not outcome.succeeded
     assert "no water" in outcome.why()
+    assert "raised in _go_wrong, coffee.py:" in outcome.why()
+
+
+@WHERE
+@pytest.mark.parametrize("hook", ["configure", "activate", "step"])
+def test_where_a_hook_raised_is_said(tmp_path: Path, runs: str, hook: str) -> None:
+    robot = robot_file(tmp_path, machine(runs=f'"{runs}"', parameters=f'{{ wrong = "raise in {hook}" }}', restarts=0))
+    outcome, _ = run(robot, "wait 0.5 s then brew tea", speed="real")
+    assert "RuntimeError: no water (raised in _go_wrong, coffee.py:" in outcome.why()
+
+
+@WHERE
+def test_a_refusal_is_a_plain_no(tmp_path: Path, runs: str) -> None:
+    robot = robot_file(tmp_path, machine(runs=f'"{runs}"'))
+    outcome, events = run(
+        robot, "whenever the tray is full, print full\nif the tray is full, print yes otherwise print no"
+    )
+    assert outcome.succeeded, outcome.why()
+    assert (printed(events), [each for each in events if isinstance(each, Warned)]) == (["no"], [])
+    outcome, _ = run(robot, "check that the tray is full")
+    assert "it has brewed 0 of 3" in outcome.why()
+    outcome, _ = run(robot, "serve from the tray")
+    assert "the tray is empty" in outcome.why()
+
+
+@WHERE
+def test_an_answer_that_was_forgotten_is_not_known(tmp_path: Path, runs: str) -> None:
+    robot = robot_file(tmp_path, machine(runs=f'"{runs}"', parameters='{ wrong = "forget it" }'))
+    outcome, events = run(robot, "if the tray is full, print yes otherwise print no")
+    assert not outcome.succeeded
+    assert printed(events) == []
+    assert "it returned nothing" in outcome.why()
 
 
 @pytest.mark.parametrize("wrong", ["raise", "exit"])
@@ -189,3 +222,44 @@ def test_what_cannot_be_loaded_says_why(tmp_path: Path, table: str, reason: str)
     robot = robot_file(tmp_path, f"{table}\nrestarts = 0")
     with btlang.Session(robot) as session:
         assert reason in session.connection.manager.statuses()[0].why  # type: ignore[attr-defined]
+
+
+@WHERE
+def test_no_run_starts_without_a_class(tmp_path: Path, runs: str, capsys: pytest.CaptureFixture[str]) -> None:
+    robot = robot_file(tmp_path, machine(runs=f'"{runs}"'))
+    path = tmp_path / "coffee.py"
+    path.write_text(path.read_text(encoding="utf-8").replace("def configure(self):", "def configure(self)"), "utf-8")
+    assert main(["robot", "check", robot]) == 2
+    said = capsys.readouterr().err
+    assert "SyntaxError" in said
+    for text in ("whenever something was brewed, print oh. go to the lab", "go to the lab"):
+        assert main(["run", "-c", text, "--robot", robot, "--speed", "max"]) == 2
+        out, err = capsys.readouterr()
+        assert (out, err) == ("", said)
+    mission = btlang.parse_tree("whenever something was brewed, print oh. go to the lab", keywords=robot_words(robot))
+    with btlang.Session(robot) as session, pytest.raises(btlang.MissionError, match="SyntaxError"):
+        session.prepare(mission)
+    with btlang.Session(robot) as session:
+        outcome = session.run("go to the lab", speed="max").outcome
+        assert outcome is not None
+        assert outcome.succeeded
+
+
+@WHERE
+def test_a_rule_that_never_knew_is_told_at_the_end(
+    tmp_path: Path, runs: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    robot = robot_file(tmp_path, machine(runs=f'"{runs}"', parameters='{ wrong = "slip" }'))
+    outcome, events = run(robot, "whenever the tray is full, print full. go to the lab")
+    assert outcome.succeeded
+    [told] = outcome.unanswered
+    assert told.startswith("A rule did nothing: 'tray is full' was never known (AttributeError: ")
+    warned = next(event.text for event in events if isinstance(event, Warned))
+    assert warned.startswith(
+        "'tray is full' is not known: AttributeError: 'Machine' object has no attribute 'capacity'"
+    )
+    assert warned.count("(raised in is_full, coffee.py:") == 1
+    assert str(outcome).splitlines()[1:] == [told]
+    assert [event.text for event in events if isinstance(event, Warned)][-1] == told
+    assert main(["run", "-c", "whenever the tray is full, print full. wave", "--robot", robot, "--speed", "max"]) == 0
+    assert told in capsys.readouterr().out.splitlines()[-1]

@@ -169,3 +169,19 @@ def test_an_action_yields_no_end() -> None:
     assert (engine.tick(), closed) == (FAILURE, ["act"])
     assert engine.failure is not None
     assert engine.failure.reason == "it yielded False: to end, return that; a yield says that it runs"
+
+
+def test_a_rule_whose_condition_was_never_known_is_listed_until_it_is() -> None:
+    world = World()
+    engine = world.engine(Node("Whenever", (SENSE, OTHER, SLEEP)))
+    assert engine.tick() == RUNNING
+    assert [failure.reason for failure in engine.unanswered] == ["the sensor is silent"]
+    engine.halt()
+    assert engine.tick() == RUNNING
+    assert len(engine.unanswered) == 1
+    world.knows = False
+    assert engine.tick() == RUNNING
+    assert engine.unanswered == []
+    world.knows = None
+    assert engine.tick() == RUNNING
+    assert engine.unanswered == []

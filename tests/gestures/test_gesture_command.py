@@ -68,7 +68,7 @@ def test_play(capsys: pytest.CaptureFixture[str]) -> None:
         (("play", "finger", "to", "lips", *ROBOT), 'put its name in quotes: btc gesture play "finger to lips"'),
         (("picture", "bow", *ROBOT), "picture needs -o OUT"),
         (("check", "bow.toml", "-o", "x.png"), "-o isn't for check"),
-        (("dance", "bow"), "invalid choice"),
+        (("dance", "bow"), "there's no act 'dance'"),
     ],
 )
 def test_what_is_refused(capsys: pytest.CaptureFixture[str], words: tuple[str, ...], says: str) -> None:

@@ -107,6 +107,27 @@ def test_why_folds_rounds_and_shows_what_was_false(tmp_path: Path, capsys: pytes
     ]
 
 
+def test_why_shows_which_rule_acted_on_what_and_what_it_halted(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = """whenever the battery is below 99.5% and it is not the case that Alice is near, say low then charge
+repeat 2 times: go to the lab, then go to the lobby
+whenever the battery is below 20%, nod
+"""
+    run(text, tmp_path / "run.mcap", "--quiet", "--for", "100s")
+    capsys.readouterr()
+    story = printed(capsys, "why", str(tmp_path / "run.mcap"))[1].splitlines()
+    rule = next(line for line in story if ": true" in line)
+    said = story[story.index(rule) + 1]
+    assert re.fullmatch(
+        r" +\d+\.\d s  battery is below 99\.5% and it is not the case that Alice is near: true"
+        r" \(battery is 99\.4\d*%\), so it halted 'go to lab'",
+        rule,
+    ), story
+    assert 'say "low"' in said
+    assert rule.split()[0] == said.split()[0]
+
+
 @pytest.mark.parametrize(
     ("said", "lines"),
     [
@@ -257,6 +278,17 @@ def test_one_goes_on_and_back_and_to_the_next_failure(tmp_path: Path) -> None:
     controls.resume()
     thread.join(5)
     assert not thread.is_alive()
+
+
+def test_a_condition_that_is_false_is_no_failure(tmp_path: Path) -> None:
+    text = """whenever the battery is below 99.9% or Alice is near, wait 30 s
+if the battery is below 20% or Alice is near, nod otherwise wave
+go to the lab but stop when Alice is near
+wait until the battery is below 99.9%
+{}"""
+    assert timeline_of(text.format(""), tmp_path).failures == []
+    failing = timeline_of(text.format("try to grasp the book, otherwise nod"), tmp_path)
+    assert len(failing.failures) == 1
 
 
 def test_the_robot_file_is_in_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

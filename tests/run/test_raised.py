@@ -95,7 +95,8 @@ def test_a_reason_alone_still_means_no() -> None:
 def test_a_standing_rule_reports_it_once_and_goes_on() -> None:
     outcome, warnings = run("whenever the gate is jammed, note; wait 1 second")
     assert (outcome.status, DONE) == (Status.SUCCESS, [])
-    [warning] = warnings
+    warning, ending = warnings
+    assert [ending] == list(outcome.unanswered)
     assert "gate is jammed' is not known: ZeroDivisionError: no pulse" in warning
     assert " (raised in jammed, test_raised.py:" in warning
 

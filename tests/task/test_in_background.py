@@ -44,6 +44,9 @@ def test_a_robot_stays_up_when_its_terminal_closes(folder: Path) -> None:
         wait_until(lambda: "is up" in log.read_text(encoding="utf-8"))
         os.kill(pid, signal.SIGHUP)  # what the terminal sends as it closes
         assert "nothing to do" in shell("btc robot status --name museum", folder)
+        shell("btc robot pause --name museum", folder)
+        shell("btc robot resume --name museum", folder)
+        assert re.search(r"  Paused by .*\n.*  The pause was ended by ", log.read_text(encoding="utf-8"))
         assert "goes down" in shell("btc robot down --name museum", folder)
         wait_until(lambda: "is down" in log.read_text(encoding="utf-8"))
     except BaseException:

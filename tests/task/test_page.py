@@ -57,7 +57,9 @@ def test_sessions_are_real(tmp_path: Path) -> None:
                         break
                 assert told == wanted, line
             assert robot is not None
-            assert robot.communicate(timeout=60)[0] == "The robot 'robot' is down.\n"
+            lines = robot.communicate(timeout=60)[0].splitlines()
+            assert lines[-2].endswith(f"  Released by {getpass.getuser()}: the robot may move again.")
+            assert lines[-1] == "The robot 'robot' is down."
             assert robot.returncode == 0
         finally:
             if robot is not None and robot.poll() is None:

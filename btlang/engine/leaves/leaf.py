@@ -119,12 +119,18 @@ def failure_reason(problem: BaseException) -> str:
     return str(problem) if isinstance(problem, ActionFailed) else describe_exception(problem)
 
 
+def locate_failure(problem: BaseException) -> str:
+    """Return why something failed, with the line of Python that raised it, unless it is an ActionFailed."""
+    place = "" if isinstance(problem, ActionFailed) else find_raising_line(problem)
+    return failure_reason(problem) + (f" (raised in {place})" if place else "")
+
+
 class LeafBinding(Record):
     """The Python side of a leaf id: what to call, how to convert the text of each port, and values for missing ports.
 
     `outputs` are the ports that the leaf writes, `refusal` is the reason for a returned False.
     With `thread` a plain function is called in a separate thread. With `condition` the leaf is a question: whatever it
-    raises means that its answer isn't known.
+    raises means that its answer isn't known. `measured` says what it measured at the latest call that was true.
     """
 
     call: Callable[..., Any]
@@ -134,6 +140,7 @@ class LeafBinding(Record):
     refusal: str = REFUSED
     thread: bool = False
     condition: bool = False
+    measured: Callable[[], str] | None = None
 
 
 class LeafSignature:

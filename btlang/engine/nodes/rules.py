@@ -39,6 +39,7 @@ def whenever(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
     fired = False  # it has, and may not again
     reacting = False
     running = 0  # the child that was RUNNING at the last tick, 1 the reaction, 2 the work, 0 none
+    known = False  # the condition has had an answer, in whichever run of this node
 
     def suspend() -> None:
         nonlocal running
@@ -61,9 +62,12 @@ def whenever(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
         halts[0](False)
 
     def tick() -> int:
-        nonlocal armed, fired, reacting, running
+        nonlocal armed, fired, reacting, running, known
         fault, unknowns = state.fault, state.unknowns
         asked = ask()
+        if not known and asked != RUNNING:
+            known = asked == SUCCESS or state.unknowns == unknowns
+            state.note_answer(instance.index, known)
         if asked != SUCCESS:
             armed = armed or (not fired and asked != RUNNING and state.unknowns == unknowns)
         elif armed and not reacting:

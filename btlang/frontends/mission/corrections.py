@@ -246,7 +246,7 @@ class _Corrections:
             self._budget -= max(len(around), _LEAST_COST)
             return None
         self._budget -= cost
-        lexer, _, faults = _read(self._lexer, "".join(self._piece(statement, None) for statement in statements))
+        lexer, _, faults = read_again(self._lexer, "".join(self._piece(statement, None) for statement in statements))
         read = len(faults), cost, _ids(lexer), tuple(_understood(lexer, faults))
         return self._trials.setdefault(number, _Trial(self._statements[number], statements, *read))
 
@@ -295,7 +295,7 @@ class _Corrections:
             number = trial.statements.index(self._statements[self._at(place)])
             grown = len(change[2]) - (change[1] - change[0]) if change[1] <= place else 0
             places.append(ends[number] + place - trial.statements[number].start + grown)
-        lexer, grouped, faults = _read(self._lexer, "".join(pieces))
+        lexer, grouped, faults = read_again(self._lexer, "".join(pieces))
         sentences = [*map(_Sentences(lexer.text).around, places)]
         if len(faults) >= trial.faults or any(first <= fault <= last for fault in faults for first, last in sentences):
             return None
@@ -310,7 +310,7 @@ class _Corrections:
         broken = {bisect_right(ends, fault) - 1 for fault in faults}
         if broken:  # what else is wrong keeps the text from being compiled
             pieces = ["" if number in broken else piece for number, piece in enumerate(pieces)]
-            lexer, grouped, faults = _read(self._lexer, "".join(pieces))
+            lexer, grouped, faults = read_again(self._lexer, "".join(pieces))
         return None if not faults and any(p.is_error for p in self._compile(lexer, grouped)) else meaning
 
     def _piece(self, statement: _Statement, change: Change | None) -> str:
@@ -320,7 +320,7 @@ class _Corrections:
         return piece[: change[0] - statement.start] + change[2] + piece[change[1] - statement.start :]
 
 
-def _read(like: Lexer, text: str) -> tuple[Lexer, Grouped, list[int]]:
+def read_again(like: Lexer, text: str) -> tuple[Lexer, Grouped, list[int]]:
     """A text as the lexer of another one reads it, and the characters at which something is wrong."""
     source = Source(text)
     lexer = like.again(source)

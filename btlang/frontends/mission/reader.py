@@ -133,7 +133,12 @@ class _Reader:
         if is_broken:
             from btlang.frontends.mission.corrections import corrected  # most missions need none
 
-            problems = corrected(lexer, problems, self._errors if self._errors_of is not None else None)
+            errors_of = self._errors if self._errors_of is not None else None
+            problems = corrected(lexer, problems, errors_of)
+            if lexer.text.unreadable:
+                from btlang.frontends.mission.comparison_signs import explain_signs
+
+                problems = explain_signs(lexer, problems, errors_of)
         self.problems += problems
         if is_broken:
             return Included(_names_only(source, lexer), frozenset(lexer.conditions), lexer.names.known)

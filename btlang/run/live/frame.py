@@ -12,10 +12,9 @@ from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.run.live.selection import LEAST_HEIGHT, Row, choose_rows
 from btlang.run.pace import are_many
 from btlang.run.robot_state import RobotState
-from btlang.run.snapshot import HALTED, SUSPENDED, RunState
+from btlang.run.snapshot import HALTED, SUSPENDED, RunState, find_asked
 from btlang.support.record import Record
 from btlang.text.formatting import one_line
-from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False
@@ -54,7 +53,7 @@ class ViewWords:
 
     def __init__(self, nodes: Sequence[Node], label: Callable[[Node], str], parents: Sequence[int] = ()) -> None:
         self._nodes = nodes
-        self.asked = _is_asked(nodes, parents)
+        self.asked = find_asked(nodes, parents)
         """Whether a node is in a condition of the node above, whose failure is an answer and no mistake."""
         self._label = label
         self._known: dict[int, tuple[str, str]] = {}
@@ -71,15 +70,6 @@ class ViewWords:
                 first = ""  # the first of many sentences says too little, and a name twice too much
             found = self._known[index] = one_line(name), one_line(first)
         return found
-
-
-def _is_asked(nodes: Sequence[Node], parents: Sequence[int]) -> list[bool]:
-    asked = [False] * len(nodes)
-    for index, parent in enumerate(parents):
-        if parent >= 0:
-            kind = CATALOGUE.get(nodes[parent].id)
-            asked[index] = asked[parent] or (index == parent + 1 and kind is not None and kind.asks_first)
-    return asked
 
 
 def _heads_a_block(node: Node, line: str) -> bool:

@@ -29,6 +29,7 @@ from btlang.task.execution.emergency import EmergencyLatch
 from btlang.task.execution.executor import Executor
 from btlang.task.execution.manager import TaskManager
 from btlang.task.messages import Answer, Command, wrong
+from btlang.task.store.database import StoreError
 from btlang.task.store.records import ACTIVE, FINAL, WAITING, Act, MissionText, RequestedEnd, Restart, Task, TaskState
 from btlang.task.store.task_store import TaskStore
 from btlang.text.formatting import one_line
@@ -174,7 +175,9 @@ class Handler:
 
     def _resume(self, command: messages.Resume, person: str) -> Answer:
         if not command.task:
-            ended = self._executor.resume()
+            was_paused, ended = self._executor.is_paused, self._executor.resume()
+            if was_paused:
+                self._note_pause("it goes on after a pause", person)
             text = f"That ends {ended}." if ended else "Nothing was paused."
             if not ended and self._emergency.is_latched:
                 text += " The robot is stopped until 'release'."
@@ -245,12 +248,23 @@ class Handler:
 
     def _pause(self, command: messages.Pause, person: str) -> Answer:
         run, task = self._executor.run, self._executor.task
-        if not self._executor.is_paused:
+        was_paused = self._executor.is_paused
+        if not was_paused:
             self._interrupted = () if run is None or task is None else run.snapshot().running
         self._executor.pause()
+        if not was_paused:
+            self._note_pause("paused", person)
         at = _paused_at(task, self._interrupted)
         text = f"The robot is paused.{f' {at} It goes on with: btc robot resume' if at else ''}"
         return Answer(True, text, {"task": 0 if task is None else task.id, "interrupted": list(self._interrupted)})
+
+    def _note_pause(self, cause: str, person: str) -> None:
+        """Keep what became of the task under way, for who asks later why it took so long."""
+        task = self._executor.task
+        if task is not None:
+            with suppress(StoreError):  # the pause counts, whether it can be written down or not
+                under_way = {TaskState.UNDERWAY}
+                self._store.change(task.id, under_way, TaskState.UNDERWAY, time=self._now(), cause=cause, person=person)
 
     def _step(self, command: messages.Step, person: str) -> Answer:
         if not self._executor.step():

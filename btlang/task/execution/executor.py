@@ -366,7 +366,7 @@ class Executor:
         elif outcome.failure is not None:
             change(TaskState.FAILED, reason_of(outcome))
         elif not outcome.stopped:
-            change(TaskState.COMPLETED, "" if outcome.seconds else NOTHING_TO_DO)
+            change(TaskState.COMPLETED, " ".join(outcome.unanswered) if outcome.seconds else NOTHING_TO_DO)
         elif outcome.stopped == EMERGENCY and len(self._emergency.stops) > self._stops:  # perhaps it's released already
             change(TaskState.KILLED, self._emergency.stops[-1])
         elif ending is not None and ending.state is TaskState.DELAYED:

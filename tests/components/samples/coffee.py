@@ -3,12 +3,14 @@
 import os
 import time
 
+import btlang
 from btlang import Component, Parameter
 from btlang.devices.kinds import WheelSpeeds
 
 
 class Machine(Component):
     version = "1.0"
+    rate = 10
     heat = Parameter(90.0, low=60, high=95, unit="°C")
     wrong = Parameter("")  # what goes wrong
 
@@ -18,6 +20,9 @@ class Machine(Component):
 
     def activate(self):
         self._go_wrong("activate")
+
+    def step(self, seconds):
+        self._go_wrong("step")
 
     def brew(self, drink, robot):
         self._go_wrong("brew")
@@ -44,6 +49,16 @@ class Machine(Component):
 
     def has_brewed(self):
         return self.cups > 0
+
+    def is_full(self):
+        if self.wrong == "forget it":
+            return None
+        if self.wrong == "slip":
+            return self.cups > self.capacity
+        return btlang.Failed(lambda: f"it has brewed {self.cups} of 3")
+
+    def serve(self):
+        return btlang.Failed("the tray is empty")
 
     def count(self):
         return self.cups
