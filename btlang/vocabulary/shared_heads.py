@@ -51,7 +51,7 @@ class SharedHeads:
     def behind_last(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
         """The name of which the last word stands at a word, and the others behind it: `the door of the kitchen`."""
         words = text.words
-        if kind != DOOR or words[at + 1] not in self._belonging:
+        if kind != DOOR or at + 1 >= len(words) or words[at + 1] not in self._belonging:
             return None
         for end in range(min(at + 2 + _LONGEST_NAME, len(words)), at + 2, -1):
             made = _name(self._names(kind), [*words[at + 2 : end], words[at]])
