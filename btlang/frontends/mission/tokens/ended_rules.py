@@ -33,7 +33,7 @@ from btlang.vocabulary.value_type import PLACE
 
 _EXAMPLE = "it is after 6 pm"
 _HEADS = frozenset(("every", "every_day", "at", "delay"))
-_OPEN, GO, _TIME_OF_DAY = "OpenZone", "GoTo", "TimeOfDay"
+_OPEN, GO = "OpenZone", "GoTo"
 _NOT_DONE = "a definition is done once, and this holds all the time"
 _IN_THE_MISSION = "Write it as a sentence of the mission."
 _ENDS = frozenset(("newline", "semi", "stop", "dedent", "close"))
@@ -63,10 +63,10 @@ def with_ends(tokens: list[Token], vocabulary: Lexicon, span: Callable[[int, int
         begins = _begins(tokens, at)
         is_next = until.kind in WAITING and _is_next(tokens, at)
         constraint = constraint_of(tokens[at]) if (begins or is_next) and until.kind in _ENDING else None
-        if constraint is not None and constraint.kind == "keep out" and until.kind == "until_time":
-            tokens[at + 1 : at + 2] = _when_it_is(until, vocabulary)
-            until = tokens[at + 1]
-        if constraint is not None and constraint.kind == "keep in" and until.kind in WAITING:
+        is_timed = constraint is not None and constraint.kind == "keep out" and until.kind == "until_time"
+        if is_timed and opening is not None and _waits_behind(tokens, at, at + 2, opening):
+            pass  # `avoid the hall until 6 pm, then go to the hall`
+        elif constraint is not None and constraint.kind == "keep in" and until.kind in WAITING:
             _wait(tokens, at, vocabulary)
         elif constraint is not None and until.kind != "until":
             forbidden, whole = span(tokens[at].start, tokens[at].end).text, span(tokens[at].start, until.end)
@@ -291,24 +291,23 @@ def _condition_end(tokens: list[Token], at: int) -> tuple[int, int]:
     return at, at
 
 
-def _when_it_is(until: Token, vocabulary: Lexicon) -> list[Token]:
-    """Return `until 6 pm` as the condition that it is so late, which may also be so at once."""
-    entry = vocabulary.entry(_TIME_OF_DAY)
-    if entry is None or not isinstance(until.value, str):
-        return [until]
-    asked = Called(entry, (("above", until.value),))
-    return [Token("until", until.start, until.end), Token("condition", until.start, until.end, asked)]
+def _waits_behind(tokens: list[Token], at: int, last: int, opening: Entry) -> bool:
+    """Open what is closed before a `then` behind `last`, where the robot waits until then; False without one."""
+    until, command = tokens[at + 1], _opened(tokens[at], opening)
+    further = run_end(tokens, last, STATEMENT_ENDS | JOINTS)
+    if all(token.kind != "then" for token in tokens[last:further]):
+        return False
+    here = tokens[last].start
+    waiting = Token(WAITING[until.kind], until.start, until.end, until.value)
+    opens = [Token("then", here, here), Token("command", here, here, command), Token("then", here, here)]
+    tokens[at + 1 : further] = [Token("then", until.start, until.start), waiting, *tokens[at + 2 : last], *opens]
+    return True
 
 
 def _open_again(tokens: list[Token], at: int, opening: Entry) -> None:
     until, command = tokens[at + 1], _opened(tokens[at], opening)
     last, behind = _condition_end(tokens, at + 2)
-    further = behind if behind > last else run_end(tokens, last, STATEMENT_ENDS | JOINTS)
-    if any(token.kind == "then" for token in tokens[last:further]):  # `avoid the hall until 6 pm, then go to the hall`
-        here = tokens[last].start
-        waits = [Token("then", until.start, until.start), Token("wait_until", until.start, until.end)]
-        opens = [Token("then", here, here), Token("command", here, here, command), Token("then", here, here)]
-        tokens[at + 1 : further] = [*waits, *tokens[at + 2 : last], *opens]
+    if _waits_behind(tokens, at, last, opening):
         return
     if behind > last:  # `avoid the hall until bumped, wave`
         tokens[last:behind] = [Token("semi", tokens[last].start, tokens[last].end)]
