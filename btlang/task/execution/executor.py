@@ -11,7 +11,7 @@ from functools import partial
 from btlang.api import Mission, value_key
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.engine.leaves.leaf import describe_exception
-from btlang.engine.status import RUNNING
+from btlang.engine.status import RUNNING, SKIPPED
 from btlang.run.outcome import EMERGENCY, SUSPENDED
 from btlang.session import Run, Session
 from btlang.task.execution.emergency import EmergencyLatch
@@ -366,7 +366,7 @@ class Executor:
         elif outcome.failure is not None:
             change(TaskState.FAILED, reason_of(outcome))
         elif not outcome.stopped:
-            change(TaskState.COMPLETED, " ".join(outcome.unanswered) if outcome.seconds else NOTHING_TO_DO)
+            change(TaskState.COMPLETED, NOTHING_TO_DO if outcome.status == SKIPPED else " ".join(outcome.unanswered))
         elif outcome.stopped == EMERGENCY and len(self._emergency.stops) > self._stops:  # perhaps it's released already
             change(TaskState.KILLED, self._emergency.stops[-1])
         elif ending is not None and ending.state is TaskState.DELAYED:
