@@ -58,12 +58,6 @@ def test_the_most_urgent_comes_first_then_the_oldest(tmp_path: Path, place: str)
     assert printer.texts == ["2", "5", "1", "4", "3", "0"]
 
 
-def test_only_what_was_skipped_had_nothing_to_do(tmp_path: Path, place: str) -> None:
-    with layer_in(tmp_path, store=place) as layer:
-        reasons = [wait_for(layer, submit(layer, text), *FINAL).reason for text in ("print hello", "if bumped, wave")]
-    assert reasons == ["", executor.NOTHING_TO_DO]
-
-
 def test_a_more_urgent_task_interrupts_and_the_other_goes_on(tmp_path: Path, place: str) -> None:
     printer = Printer()
     with layer_in(tmp_path, store=place, sinks=printer.sinks) as layer:
