@@ -84,6 +84,11 @@ class Modifiers:
         found = (find(self._clauses, text.words, start) for start in range(max(at - _LONGEST_CLAUSE, 0), at))
         return any(clause is not None and clause[1] == at for clause in found)
 
+    def denies(self, text: Words, at: int) -> bool:
+        """Whether `that is not` or the like begins at a word."""
+        clause = find(self._clauses, text.words, at)
+        return clause is not None and not clause[0]
+
     def behind(self, kind: str, text: Words, at: int, names: Names) -> Iterator[tuple[Parts, int]]:
         """The filters that may stand behind a head of a type, and where each ends; the shortest first."""
         clause = find(self._clauses, text.words, at)

@@ -99,7 +99,7 @@ class Lexicon:
         """Words that questions and shortened journeys leave out, and those that begin questions, by what they are."""
         said = chain(*language["roles"].values(), *language["negations"].values(), *self.asking.values())
         said = chain(said, language["relatives"], language["relative_denials"])
-        contracted = {word for phrase in said for word in phrase.split() if re.fullmatch(r"[a-z]+'[a-z]+", word)}
+        contracted = {word for phrase in said for word in re.split(r"[ /]", phrase) if re.fullmatch(r"[a-z]+'[a-z]+", word)}
         self.orthography = self.orthography.with_contractions({*contracted, *expanded})
         self._with_names: dict[tuple[object, ...], Lexicon] = {}
         self.values = Values(self._types_of(files, english), language, [noun for file in files for noun in file.nouns])

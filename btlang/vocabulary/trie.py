@@ -18,7 +18,7 @@ from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.references import choice_of, is_related
 from btlang.vocabulary.value_type import OBJECT, TEXT, WORLD, ZONE, ValueType
 from btlang.vocabulary.values import Values
-from btlang.vocabulary.verbs import fill
+from btlang.vocabulary.verbs import fill, is_no_way
 from btlang.vocabulary.word_tree import END, NO_WORDS, SLOTS, VERBS
 
 TYPE_CHECKING = False
@@ -145,6 +145,8 @@ def longest(
                     if plain and kind in openers and (denies or word not in openers[kind]):
                         continue  # as nearly always, without reading
                     value = context.read(kind, text, i)
+                    if name == VIA and is_no_way(context, text, i, value):
+                        continue
                     if value is not None and words[value[1]] in context.modifiers:
                         wider = context.wider(kind, text, i, value)
                         paths += [(child, end, (*found, SlotValue(name, kind, said, i, end))) for said, end in wider]

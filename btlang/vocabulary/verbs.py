@@ -120,6 +120,21 @@ def fill(
     return best
 
 
+def is_no_way(context: ReadingContext, text: Words, at: int, value: tuple[str, int] | None) -> bool:
+    """Whether a value that begins at a word leaves open what the way leads through: `that room`, any of several.
+
+    `any room but the hall`, `the room that isn't red` only say what it avoids.
+    """
+    choice = choice_of(value[0]) if value is not None else None
+    if choice is None or value is None:
+        return False
+    values, behind = context.values, value[1]
+    if values.exception(text, behind) or values.modifiers.denies(text, behind):
+        return True
+    is_mere_kind = [part for part, _ in choice.parts] == ["kind"] and not values.modifiers.is_picked(choice.how, text, at)
+    return is_mere_kind and len(values.likenesses.members(choice) or ()) != 1
+
+
 class _Filling:
     """Fills the roles of one frame from the words of one text."""
 
@@ -205,6 +220,8 @@ class _Filling:
             one = SlotValue(role.slot, role.type, group, at, last, group=group)
             self._go_on(last, {**filled, role.name: one}, has_particle)
         for value in context.ways(role.type, text, at):
+            if role.name == PATH and is_no_way(context, text, at, value):
+                continue
             one = SlotValue(role.slot, role.type, value[0], at, value[1])
             self._go_on(one.last, {**filled, role.name: one}, has_particle)
             if text.words[one.last] in context.joiners:
