@@ -123,10 +123,12 @@ def counted(
     at_most: float | None = None,
     equal: float | None = None,
 ) -> bool | Failed:
-    """Return whether the robot counted so many last. Fails if it hasn't counted."""
+    """Return whether the robot counted so many last; without a limit, any. Fails if it hasn't counted."""
     found = count(blackboard)
     if isinstance(found, Failed):
         return found
+    if (below, above, at_least, at_most, equal) == (None,) * 5:
+        above = 0
     return compares(found, below, above, at_least, at_most, equal) or Failed(lambda: f"it counted {found}")
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import dist, inf, radians
 
-from btlang.actions.common import compares, where
+from btlang.actions.common import compares, things_described, where
 from btlang.engine.leaves.leaf import Failed
 from btlang.robots.geometry import Point
 from btlang.robots.robot import Base, Docking, Hands, Navigation, Power, RobotError, Sensors, SensorSilent
@@ -243,6 +243,21 @@ def people_at(
 ) -> bool | Failed:
     """Return whether so many people are at a place, as far as the robot knows."""
     found = len(robot.described("person", {"at": place}))
+    return compares(found, below, above, at_least, at_most, equal) or Failed(lambda: f"it knows of {found} there")
+
+
+def objects_at(
+    robot: Base,
+    kinds: str,
+    place: str,
+    below: float | None = None,
+    above: float | None = None,
+    at_least: float | None = None,
+    at_most: float | None = None,
+    equal: float | None = None,
+) -> bool | Failed:
+    """Return whether so many objects of a kind are at a place, as far as the robot knows."""
+    found = len(things_described(robot, "object", kind=kinds, at=place))
     return compares(found, below, above, at_least, at_most, equal) or Failed(lambda: f"it knows of {found} there")
 
 

@@ -44,10 +44,11 @@ ASKING = (
     "bringing", "home", "pleading", "saying_that", "plea", "reminding",
     "reminder", "addressed", "informing", "informed", "staying", "resuming", "interrupting", "and_back",
     "if_yes", "if_no", "told_of", "standing", "able", "unable", "reaching", "finishing", "waiting", "apiece",
-    "between_joint",    "standing_verbs", "events", "duties", "reasons", "performing", "naming", "named_as", "in_turn",
-    "rounds", "obliging", "failing", "found", "counted", "replied",
+    "between_joint", "standing_verbs", "events", "duties", "reasons", "performing", "naming", "named_as", "in_turn",
+    "until_none", "rounds", "obliging", "failing", "found", "counted", "replied",
     "so", "being", "causing", "asking_for", "plea_for", "helping", "plea_for_help",
     "speaking", "spoken_of", "still", "motionless", "who", "somebody", "answering", "likewise",
+    "remaining",
 )  # fmt: skip
 """What the table `asking` of a language may have; without it there are no questions, and no remarks."""
 

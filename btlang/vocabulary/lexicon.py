@@ -99,7 +99,9 @@ class Lexicon:
         """Words that questions and shortened journeys leave out, and those that begin questions, by what they are."""
         said = chain(*language["roles"].values(), *language["negations"].values(), *self.asking.values())
         said = chain(said, language["relatives"], language["relative_denials"])
-        contracted = {word for phrase in said for word in re.split(r"[ /]", phrase) if re.fullmatch(r"[a-z]+'[a-z]+", word)}
+        contracted = {
+            word for phrase in said for word in re.split(r"[ /]", phrase) if re.fullmatch(r"[a-z]+'[a-z]+", word)
+        }
         self.orthography = self.orthography.with_contractions({*contracted, *expanded})
         self._with_names: dict[tuple[object, ...], Lexicon] = {}
         self.values = Values(self._types_of(files, english), language, [noun for file in files for noun in file.nouns])
@@ -140,6 +142,8 @@ class Lexicon:
         """What does nothing where it stands alone: `stay here`."""
         self.in_turn = tree_of((words, True) for words in self.asking["in_turn"])
         """The words beside a list that say nothing: `in that order`."""
+        self.until_none = tree_of((words, True) for words in self.asking["until_none"])
+        """The words that say nothing behind all things of a kind: `until none are left`."""
         self.and_back = tree_of((words, True) for words in self.asking["and_back"])
         """The words for a journey back: `to the lab and back`."""
         self.going = tree_of((words, True) for words in self.asking["going"])

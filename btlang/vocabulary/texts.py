@@ -39,7 +39,7 @@ class Texts:
         self._clause_words = frozenset(language["clause_words"])
         self._question_words = frozenset(language["question_words"])
         self._openers = frozenset((*language["clause_openers"], *self._question_words))
-        self._modals, self._completed = frozenset(language["modals"]), frozenset(language["completed"])
+        self._modals, self.completed = frozenset(language["modals"]), frozenset(language["completed"])
         self._participles, self._endings = frozenset(language["participles"]), tuple(language["participle_endings"])
         self.inverting = self._modals.union(language["inverting"])
         self.matters = frozenset(language["matters"])
@@ -94,8 +94,9 @@ class Texts:
         return found[1] if found is not None else 0
 
     def _is_clause(self, text: Words, at: int) -> bool:
-        """Whether a word begins a clause, of which it says nothing alone: `ask Bob if he is hungry`."""
-        behind = text.words[at + 1] if text.words[at] in self._clause_words else END_OF_TEXT
+        """Whether a word begins a clause, of which it says nothing alone: `ask if he is hungry`, `he says to wave`."""
+        is_opener = text.words[at] in self._clause_words or text.words[at] in self._purpose
+        behind = text.words[at + 1] if is_opener else END_OF_TEXT
         return behind[0].isalpha() and behind not in self._joining and behind not in self._then
 
     def asks(self, word: str) -> bool:
@@ -121,7 +122,7 @@ class Texts:
     def _inverts(self, text: Words, at: int) -> bool:
         word, behind = text.words[at], text.words[at + 1]
         done = behind in self._participles or behind.endswith(self._endings)
-        return word in self.inverting or (word in self._completed and done and at + 1 not in text.articles)
+        return word in self.inverting or (word in self.completed and done and at + 1 not in text.articles)
 
     def is_owned(self, text: Words, at: int) -> bool:
         """Whether an article, or a word for whose thing it is, stands before what begins at a word."""

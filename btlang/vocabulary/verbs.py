@@ -131,7 +131,9 @@ def is_no_way(context: ReadingContext, text: Words, at: int, value: tuple[str, i
     values, behind = context.values, value[1]
     if values.exception(text, behind) or values.modifiers.denies(text, behind):
         return True
-    is_mere_kind = [part for part, _ in choice.parts] == ["kind"] and not values.modifiers.is_picked(choice.how, text, at)
+    is_mere_kind = [part for part, _ in choice.parts] == ["kind"] and not values.modifiers.is_picked(
+        choice.how, text, at
+    )
     return is_mere_kind and len(values.likenesses.members(choice) or ()) != 1
 
 

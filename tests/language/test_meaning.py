@@ -228,6 +228,11 @@ def test_numbers_that_are_said(sentence: str, tree: str) -> None:
         ("make sure that you are holding the book, then wave", "BT151"),
         ("if nobody is in the lab and the kitchen, wave", "BT151"),
         ("if Alice isn't in the lab and the kitchen, wave", "BT151"),
+        ("go to the lab through a room", "BT013"),
+        ("count the cups in the kitchen. If there are more than 3 people, wave", "BT150"),
+        ("count the people in the kitchen. If there are more than 3 objects, wave", "BT150"),
+        ('ask Bob "Tea?". If he says to wave, wave', "BT010"),
+        ("go to the lab through that room", "BT013"),
     ],
 )
 def test_what_is_refused(sentence: str, code: str) -> None:

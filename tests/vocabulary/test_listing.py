@@ -42,7 +42,7 @@ UNKNOWN_AT_THE_START = {"Answer", "Count", "Counted"}
 HOLDS_AT_THE_START = {
     "HandEmpty", "PathClear", "BatteryFull", "DistanceAhead", "DistanceToPlace", "DistanceToPerson", "DistanceToObject",
     "PeopleNear", "BatterySufficient", "DoorOpen", "PlaceOfPerson", "PlaceOfObject", "SwitchedOn", "TodayIs",
-    "ObjectKnown", "NobodyAnswered",
+    "ObjectKnown", "NobodyAnswered", "ObjectsAt",
 }  # fmt: skip
 
 

@@ -6,10 +6,10 @@ from collections.abc import Iterable, Iterator
 
 from btlang.support.record import Record
 from btlang.text.words import Words
-from btlang.vocabulary.entry import MANNER, RECIPIENT, UNMARKED
+from btlang.vocabulary.entry import MANNER, RECIPIENT, UNMARKED, VIA
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import TrieNode
-from btlang.vocabulary.verbs import Frame
+from btlang.vocabulary.verbs import Frame, is_no_way
 from btlang.vocabulary.word_tree import NO_WORDS, SLOTS, VERBS
 
 
@@ -32,9 +32,9 @@ def misfits_of(text: Words, at: int, roots: Iterable[TrieNode], context: Reading
             if last >= furthest and context.read(kind, text, last) is None:
                 found = {**(found if last == furthest else {}), kind: set()}
                 furthest = last
-        for _, kind, child in node.get(SLOTS, ()):
+        for name, kind, child in node.get(SLOTS, ()):
             value = context.read(kind, text, i)
-            if value is not None:
+            if value is not None and not (name == VIA and is_no_way(context, text, i, value)):
                 paths.append((child, value[1]))
             elif context.types[kind].names and any(word not in NO_WORDS for word in node):
                 continue  # one of a few names would be an addition to the words that are missing

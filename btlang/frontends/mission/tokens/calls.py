@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.symbols.nodes import GivenTwice, read_details, unreadable
 from btlang.frontends.mission.token import Called, Listed, Token, arguments_of
+from btlang.frontends.mission.tokens.counted_things import COUNTED
 from btlang.frontends.mission.tokens.two_goals import two_goals
 from btlang.text.source import Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
@@ -18,15 +19,14 @@ from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.references import ALL, NAMES, SELF, Choice, choice_of, free_key, keys_in, point_ports, renamed
 from btlang.vocabulary.trie import TrieNode, longest
-from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE, WORLD, ZONE
+from btlang.vocabulary.value_type import DOOR, PERSON, PLACE, WORLD, ZONE
 from btlang.vocabulary.values import key_of
 from btlang.vocabulary.word_tree import find
 
 NEGATED = frozenset(("negated", "negated_twice"))
 """The roles of conditions that say `not` themselves."""
 _ENDS = (END_OF_STATEMENT, END_OF_TEXT, ";", ")")
-_COUNTED, _KINDS = {"CountPeople": PERSON, "CountObjects": OBJECT, "CountKind": OBJECT}, "kinds"
-"""What commands count, by their ids, and the type of their kinds."""
+_KINDS = "kinds"
 _ODD = ("", "{", "(")  # how texts begin that are no plain values: of unknown names, references, choices and points
 
 
@@ -239,7 +239,7 @@ class Calls:
 
     def _note_counted(self, entry: Entry, match: Match) -> None:
         """`count the people in the lab, then greet them`: all of those that are there, or in view."""
-        kind = _COUNTED.get(entry.id, "")
+        kind = COUNTED.get(entry.id, "")
         place = next((value.text for value in match.values if value.type == PLACE and not value.more), "")
         if not kind or place[:1] in _ODD[1:]:
             return

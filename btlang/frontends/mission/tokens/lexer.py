@@ -9,6 +9,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.symbols.names import Load, Names
 from btlang.frontends.mission.token import Token
 from btlang.frontends.mission.tokens.condition_names import condition_names, settle
+from btlang.frontends.mission.tokens.counted_things import with_counted_things
 from btlang.frontends.mission.tokens.ended_rules import with_ends
 from btlang.frontends.mission.tokens.rules_inside import with_rules_inside
 from btlang.frontends.mission.tokens.settling import (
@@ -52,6 +53,7 @@ class Lexer:
         self.problems += [diagnostic("BT003", span, characters=span.text[:20]) for span in self.text.unreadable]
         _drop_words_of_turns(self.text, vocabulary)
         _drop_still(self.text, vocabulary)
+        _drop_left(self.text, vocabulary)
         _drop_commas(self.text, vocabulary)
         _list_ranges(self.text, vocabulary)
         self.problems += _drop_untold_sizes(self.text, vocabulary)
@@ -72,6 +74,7 @@ class Lexer:
         self.problems += find_unclear_things(self.tokens, vocabulary, self.text) if explain else ()
         with_meetings(self.tokens, vocabulary)
         with_sightings(self.tokens, vocabulary, source)
+        self.problems += with_counted_things(self.tokens, source)
         with_rules_inside(self.tokens)
         self.problems += with_ends(self.tokens, self.vocabulary, partial(Span, source))
         self.conditions = condition_names(self.tokens, self.names.included_conditions())
@@ -156,6 +159,28 @@ def _drop_still(text: Words, vocabulary: Lexicon) -> None:
             first = max((i + 1 for i in range(first, at) if words[i] == ","), default=first)
             if any(word in vocabulary.before_conditions for word in words[first:at]):
                 text.drop(at, end)
+
+
+def _drop_left(text: Words, vocabulary: Lexicon) -> None:
+    """Take out `left` in a condition: `if nobody is left in the lab`, `there are no cups left`; not `on the left`."""
+    words, remaining = text.words, vocabulary.asking["remaining"]
+    if not remaining or remaining[0] not in text.distinct:
+        return  # as nearly always
+    introducing = vocabulary.values.role_words.introducing.values()
+    prepositions = {phrase[0] for phrases in introducing for phrase in phrases}
+    be, not_before = vocabulary.asking["asking_be"], prepositions.union(vocabulary.values.texts.completed)
+    for at in reversed(range(1, len(words) - 1)):
+        ends = not words[at + 1][0].isalpha()
+        if words[at] != remaining[0] or words[at - 1] in not_before or not (ends or words[at + 1] in prepositions):
+            continue
+        first = text.earlier(at)[1]
+        first = max((i + 1 for i in range(first, at) if words[i] == ","), default=first)
+        if not any(word in vocabulary.before_conditions for word in words[first:at]):
+            continue
+        if words[at - 1] in be and ends:
+            text.replace(at, [remaining[1]])
+        elif any(word in be for word in words[first:at]):
+            text.drop(at, at + 1)
 
 
 def _drop_commas(text: Words, vocabulary: Lexicon) -> None:

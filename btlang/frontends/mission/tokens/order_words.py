@@ -136,6 +136,11 @@ class OrderWords(ClockWords, JourneyWords, RuleWords):
         again = match is not None and match.meaning.role == "back_and_forth"
         return again or self._partial.doing(at) is not None
 
+    def until_none(self, at: int) -> int:
+        """`pick up the cups until none are left`: all of them, whatever is behind."""
+        found = find(self._vocabulary.until_none, self._text.words, at)
+        return found[1] if found is not None and self._tokens and self._calls.is_set(self._tokens[-1]) else 0
+
     def says_nothing(self, match: Match, at: int) -> bool:
         """Whether words begin nothing: `say bye when that's done`, `take all cups away, one after the other`.
 

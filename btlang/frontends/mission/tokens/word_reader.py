@@ -233,7 +233,7 @@ class WordReader:
     def _sentence(self, match: Match | None, role: str, at: int) -> int:
         """Replies, prohibitions, questions, wishes and remarks."""
         tokens, text = self._tokens, self._text
-        if end := self._outcomes.read(at) or self._order.hours(at):
+        if end := self._outcomes.read(at) or self._order.hours(at) or self._order.until_none(at):
             return end
         is_first = begins(tokens)
         if end := self._requests.reply(at, role):
