@@ -118,6 +118,7 @@ class Words:
     __slots__ = (
         "_distinct",
         "articles",
+        "assumed",
         "comments",
         "ends",
         "going_on",
@@ -147,6 +148,8 @@ class Words:
         self.unreadable: list[Span] = []
         self.picked: tuple[Words, Sequence[int]] | None = None
         """Where these are words of another text, side by side: that text, and the place of each in it."""
+        self.assumed: dict[int, tuple[str, int, Span]] = {}
+        """The times of day that are the next ones behind another, by their first words: time, end, and that other."""
         self.memo: dict[object, dict[tuple[int, str], object]] = {}
         """What readers found at its words, each for itself: the same words are read again and again."""
         self._distinct: frozenset[str] | None = None
@@ -163,7 +166,7 @@ class Words:
         made = Words(self.source)
         made.words = [*self.words[:at], word, *self.words[at + 1 :]]
         made.starts, made.ends, made.lines, made.articles = self.starts, self.ends, self.lines, self.articles
-        made.going_on = self.going_on
+        made.going_on, made.assumed = self.going_on, self.assumed
         return made
 
     def earlier(self, at: int) -> tuple[Words, int, int]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping, Sequence
 
-from btlang.text.source import Source
+from btlang.text.source import Source, Span
 from btlang.text.words import Orthography, Words, split
 from btlang.vocabulary.value_type import Unit, ValueType, format_number, with_unit
 from btlang.vocabulary.word_tree import END, find, tree_of
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 _MARK = re.compile("[%°]")
 _LARGEST = 1e12  # beyond it no quantity of a robot makes sense, and sums stay exact
 _MOST_NUMBER_WORDS = 12
+_MOST_TIME_WORDS = 4
 _FARTHEST = 1e6  # metres, as in a world file
 
 
@@ -39,6 +40,7 @@ class Measures:
         )
         self._fractions = tree_of(language["fractions"].items())
         self._times = tree_of(language["times"].items())
+        self._halves = frozenset(self._times)
         self._number_starts = frozenset((*self._numbers, *self._multipliers, *self._fractions))
         units: dict[str, dict[str, Unit]] = {}
         for kind in types.values():
@@ -57,39 +59,79 @@ class Measures:
 
     def time_of_day(self, text: Words, at: int) -> tuple[str, int] | None:
         """`6 pm`, `7:30 am`, `18:30` or `noon` as a port text of 24 hours (18:30), and where it ends."""
-        word = text.words[at]
-        past = 0
         named = find(self._times, text.words, at)
         if named is not None and isinstance(named[0], str):
             return named
-        if ":" in word and word[0].isdecimal():
-            hours, _, minutes = word.partition(":")
-            if len(hours) > 2 or len(minutes) != 2 or int(minutes) > 59:
-                return None
-            number: tuple[float, int] | None = float(hours), at + 1
-        else:
-            past, after = self._past(text, at)
-            number = self.number(text, after)
-            minutes = f"{int(past) % 60:02}" if number is not None and past else ""
-            number = (number[0] - (past < 0), number[1]) if number is not None else None  # `quarter to nine`
-        if number is None:
+        clock = self.clock(text, at)
+        if clock is None:
             return None
-        hour, end = number
-        end += text.words[end] in self._hour_words
+        hour, minutes, end = clock
         half = self.half_of_day(text, end)
         half = (half[0], half[1] + (text.words[half[1]] in self._hour_words)) if half is not None else None
         part = self.parts_of_day.get(text.words[at - 2]) if half is None and at > 1 else None
-        shared = self._shared_half(text, end, hour) if half is None and part is None and not minutes else None
+        shared = self._shared_half(text, end, hour) if half is None and part is None and minutes is None else None
         if shared is not None:
             hour, half = hour % 12 + shared, (shared, end)
         elif half is not None:
             hour, end = (hour % 12 + half[0] if 1 <= hour <= 12 else -1), half[1]
         elif part is not None and (hour <= 12 or part == 0):  # `every evening at 8`, `every night at 2`
             hour, half = (part + (hour - part) % 12) % 24 if 1 <= hour <= 12 else -1, (part, end)
-        is_told = half or (hour > 12 if past else minutes)  # `half past seven` may be in the morning or the evening
-        if hour not in range(24) or not is_told:
+        is_written = ":" in text.words[at]
+        is_told = half or (is_written if hour <= 12 else minutes is not None)  # `half past seven` may be in the evening
+        return (f"{int(hour):02}:{minutes or 0:02}", end) if hour in range(24) and is_told else None
+
+    def later_time(self, text: Words, at: int) -> tuple[str, int] | None:
+        """A time that doesn't say in which half of the day it is, `9:30` behind `9 pm`: the next such one.
+
+        That it is assumed is written down in the text.
+        """
+        if text.picked is not None or self._halves.isdisjoint(text.distinct):
+            return None  # as nearly always
+        clock = self.clock(text, at)
+        if clock is None or not 1 <= clock[0] <= 12 or text.words[at].startswith("0"):
             return None
-        return f"{int(hour):02}:{int(minutes or 0):02}", end
+        hour, minutes, end = clock
+        is_told = self.half_of_day(text, end) is not None or (at > 1 and text.words[at - 2] in self.parts_of_day)
+        if is_told or self.quantity(text, at) is not None or self._shared_half(text, end, hour) is not None:
+            return None
+        before = self._latest_told(text, at)
+        if before is None:
+            return None
+        told, span = before
+        past = int(hour % 12) * 60 + (minutes or 0) - int(told[:2]) * 60 - int(told[3:])
+        if past % 720 == 0:
+            return None  # the same time, or twelve hours later
+        later = past % 720 + int(told[:2]) * 60 + int(told[3:])
+        time = f"{later // 60 % 24:02}:{later % 60:02}"
+        text.assumed[at] = time, end, span
+        return time, end
+
+    def _latest_told(self, text: Words, at: int) -> tuple[str, Span] | None:
+        """The last time before a word that says in which half of the day it is, `9 pm` or `noon`, and its place."""
+        for half in range(at - 1, -1, -1):
+            found = find(self._times, text.words, half)
+            if found is None or found[1] > at:
+                continue
+            for first in range(max(half - _MOST_TIME_WORDS, 0), half + 1):
+                time = self.time_of_day(text, first)
+                if time is not None and time[1] >= found[1]:
+                    return time[0], text.span(first, time[1])
+        return None
+
+    def clock(self, text: Words, at: int) -> tuple[float, int | None, int] | None:
+        """`7`, `7:30`, `half past 7`, `9 o'clock`: the hour, the minutes if they are said, and where it ends."""
+        word = text.words[at]
+        if ":" in word and word[0].isdecimal():
+            hours, _, minutes = word.partition(":")
+            if len(hours) > 2 or len(minutes) != 2 or int(minutes) > 59:
+                return None
+            return float(hours), int(minutes), at + 1 + (text.words[at + 1] in self._hour_words)
+        past, after = self._past(text, at)
+        number = self.number(text, after)
+        if number is None:
+            return None
+        end = number[1] + (text.words[number[1]] in self._hour_words)
+        return number[0] - (past < 0), past % 60 if past else None, end  # `quarter to nine`
 
     def _shared_half(self, text: Words, at: int, hour: float) -> int | None:
         """The hours that `pm` behind a later number of a list adds to an earlier one: `at 1, 2 and 3 pm`."""

@@ -381,7 +381,7 @@ class Values(Measures):
             found = find(self._names[kind], text.words, at)
             return self._quoted_name(kind, text, at) if found is None and word[0] == '"' else found
         if value_type.kind == "time":
-            return self.time_of_day(text, at)
+            return self.later_time(text, at) or self.time_of_day(text, at)
         return self.texts.read(text, at)
 
     def _quoted_name(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:

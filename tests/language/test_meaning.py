@@ -232,6 +232,9 @@ def test_numbers_that_are_said(sentence: str, tree: str) -> None:
         ("count the cups in the kitchen. If there are more than 3 people, wave", "BT150"),
         ("count the people in the kitchen. If there are more than 3 objects, wave", "BT150"),
         ('ask Bob "Tea?". If he says to wave, wave', "BT010"),
+        ("wave. Do the same in the kitchen", "BT150"),
+        ("go to the lab and the hall and wave. Do the same in the kitchen", "BT150"),
+        ("at half past nine go to the lab", "BT160"),
         ("go to the lab through that room", "BT013"),
     ],
 )

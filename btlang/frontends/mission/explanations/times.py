@@ -45,11 +45,13 @@ def explain_time(text: Words, at: int, wanted: bool, vocabulary: Lexicon) -> Dia
     if dotted is not None:
         whole, joined = Span(source, span.start, dotted.end()), f"{span.text} {dotted[1].lower()}m"
         return _problem(whole, "isn't a time of day: it has dots", joined)
-    hour = span.text
-    if not hour.isdecimal() or len(hour) > 2:
+    clock = values.clock(text, at)
+    if clock is None or not 0 <= clock[0] < 24 or clock[0] % 1:
         return _problem(span, "isn't a time of day", _USUAL)
-    halves = values.halves_of_day if 1 <= int(hour) <= 12 else []
-    ways = ", or ".join((*(f"{hour} {half}" for half in halves), f"{hour}:00" if int(hour) < 24 else _USUAL))
+    hour, minutes, end = clock
+    span = text.span(at, end)
+    halves = values.halves_of_day if 1 <= hour <= 12 else []
+    ways = ", or ".join((*(f"{span.text} {half}" for half in halves), f"{int(hour)}:{minutes or 0:02}"))
     return _problem(span, "isn't a time of day: it needs am, pm or a ':'", ways)
 
 

@@ -11,6 +11,7 @@ from btlang.frontends.mission.token import Token
 from btlang.frontends.mission.tokens.condition_names import condition_names, settle
 from btlang.frontends.mission.tokens.counted_things import with_counted_things
 from btlang.frontends.mission.tokens.ended_rules import with_ends
+from btlang.frontends.mission.tokens.repeated_statements import with_repeats_apart, with_times_first
 from btlang.frontends.mission.tokens.rules_inside import with_rules_inside
 from btlang.frontends.mission.tokens.settling import (
     find_brief_stays,
@@ -66,6 +67,8 @@ class Lexer:
         self.tokens: list[Token] = []
         self._words = WordReader(self.text, self.names, self.context, self.tokens, self.problems, explain)
         self._lines()
+        self.problems += with_repeats_apart(self.tokens, source)
+        with_times_first(self.tokens)
         turn_branches(self.tokens)
         with_rounds(self.tokens)
         with_either_end(self.tokens)

@@ -19,6 +19,7 @@ from btlang.frontends.mission.token import (
     run_start,
     statement_start,
 )
+from btlang.frontends.mission.tokens.repeated_statements import ELSEWHERE
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, leads_to
 from btlang.frontends.mission.tokens.silent_words import TRAVELS, begins
 from btlang.text.source import Span
@@ -215,6 +216,15 @@ class Places(SentenceReader):
         self._append_tour(journey, at)
         tokens[-1].start = said.start
         tokens += [Token("and", said.start, said.start), said, Token("close", end, end)]
+        return journey.last
+
+    def again_at(self, at: int) -> int:
+        """`Do the same in the kitchen`: what was done, in another place."""
+        journey = self._to(at)
+        if journey is None or not (self._is_end(journey.last) or self._text.words[journey.last] == ","):
+            return 0
+        self._partial.append(journey, at)
+        self._tokens[-1].role = ELSEWHERE
         return journey.last
 
     def _placed(self, said: Called | Listed, goal: SlotValue) -> Called | None:

@@ -30,6 +30,7 @@ from btlang.frontends.mission.tokens.partial_commands import may_be_doing
 from btlang.frontends.mission.tokens.partial_conditions import PartialConditions
 from btlang.frontends.mission.tokens.places import Places
 from btlang.frontends.mission.tokens.remarks import Remarks
+from btlang.frontends.mission.tokens.repeated_statements import AGAIN
 from btlang.frontends.mission.tokens.requests import Requests
 from btlang.frontends.mission.tokens.silent_words import (
     MARKS,
@@ -281,6 +282,9 @@ class WordReader:
         if (match is None or role == "condition") and tokens and tokens[-1].kind in ("command", "wait"):
             if end := self._places.at_goal(at) or self._places.behind(at) or self._visitors.read(at):
                 self._is_apart |= tokens[statement_start(tokens, len(tokens))].kind in RULES
+                return end
+        if (match is None or role == "condition") and tokens and tokens[-1].kind in AGAIN:
+            if end := self._places.again_at(at):
                 return end
         if match is None and begins(tokens) and (end := self._places.before(at)):
             return end

@@ -1,0 +1,111 @@
+"""What is done again at another time, elsewhere, or only if something is so: `A. Do it again at 6 pm`, `A. Do the same
+in the kitchen`.
+
+The statement stays as it is, and its commands stand once more behind it. A time before them isn't theirs: `at 9 am, A.
+Do that every hour` waits for 9 am once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.frontends.mission.token import (
+    IN_CONDITIONS,
+    JOINTS,
+    Called,
+    Listed,
+    Token,
+    arguments_of,
+    run_end,
+    statement_start,
+)
+from btlang.frontends.mission.tokens.settling import MEASURES
+from btlang.text.source import Source, Span
+from btlang.vocabulary.value_type import PLACE
+
+AGAIN = ("do_that", "repeat_that", "again")
+"""Raw kinds of words for the statement before."""
+ELSEWHERE = "elsewhere"
+"""The role of a journey that says where something is done again."""
+_TIMES, _CONDITIONAL = ("at", "delay"), ("if", "unless")
+_LATER = (*_TIMES, *_CONDITIONAL)
+_DONE = ("command", "name", "close")
+_AMOUNTS = ("every", "until_time", "for")
+_ELSEWHERE = "go to the lab and wave. Do the same in the kitchen"
+_PLAIN = frozenset(("command", "name", "wait", "open", "close", *JOINTS, *MEASURES))
+
+
+def with_repeats_apart(tokens: list[Token], source: Source) -> Iterator[Diagnostic]:
+    """Put the commands of a statement where they are done again.
+
+    BT150 where they are to be done elsewhere, and were done in no one place.
+    """
+    for at in reversed([at for at, token in enumerate(tokens) if token.kind in AGAIN and at > 0]):
+        if tokens[at - 1].kind != "stop":
+            continue
+        kinds = [token.kind for token in tokens[at : at + 3]]
+        behind = at + 1 + (kinds[:2] == ["do_that", "again"])
+        is_again, how = kinds[0] != "do_that" or behind > at + 1, "".join(kinds[behind - at :][:1])
+        first = statement_start(tokens, at - 1)
+        waits = tokens[first].kind == "at"
+        commands = tokens[first + waits + (waits and tokens[first + 1].kind == "comma") : at - 1]
+        if not commands or any(token.kind not in _PLAIN for token in commands):
+            continue
+        end = Token("semi", tokens[at].start, tokens[at].start)
+        if how == "command" and tokens[behind].role == ELSEWHERE:
+            span = Span(source, tokens[at].start, tokens[behind].end)
+            moved = _elsewhere(commands, tokens[behind])
+            if not moved:
+                reason = "what is said before it isn't done in one place"
+                yield diagnostic("BT150", span, words=span.text, reason=reason, example=_ELSEWHERE)
+            tokens[at - 1 : behind + 1] = [end, *(moved or [Token("nothing", tokens[at].start, span.end)])]
+        elif is_again and how in _LATER:
+            tokens[at - 1 : behind] = [end, *_bracketed(commands, tokens[at])]
+        elif waits and how in _AMOUNTS:
+            start, last = commands[0].start, commands[-1].end
+            tokens[first + 1 : behind] = [
+                Token("comma", start, start), Token("open", start, start), *commands, Token("close", last, last),
+            ]  # fmt: skip
+
+
+def with_times_first(tokens: list[Token]) -> None:
+    """Make `A at 6 pm if C` ask at that time, as `A if C at 6 pm` does."""
+    for at in reversed(range(1, len(tokens) - 1)):
+        is_time = tokens[at].kind in _TIMES and tokens[at - 1].kind in _DONE
+        if is_time and tokens[at + 1].kind in _CONDITIONAL:
+            end = run_end(tokens, at + 2, IN_CONDITIONS)
+            tokens[at:end] = [*tokens[at + 1 : end], tokens[at]]
+
+
+def _elsewhere(commands: Sequence[Token], journey: Token) -> list[Token]:
+    """The same commands in other places; nothing where they have no one place."""
+    said = [token.value for token in commands if isinstance(token.value, Called | Listed)]
+    there = {text for value in said for text in _places(value)}
+    if len(there) != 1 or "{" in next(iter(there)) or any(isinstance(value, Listed) for value in said):
+        return []
+    made: list[Token] = []
+    for place in _places(journey.value) if isinstance(journey.value, Called | Listed) else ():
+        made += [Token("then", journey.start, journey.start)] if made else []
+        made += _bracketed([_moved(token, place) for token in commands], journey)
+    return made
+
+
+def _places(said: Called | Listed) -> list[str]:
+    pairs = (pair for arguments in arguments_of(said) for pair in arguments)
+    return [text for name, text in pairs if said.entry.slot(name).type == PLACE]
+
+
+def _moved(token: Token, place: str) -> Token:
+    """A command in another place."""
+    said = token.value
+    if not isinstance(said, Called):
+        return token
+    moved = tuple((name, place if said.entry.slot(name).type == PLACE else text) for name, text in said.arguments)
+    return Token(token.kind, token.start, token.end, said.replace(arguments=moved), token.role)
+
+
+def _bracketed(commands: Sequence[Token], said: Token) -> list[Token]:
+    """The same commands in brackets, where a word stands that means them."""
+    again = [Token(token.kind, said.start, said.end, token.value, token.role) for token in commands]
+    return [Token("open", said.start, said.start), *again, Token("close", said.end, said.end)]
