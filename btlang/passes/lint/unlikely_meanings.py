@@ -120,7 +120,7 @@ def _next_day(wait: ast.WaitTime, ended: str, is_first: bool, vocabulary: Lexico
 
 
 def _morning(wait: ast.WaitTime, begun: str) -> Iterator[Diagnostic]:
-    """Report `at 2 pm, A, then B at 2:10`: a time before noon, behind one in the afternoon that it may go on from."""
+    """Report `at 14:00, A, then B at 2:10`: a time before noon, behind one in the afternoon that it may go on from."""
     try:
         first, then = seconds_of(begun), seconds_of(wait.time)
     except ValueError:  # a value of the mission, or several times
