@@ -48,7 +48,7 @@ ASKING = (
     "until_none", "rounds", "obliging", "failing", "found", "counted", "replied",
     "so", "being", "causing", "asking_for", "plea_for", "helping", "plea_for_help",
     "speaking", "spoken_of", "still", "motionless", "who", "somebody", "answering", "likewise",
-    "remaining",
+    "remaining", "entering",
 )  # fmt: skip
 """What the table `asking` of a language may have; without it there are no questions, and no remarks."""
 
@@ -57,7 +57,7 @@ QUESTIONS = ("ask_value", "ask_where", "ask_how_many")
 
 ORDER = (
     "arrival", "arrival_at", "on_way", "on_way_to", "start_at", "wait_at", "back_and_forth", "rounds_of", "pictures_of",
-    "any_time", "tries",
+    "any_time", "tries", "received",
     "at_most", "up_to_times", "stop_after", "try_again", "weekly", "on_days", "instead", "between_times",
 )  # fmt: skip
 """The roles of words about the order of commands."""
@@ -71,8 +71,8 @@ _NO_SLOT = (
     "but", "may", "or_stay",
     "either", "both", "neither", "nor", "not_both", "any_of", "all_of", "none_of", "one_of",
     "do_that", "repeat_that", "again", "start_over", "everything", "here", "ordinal", "following", "keep", "fails",
-    "followed_by", "arrival", "on_way", "on_way_to", "start_at", "wait_at", "back_and_forth", "any_time", "instead",
-    "try_again",
+    "followed_by", "arrival", "received", "on_way", "on_way_to", "start_at", "wait_at", "back_and_forth", "any_time",
+    "instead", "try_again",
     "there_are", "mind", *QUESTIONS,
     "repeat", "try", "retry", "if_possible", "wait_until", "wait_for", "wait_forever", "check", "nothing",
     "never", "fail",

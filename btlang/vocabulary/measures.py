@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 _MARK = re.compile("[%°]")
 _LARGEST = 1e12  # beyond it no quantity of a robot makes sense, and sums stay exact
 _MOST_NUMBER_WORDS = 12
-_MOST_TIME_WORDS = 4
+_MOST_TIME_WORDS, _HALF_DAY = 4, 720  # minutes
 _FARTHEST = 1e6  # metres, as in a world file
 
 
@@ -98,10 +98,8 @@ class Measures:
         if before is None:
             return None
         told, span = before
-        past = int(hour % 12) * 60 + (minutes or 0) - int(told[:2]) * 60 - int(told[3:])
-        if past % 720 == 0:
-            return None  # the same time, or twelve hours later
-        later = past % 720 + int(told[:2]) * 60 + int(told[3:])
+        first = int(told[:2]) * 60 + int(told[3:])
+        later = first + (int(hour % 12) * 60 + (minutes or 0) - first) % _HALF_DAY
         time = f"{later // 60 % 24:02}:{later % 60:02}"
         text.assumed[at] = time, end, span
         return time, end

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.text.source import Span
 from btlang.text.words import Words
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.match import SlotValue
 
+_TIME = "time_of_day"
 _USUAL = "6:30 pm, or 18:30"
 _BESIDE_MARK = re.compile(r"(?<=\d)\s*[:.]\s*(?=\d)")
 _HALF_WITH_DOTS = re.compile(r"\s*([ap])\.\s?m\b", re.IGNORECASE)
@@ -53,6 +56,15 @@ def explain_time(text: Words, at: int, wanted: bool, vocabulary: Lexicon) -> Dia
     halves = values.halves_of_day if 1 <= hour <= 12 else []
     ways = ", or ".join((*(f"{span.text} {half}" for half in halves), f"{int(hour)}:{minutes or 0:02}"))
     return _problem(span, "isn't a time of day: it needs am, pm or a ':'", ways)
+
+
+def assumed_times(text: Words, values: Sequence[SlotValue]) -> Iterator[Diagnostic]:
+    """BT140 for each time of which only what stands before says whether it is in the morning."""
+    firsts = (at for value in values if value.type == _TIME for at in range(value.first, value.last))
+    for at in (at for at in firsts if at in text.assumed):
+        time, last, before = text.assumed[at]
+        span = text.span(at, last)
+        yield diagnostic("BT140", span, words=span.text, time=time, before=before.text)
 
 
 def without_hour(text: Words, at: int, end: int, vocabulary: Lexicon) -> Diagnostic | None:

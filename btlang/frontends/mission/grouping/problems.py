@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from btlang.frontends.mission.grouping.scan import ENDS, STARTS_STATEMENT, Scan
-from btlang.frontends.mission.token import Token
+from btlang.frontends.mission.token import RULES, Token
 from btlang.text.source import Span
 from btlang.vocabulary.language_tables import CONNECTIVES, GOES_ON
 
@@ -60,6 +60,9 @@ def side_by_side(scan: Scan, token: Token) -> None:
         scan.skip_statement()
         return
     before = scan.raw[scan.at - 1]
+    if token.kind in RULES:
+        scan.fail("BT037", scan.span(token), words=scan.words(token))
+        return
     scan.fail("BT021", scan.span(before, token), word_before(scan, token, "then"), word=scan.words(token))
 
 

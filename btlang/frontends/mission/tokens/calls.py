@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.frontends.mission.explanations.times import assumed_times
 from btlang.frontends.mission.symbols.nodes import GivenTwice, read_details, unreadable
 from btlang.frontends.mission.token import Called, Listed, Token, arguments_of
 from btlang.frontends.mission.tokens.counted_things import COUNTED
@@ -26,7 +27,7 @@ from btlang.vocabulary.word_tree import find
 NEGATED = frozenset(("negated", "negated_twice"))
 """The roles of conditions that say `not` themselves."""
 _ENDS = (END_OF_STATEMENT, END_OF_TEXT, ";", ")")
-_KINDS, _TIME = "kinds", "time_of_day"
+_KINDS = "kinds"
 _ODD = ("", "{", "(")  # how texts begin that are no plain values: of unknown names, references, choices and points
 
 
@@ -68,9 +69,7 @@ class Calls:
         values = match.values
         for value in values if self._owners else ():
             self._note_owners(value)
-        times = [value for value in values if value.type == _TIME] if text.assumed else []
-        for first in (first for value in times for first in range(value.first, value.last) if first in text.assumed):
-            self._note_assumed(first)
+        self.problems += assumed_times(text, values) if text.assumed else ()
         twice = two_goals(match, at, text, self._vocabulary) if len(values) > 1 else None
         if twice is not None:
             self.problems.append(twice)
@@ -95,12 +94,6 @@ class Calls:
         if values:
             return Token(meaning.role, start, end, ";".join(values[0].texts))
         return Token(meaning.role, start, end, str(meaning.value) if meaning.value else None, meaning.between)
-
-    def _note_assumed(self, at: int) -> None:
-        """BT140 for the time at a word, of which only what stands before says whether it is in the morning."""
-        time, last, before = self._text.assumed[at]
-        span = self._text.span(at, last)
-        self.problems.append(diagnostic("BT140", span, words=span.text, time=time, before=before.text))
 
     def with_details(self, token: Token, at: int, names: TrieNode) -> int:
         """Adds what `called` and `with` say of the phrase before a word to its token. Returns where to go on."""

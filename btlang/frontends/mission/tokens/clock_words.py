@@ -52,9 +52,25 @@ class ClockWords(SentenceReader):
         tokens.append(Token("at", text.starts[at], text.ends[found[-1].last - 1], ";".join(times)))
         return found[-1].last
 
+    def _not_then(self, at: int) -> int:
+        """`every hour, go to the lab, but not between 10 pm and 7 am`: unless it is then."""
+        text, vocabulary = self._text, self._vocabulary
+        denied = text.words[at] in vocabulary.roles["but"] and text.words[at + 1] in vocabulary.roles["not"]
+        if not denied or not self._tokens or text.words[at + 2] not in vocabulary.asking["hours"]:
+            return 0
+        match = self._with_front(at, at + 2, "time_is")
+        if match is None or match.meaning.role != "condition":
+            return 0
+        condition = self._calls.token(match, at + 2)
+        condition.kind = "condition"
+        self._tokens += [Token("unless", text.starts[at], text.ends[at + 1]), condition]
+        return match.last
+
     def hours(self, at: int) -> int:
         """`never enter the hall after 6 pm`, `... between 10 pm and 6 am`: while it is then."""
         tokens, start = self._tokens, self._text.starts[at]
+        if end := self._not_then(at):
+            return end
         if not tokens or self._text.words[at] not in self._vocabulary.asking["hours"]:
             return 0
         if constraint_of(tokens[-1]) is None:

@@ -12,6 +12,7 @@ from btlang.frontends.mission.tokens.condition_names import condition_names, set
 from btlang.frontends.mission.tokens.counted_things import with_counted_things
 from btlang.frontends.mission.tokens.ended_rules import with_ends
 from btlang.frontends.mission.tokens.repeated_statements import with_repeats_apart, with_times_first
+from btlang.frontends.mission.tokens.rules_behind import with_exceptions, with_rules_behind
 from btlang.frontends.mission.tokens.rules_inside import with_rules_inside
 from btlang.frontends.mission.tokens.settling import (
     find_brief_stays,
@@ -55,6 +56,7 @@ class Lexer:
         _drop_words_of_turns(self.text, vocabulary)
         _drop_still(self.text, vocabulary)
         _drop_left(self.text, vocabulary)
+        _say_there(self.text, vocabulary)
         _drop_commas(self.text, vocabulary)
         _list_ranges(self.text, vocabulary)
         self.problems += _drop_untold_sizes(self.text, vocabulary)
@@ -78,6 +80,8 @@ class Lexer:
         with_meetings(self.tokens, vocabulary)
         with_sightings(self.tokens, vocabulary, source)
         self.problems += with_counted_things(self.tokens, source)
+        with_rules_behind(self.tokens)
+        self.problems += with_exceptions(self.tokens, self.vocabulary, source)
         with_rules_inside(self.tokens)
         self.problems += with_ends(self.tokens, self.vocabulary, partial(Span, source))
         self.conditions = condition_names(self.tokens, self.names.included_conditions())
@@ -184,6 +188,17 @@ def _drop_left(text: Words, vocabulary: Lexicon) -> None:
             text.replace(at, [remaining[1]])
         elif any(word in be for word in words[first:at]):
             text.drop(at, at + 1)
+
+
+def _say_there(text: Words, vocabulary: Lexicon) -> None:
+    """Put `there` behind `go in` where it is left out: `At 11, go in and wave`."""
+    if text.distinct.isdisjoint(vocabulary.entering):
+        return  # as nearly always
+    words, there = text.words, vocabulary.asking["remaining"][-1:]
+    for at in reversed([at for at in range(len(words) - 1) if words[at] in vocabulary.entering]):
+        found = find(vocabulary.entering, words, at)
+        if found is not None and (not words[found[1]][0].isalnum() or words[found[1]] in vocabulary.joining):
+            text.replace(found[1] - 1, [words[found[1] - 1], *there])
 
 
 def _drop_commas(text: Words, vocabulary: Lexicon) -> None:

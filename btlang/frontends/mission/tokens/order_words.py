@@ -31,6 +31,7 @@ from btlang.frontends.mission.tokens.settling import FAILS, MEASURES
 from btlang.frontends.mission.tokens.silent_words import BEGINS, begins
 from btlang.vocabulary.entry import THEME
 from btlang.vocabulary.match import Match
+from btlang.vocabulary.value_type import OBJECT, PERSON
 from btlang.vocabulary.word_tree import find
 
 BEFORE_ASIDE = JOINTS | {"otherwise", "or"}
@@ -57,6 +58,8 @@ class OrderWords(ClockWords, JourneyWords, RuleWords):
             return self._weekly(match, at)
         if role == "instead":
             return self._instead(match, at)
+        if role == "received":
+            return self._received(match, at)
         if role == "between_times":
             return self._between(match, at)
         if role == "rounds_of":
@@ -81,6 +84,18 @@ class OrderWords(ClockWords, JourneyWords, RuleWords):
             return 0
         tokens.append(Token("then", self._text.starts[at], self._text.ends[end - 1]))
         return self._behind_comma(end)
+
+    def _received(self, match: Match, at: int) -> int:
+        """`give Bob the cup. When he has it, wave`: then, right behind what somebody is given."""
+        tokens, last = self._tokens, run_start(self._tokens, len(self._tokens), JOINTS | STATEMENT_ENDS) - 1
+        said = tokens[last].value if last >= 0 else None
+        types = {slot.type for slot in said.entry.slots} if isinstance(said, Called | Listed) else set()
+        if not types.issuperset((OBJECT, PERSON)) or self._is_end(match.last) or self._may_be_left_out(tokens[last]):
+            return 0
+        while tokens[-1].kind in JOINTS:
+            tokens.pop()
+        tokens.append(Token("then", self._text.starts[at], self._text.ends[match.last - 1]))
+        return self._behind_comma(match.last)
 
     def _may_be_left_out(self, journey: Token) -> bool:
         """Whether the journey is that of an earlier statement that doesn't always run, or runs beside the others."""

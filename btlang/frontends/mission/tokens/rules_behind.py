@@ -1,0 +1,112 @@
+"""Rules behind what is done, with more in their statement: `until 5 pm, A whenever C`, `A whenever C, and B when D`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.frontends.mission.token import (
+    IN_CONDITIONS,
+    JOINTS,
+    RULES,
+    STATEMENT_ENDS,
+    Token,
+    run_end,
+    run_start,
+    statement_end,
+    statement_start,
+)
+from btlang.text.source import Source, Span
+from btlang.vocabulary.lexicon import Lexicon
+
+_ENDING = ("until", "until_time")
+_DONE = ("command", "name")
+_ASKED = (*RULES, "if")
+
+
+def with_rules_behind(tokens: list[Token]) -> None:
+    """Put the end of such a rule behind it, and make two rules of two that `and` joins."""
+    for at in reversed(range(1, len(tokens))):
+        if tokens[at].kind in RULES and tokens[at - 1].kind in _DONE and at < len(tokens):
+            _split(tokens, at)
+            _end(tokens, at)
+
+
+def with_exceptions(tokens: list[Token], vocabulary: Lexicon, source: Source) -> Iterator[Diagnostic]:
+    """Make `A every hour, but not if C` ask each time, and `whenever C, A, but not while D` a rule for both together:
+    where D ends and C still holds, A is done then. `A, but not while D` alone can be read in two ways (BT151).
+    """
+    while_words = {word for phrase in vocabulary.roles["while"] for word in phrase.split()}
+    for at in reversed([at for at, token in enumerate(tokens) if token.kind == "unless" and at > 0]):
+        said = source.text[tokens[at].start : tokens[at].end].lower().split()
+        if said[:1] == [] or said[0] not in vocabulary.roles["but"]:
+            continue
+        end, comma = _behind(tokens, at), run_start(tokens, at, ("comma",))
+        first, last = statement_start(tokens, at), run_start(tokens, statement_end(tokens, at), STATEMENT_ENDS)
+        lasts, unless = not while_words.isdisjoint(said), tokens[at:end]
+        every = next((each for each in range(first, comma) if tokens[each].kind == "every"), -1)
+        rule = _behind(tokens, first) if tokens[first].kind in RULES else last
+        if lasts and rule < comma and end == last:
+            both = [*_one(tokens[first + 1 : rule]), _joint("and", unless[0]), _joint("not", unless[0])]
+            tokens[first + 1 : end] = [*both, *_one(unless[1:]), *tokens[rule:comma]]
+        elif every == comma - 1:
+            tokens[every:end] = [*unless, tokens[every]]
+        elif every == first and tokens[first + 1].kind == "comma" and end == last:
+            tokens[first + 2 : end] = [*_in_brackets(tokens[first + 2 : comma]), *unless]
+        elif lasts:
+            span = Span(source, tokens[first].start, tokens[end - 1].end)
+            done, asked = (source.text[part[0].start : part[-1].end] for part in (tokens[first:comma], unless[1:]))
+            one = f"{vocabulary.word('unless')} {asked}, {done}"
+            other = f"{done} {vocabulary.word('while')} {vocabulary.word('not')} {asked}"
+            yield diagnostic("BT151", span, words=span.text, one=one, other=other)
+
+
+def _one(condition: list[Token]) -> list[Token]:
+    """A condition in brackets, unless it is a single one."""
+    return condition if len(condition) == 1 else _in_brackets(condition)
+
+
+def _in_brackets(said: list[Token]) -> list[Token]:
+    return [_joint("open", said[0]), *said, _joint("close", said[-1])]
+
+
+def _joint(kind: str, beside: Token) -> Token:
+    return Token(kind, beside.start, beside.start)
+
+
+def _split(tokens: list[Token], rule: int) -> None:
+    """`A whenever C, and B when D`: `when` is a rule there, too."""
+    last = _behind(tokens, rule)
+    second = run_end(tokens, last, ("comma", "and"))
+    form = second + (tokens[second : second + 1] != [] and tokens[second].kind in _DONE)
+    if second == last or form >= len(tokens) or tokens[form].kind not in (_ASKED if form > second else RULES):
+        return
+    if form == second or _behind(tokens, form) == statement_end(tokens, form):
+        tokens[form].kind = "whenever" if tokens[form].kind == "if" else tokens[form].kind
+        tokens[last:second] = [Token("semi", tokens[last].start, tokens[last].start)]
+
+
+def _end(tokens: list[Token], rule: int) -> None:
+    """`A whenever C, until 5 pm`, `until 5 pm, A whenever C`, `from 9 am to 5 pm, A whenever C`."""
+    first, last = statement_start(tokens, rule), _behind(tokens, rule)
+    end = run_start(tokens, statement_end(tokens, rule), STATEMENT_ENDS)
+    if tokens[last : last + 1] and tokens[last].kind == "comma" and _is_end(tokens[last + 1 : end]):
+        del tokens[last]
+    front = next((at for at in range(first, rule) if tokens[at].kind in _ENDING), rule)
+    ending = tokens[front : rule - 2]
+    if last == end and tokens[rule - 2].kind == "comma" and _is_end(ending):
+        tokens[front:last] = [*tokens[rule - 1 : last], *ending]
+        if front > first:
+            joint = tokens[front - 1]
+            tokens[front - 1] = Token("semi", joint.start, joint.end)
+
+
+def _is_end(said: Sequence[Token]) -> bool:
+    """Whether tokens say until when, and nothing else."""
+    return bool(said) and said[0].kind in _ENDING and all(token.kind in IN_CONDITIONS for token in said[1:])
+
+
+def _behind(tokens: Sequence[Token], rule: int) -> int:
+    """Where the condition of a rule ends; what joins a command behind it is no part of it."""
+    end = run_end(tokens, rule + 1, IN_CONDITIONS)
+    return run_start(tokens, end, JOINTS)
