@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 COUNT = "@_count"
 """The blackboard key of the last count."""
+_COUNTED, _PERSON = "@_counted", "person"  # what the last count was of: a kind, or a type of things
 _AROUND = 360.0
 
 
@@ -122,11 +123,19 @@ def counted(
     at_least: float | None = None,
     at_most: float | None = None,
     equal: float | None = None,
+    kinds: str | None = None,
+    counted: str | None = None,
 ) -> bool | Failed:
-    """Return whether the robot counted so many last; without a limit, any. Fails if it hasn't counted."""
+    """Return whether the robot counted so many last; without a limit, any. Fails if it hasn't counted.
+
+    Fails, too, if it counted anything but objects of these kinds, or what `counted` says: "person" or "object".
+    """
     found = count(blackboard)
     if isinstance(found, Failed):
         return found
+    things = str(blackboard.get(_COUNTED)) if _COUNTED in blackboard else ""
+    if kinds not in (None, things) or (counted is not None and (counted == _PERSON) != (things == _PERSON)):
+        raise ActionFailed(f"it counted something else last: {things}")
     if (below, above, at_least, at_most, equal) == (None,) * 5:
         above = 0
     return compares(found, below, above, at_least, at_most, equal) or Failed(lambda: f"it counted {found}")
@@ -151,6 +160,7 @@ def _count(
     if kind:
         found &= set(things_described(robot, type, kind=kind))
     blackboard.set(COUNT, len(found))
+    blackboard.set(_COUNTED, kind or type)
 
 
 def _search(
