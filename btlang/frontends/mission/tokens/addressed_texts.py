@@ -22,7 +22,7 @@ _MATTER = "begins what it is about, but not what to say"
 _PERSON = "is a person, and the question is missing"
 _MEASURES = frozenset(("count", "at_most", "up_to_times", "tries", "within", "for", "up_to", "every"))
 _DONE = ("command", "at", "wait", "wait_until", "wait_forever")
-_BEHIND = ("politeness", "then", "and")
+_BEHIND = ("politeness", "then", "and", "unless")
 
 
 class AddressedTexts(ToldWords):

@@ -31,6 +31,8 @@ from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.value_type import OBJECT, PLACE, TEXT, WORLD, ZONE
 from btlang.vocabulary.word_tree import find
 
+_MOST_ADJECTIVES = 3
+
 
 class Lexer:
     """Reads one source. `tokens` are raw tokens, `problems` what was unknown; both are complete after construction.
@@ -57,6 +59,7 @@ class Lexer:
         _drop_still(self.text, vocabulary)
         _drop_left(self.text, vocabulary)
         _say_there(self.text, vocabulary)
+        _say_kind(self.text, vocabulary)
         _drop_commas(self.text, vocabulary)
         _list_ranges(self.text, vocabulary)
         self.problems += _drop_untold_sizes(self.text, vocabulary)
@@ -199,6 +202,17 @@ def _say_there(text: Words, vocabulary: Lexicon) -> None:
         found = find(vocabulary.entering, words, at)
         if found is not None and (not words[found[1]][0].isalnum() or words[found[1]] in vocabulary.joining):
             text.replace(found[1] - 1, [words[found[1] - 1], *there])
+
+
+def _say_kind(text: Words, vocabulary: Lexicon) -> None:
+    """Put the kind behind `all` that what is left out has: `all but the blue cups` as `all cups but the blue cups`."""
+    words, values, every = text.words, vocabulary.values, vocabulary.roles["all_names"]
+    for at in reversed(range(len(words) - 1)) if not text.distinct.isdisjoint(every) else ():
+        end = values.exception(text, at + 1) if words[at] in every else 0
+        nouns = (word for word in words[end : end + _MOST_ADJECTIVES] if end and values.takes_word("kinds", word))
+        noun = next(nouns, "")
+        if noun:
+            text.replace(at, [words[at], noun])
 
 
 def _drop_commas(text: Words, vocabulary: Lexicon) -> None:

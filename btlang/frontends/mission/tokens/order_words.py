@@ -19,6 +19,7 @@ from btlang.frontends.mission.token import (
     Listed,
     Token,
     constraint_of,
+    drives,
     run_start,
     statement_start,
 )
@@ -114,6 +115,7 @@ class OrderWords(ClockWords, JourneyWords, RuleWords):
             or self._pace(at)
             or self._journey_of_constraint(at)
             or self._wait_for(at)
+            or self._faces(at)
             or self._back(at)
             or (self._partial.add_third(at + 1, None) if text.words[at] in self._vocabulary.asking["subject"] else 0)
         )
@@ -233,6 +235,21 @@ class OrderWords(ClockWords, JourneyWords, RuleWords):
             return 0
         self._partial.append(journey, at)
         return journey.last
+
+    def _faces(self, at: int) -> int:
+        """`turn left, facing the table`, `go to the lab facing the door`: faces it then."""
+        tokens, words = self._tokens, self._text.words
+        if words[at] not in self._vocabulary.roles["facing"]:
+            return 0
+        command = run_start(tokens, len(tokens), ("comma",))
+        facing = (
+            self._with_front(at, at + 1, "turning_to") if command and tokens[command - 1].kind == "command" else None
+        )
+        if facing is None or not drives(tokens[command - 1].value):
+            return 0
+        tokens[command:] = [Token("then", self._text.starts[at], self._text.starts[at])]
+        self._partial.append(facing, at)
+        return facing.last
 
     def _once_more(self, at: int) -> int:
         """`count the people, wave and count again`: the latest command with this verb."""
