@@ -141,16 +141,13 @@ def _drop_words_of_turns(text: Words, vocabulary: Lexicon) -> None:
     words = text.words
     if text.distinct.isdisjoint(vocabulary.in_turn):
         return  # as nearly always
-    at = 0
-    while at < len(words):
-        found = find(vocabulary.in_turn, words, at) if words[at] in vocabulary.in_turn else None
+    for at in reversed([at for at, word in enumerate(words) if word in vocabulary.in_turn]):
+        found = find(vocabulary.in_turn, words, at)
         begins = at == 0 or words[at - 1] in (END_OF_STATEMENT, END_OF_TEXT, ":")
         if found is not None and (not begins or words[found[1]] == ","):
             first = at - (words[at - 1] == "," and not begins)
             is_inserted = words[found[1]] == "," and words[found[1] + 1] not in vocabulary.joining
             text.drop(first, found[1] + (is_inserted and (begins or first < at)))
-            at = first
-        at += 1
 
 
 def _drop_still(text: Words, vocabulary: Lexicon) -> None:
@@ -206,9 +203,9 @@ def _say_there(text: Words, vocabulary: Lexicon) -> None:
 
 def _say_kind(text: Words, vocabulary: Lexicon) -> None:
     """Put the kind behind `all` that what is left out has: `all but the blue cups` as `all cups but the blue cups`."""
-    words, values, every = text.words, vocabulary.values, vocabulary.roles["all_names"]
-    for at in reversed(range(len(words) - 1)) if not text.distinct.isdisjoint(every) else ():
-        end = values.exception(text, at + 1) if words[at] in every else 0
+    words, values, every = text.words, vocabulary.values, frozenset(vocabulary.roles["all_names"])
+    for at in reversed([at for at, word in enumerate(words) if word in every]):
+        end = values.exception(text, at + 1)
         nouns = (word for word in words[end : end + _MOST_ADJECTIVES] if end and values.takes_word("kinds", word))
         noun = next(nouns, "")
         if noun:

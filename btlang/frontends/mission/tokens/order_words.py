@@ -155,6 +155,8 @@ class OrderWords(ClockWords, JourneyWords, RuleWords):
 
     def until_none(self, at: int) -> int:
         """`pick up the cups until none are left`: all of them, whatever is behind."""
+        if self._text.words[at] not in self._vocabulary.until_none:
+            return 0  # as nearly always
         found = find(self._vocabulary.until_none, self._text.words, at)
         return found[1] if found is not None and self._tokens and self._calls.is_set(self._tokens[-1]) else 0
 
