@@ -29,6 +29,7 @@ NAME = "named"
 """The part that is a name of the world; `name` is that of a node."""
 _HEADS = ("object", "place", "person", "door", "zone")
 """The types of what a relation may lead to."""
+_PLACED = frozenset(("inside", "at", "off"))
 _MOST_DEEP = 3
 _LONGEST_CLAUSE = 8  # words
 
@@ -55,6 +56,7 @@ class Modifiers:
         self._either = frozenset(language["roles"].get("or", ()))
         self._nearest = frozenset(language["roles"].get("nearest", ()))
         self._both: list[str] = language["roles"].get("and", [])
+        self._joints = frozenset((",", *self._both))
         firsts = (words[0] for _, words in self._quality_words)
         self.starts = frozenset((*self._relations, *self._clauses, *self._self_relations, *firsts))
         """The words with which something behind a head may begin."""
@@ -88,6 +90,25 @@ class Modifiers:
         """Whether `that is not` or the like begins at a word."""
         clause = find(self._clauses, text.words, at)
         return clause is not None and not clause[0]
+
+    def behind_all(self, kind: str, text: Words, at: int, names: Names) -> Iterator[tuple[Parts, int]]:
+        """The same behind a set, which may come from several places: `all cups from the kitchen and the lab`."""
+        for parts, end in self.behind(kind, text, at, names):
+            yield parts, end
+            (relation, value), *others = parts
+            if relation in _PLACED and not others:
+                yield from self._listed(relation, value, text, end, names)
+
+    def _listed(self, relation: str, value: str, text: Words, end: int, names: Names) -> Iterator[tuple[Parts, int]]:
+        while text.words[end] in self._joints:
+            first = end + 1 + (text.words[end + 1] in self._joints)
+            more = find(names(PLACE), text.words, first)
+            if more is None or not (first in text.articles or more[1] > first + 1):
+                return  # `all cups from the lab and dock` goes to the dock
+            value, end = f"{value}{SECOND}{more[0]}", more[1]
+            if text.words[first - 1] in self._both:
+                yield ((relation, value),), end
+                return
 
     def behind(self, kind: str, text: Words, at: int, names: Names) -> Iterator[tuple[Parts, int]]:
         """The filters that may stand behind a head of a type, and where each ends; the shortest first."""

@@ -142,6 +142,8 @@ class Lexicon:
         """What does nothing where it stands alone: `stay here`."""
         self.in_turn = tree_of((words, True) for words in self.asking["in_turn"])
         """The words beside a list that say nothing: `in that order`."""
+        self.ended = tree_of((words, True) for words in self.asking["ended"])
+        """The words for what isn't so any more: `it's gone`."""
         self.entering = tree_of((words, True) for words in self.asking["entering"])
         """The words behind which a place is left out: `go in`."""
         self.until_none = tree_of((words, True) for words in self.asking["until_none"])

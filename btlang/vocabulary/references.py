@@ -47,7 +47,7 @@ LATEST = "{}"
 HOME = ("home", "")
 """The part of the place that is meant by the word for home."""
 SECOND = "; and "
-"""What stands between both things that something is between."""
+"""What stands between both things that something is between, and between the places where things of a set are."""
 DENIED = {"not_color": "color", "not_kind": "kind", "not_size": "size", "not_state": "state"}
 """What a thing is said not to be, each with the type of the value; several values stand between semicolons."""
 _NO_PARTS = ("type", "how", "output")  # the other ports of a choice

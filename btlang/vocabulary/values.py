@@ -303,7 +303,7 @@ class Values(Measures):
         if text.words[end] in self.modifiers.starts:
             ways += [
                 ((*parts, *more), last)
-                for more, last in self.modifiers.behind(meant.type, text, end, self.names_tree)
+                for more, last in self.modifiers.behind_all(meant.type, text, end, self.names_tree)
                 if self.likenesses.may_say(meant.type, parts, more)
             ]
         for some, last in ways:

@@ -60,6 +60,13 @@ def test_it_chooses_a_cube(b: Any, how: str, parts: dict[str, str], name: str) -
     assert b.robot.choose("object", how, {"kind": "cube", **parts}) == name
 
 
+def test_things_of_a_set_come_from_several_places(b: Any) -> None:
+    near = {each: b.robot.described("object", {"kind": "cube", "at": each}) for each in ("north 2", "north 1")}
+    both = b.robot.described("object", {"kind": "cube", "at": "north 2; and north 1"})
+    assert set(both) == {cube for cubes in near.values() for cube in cubes}
+    assert len(both) > max(map(len, near.values()))
+
+
 def test_places_are_counted_from_where_the_mission_began(b: Any) -> None:
     line = [b.robot.choose("place", str(number), {"kind": "spot"}) for number in (1, 2, 3)]
     b.run(navigation.go_to, place=line[2])

@@ -109,7 +109,8 @@ class Relations:
             first, _, second = value.partition(SECOND)
             pairs = ((one, other) for one in self._meant(first, pose) for other in self._meant(second, pose))
             return any(self._is_between(name, one, other) for one, other in pairs)
-        return any(self._stands(name, relation, other, pose) for other in self._meant(value, pose))
+        others = (other for each in value.split(SECOND) for other in self._meant(each, pose))
+        return any(self._stands(name, relation, other, pose) for other in others)
 
     def _is_here(self, name: str, pose: Pose) -> bool:
         """Return whether the robot is at a place, or in the region of that name."""

@@ -8,13 +8,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cached_property
 
-from btlang.frontends.mission.token import HOLDING, Called, Remembered, Token
+from btlang.frontends.mission.token import HOLDING, RULES, Called, Remembered, Token, statement_start
 from btlang.frontends.mission.tokens.partial_commands import LONGEST_VERB, PartialCommands
 from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import OBJECT
+from btlang.vocabulary.word_tree import find
+
+_UNTIL = ("until", "wait_until")
+_ASKED = tuple([form, "condition", "comma"] for form in (*RULES, "if"))
 
 
 class PartialConditions(PartialCommands):
@@ -22,7 +26,7 @@ class PartialConditions(PartialCommands):
 
     def add_condition(self, at: int) -> int:
         """A condition that isn't said as its phrases are. Returns where to go on, 0 where there is none."""
-        return self._add_quantity(at) or self._add_contracted(at) or self._add_lasting(at)
+        return self._add_quantity(at) or self._add_contracted(at) or self._add_lasting(at) or self._add_ended(at)
 
     def _add_quantity(self, at: int) -> int:
         """`charge until it is at least 80%`: the latest quantity is compared, or the only one with that unit."""
@@ -91,6 +95,17 @@ class PartialConditions(PartialCommands):
                 if behind is not None and behind.meaning.role in HOLDING:
                     return self._condition(found, at)
         return 0
+
+    def _add_ended(self, at: int) -> int:
+        """`if something is in the way, wait until it's gone`: until what the form before asks isn't so any more."""
+        tokens, ended = self._tokens, find(self._vocabulary.ended, self._text.words, at)
+        first = statement_start(tokens, len(tokens))
+        form = [token.kind for token in tokens[first : first + 3]]
+        if ended is None or tokens[-1].kind not in _UNTIL or form not in _ASKED:
+            return 0
+        start, end = self._text.starts[at], self._text.ends[ended[1] - 1]
+        tokens += [Token("not", start, start), Token("condition", start, end, tokens[first + 1].value)]
+        return ended[1]
 
     def _condition(self, found: Match, at: int) -> int:
         """Add a condition, or its denial. Returns where to go on."""
