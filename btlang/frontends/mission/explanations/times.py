@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from itertools import chain
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.text.source import Span
@@ -11,7 +12,7 @@ from btlang.text.words import Words
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import SlotValue
 
-_TIME = "time_of_day"
+_TIME, _DAYS = "time_of_day", "days"
 _USUAL = "6:30 pm, or 18:30"
 _BESIDE_MARK = re.compile(r"(?<=\d)\s*[:.]\s*(?=\d)")
 _HALF_WITH_DOTS = re.compile(r"\s*([ap])\.\s?m\b", re.IGNORECASE)
@@ -70,6 +71,15 @@ def assumed_times(text: Words, values: Sequence[SlotValue]) -> Iterator[Diagnost
 def without_hour(text: Words, at: int, end: int, vocabulary: Lexicon) -> Diagnostic | None:
     """BT160 for a part of the day without an hour among words: `until the morning`, `during the night`."""
     values = vocabulary.values
+    days = values.read(_DAYS, text, at + 1) if _DAYS in values.types else None
+    phrases = chain(vocabulary.roles["on_days"], vocabulary.roles["weekly"])
+    on_days = {word for phrase in phrases for word in phrase.split()[0].split("/")}
+    if days is not None and text.words[at] in on_days:
+        span = text.span(at, days[1])
+        time = explain_time(text, days[1] + 1, True, vocabulary)
+        if time is not None:
+            return time  # `on Mondays at 9`
+        return _problem(span, "says no hour", f"{span.text} {vocabulary.word('at')} 9 am")
     places = (i for i in range(at, min(end + 1, len(text.words))) if text.words[i] in values.parts_of_day)
     place = next((i for i in places if i in text.articles or text.words[i - 1] in vocabulary.quantifiers), None)
     if place is None or values.time_of_day(text, place) is not None:

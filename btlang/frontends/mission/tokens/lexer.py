@@ -12,7 +12,7 @@ from btlang.frontends.mission.tokens.condition_names import condition_names, set
 from btlang.frontends.mission.tokens.counted_things import with_counted_things
 from btlang.frontends.mission.tokens.ended_rules import with_ends
 from btlang.frontends.mission.tokens.repeated_statements import with_repeats_apart, with_times_first
-from btlang.frontends.mission.tokens.rules_behind import with_exceptions, with_rules_behind
+from btlang.frontends.mission.tokens.rules_behind import find_counted_rules, with_exceptions, with_rules_behind
 from btlang.frontends.mission.tokens.rules_inside import with_rules_inside
 from btlang.frontends.mission.tokens.settling import (
     find_brief_stays,
@@ -84,6 +84,7 @@ class Lexer:
         with_sightings(self.tokens, vocabulary, source)
         self.problems += with_counted_things(self.tokens, source)
         with_rules_behind(self.tokens)
+        self.problems += find_counted_rules(self.tokens, source)
         self.problems += with_exceptions(self.tokens, self.vocabulary, source)
         with_rules_inside(self.tokens)
         self.problems += with_ends(self.tokens, self.vocabulary, partial(Span, source))

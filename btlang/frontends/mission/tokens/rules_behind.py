@@ -20,6 +20,8 @@ from btlang.text.source import Source, Span
 from btlang.vocabulary.lexicon import Lexicon
 
 _ENDING = ("until", "until_time")
+_EACH_TIME = "it may be how often each time, or in all"
+_RULE = "whenever bumped, say ouch 3 times, or: the first time bumped, say ouch"
 _DONE = ("command", "name")
 _ASKED = (*RULES, "if")
 
@@ -30,6 +32,17 @@ def with_rules_behind(tokens: list[Token]) -> None:
         if tokens[at].kind in RULES and tokens[at - 1].kind in _DONE and at < len(tokens):
             _split(tokens, at)
             _end(tokens, at)
+
+
+def find_counted_rules(tokens: Sequence[Token], source: Source) -> Iterator[Diagnostic]:
+    """BT150 for `whenever C, A, up to five times`: so often each time, or in all?"""
+    for at in range(1, len(tokens)):
+        if tokens[at].kind != "count" or tokens[at - 1].kind != "comma":
+            continue
+        first, end = statement_start(tokens, at), run_start(tokens, statement_end(tokens, at), STATEMENT_ENDS)
+        if tokens[first].kind == "whenever" and at == end - 1 and _behind(tokens, first) < at - 1:
+            span = Span(source, tokens[at].start, tokens[at].end)
+            yield diagnostic("BT150", span, words=span.text, reason=_EACH_TIME, example=_RULE)
 
 
 def with_exceptions(tokens: list[Token], vocabulary: Lexicon, source: Source) -> Iterator[Diagnostic]:
