@@ -169,6 +169,8 @@ _ALL = (
     Code("BT135", "The tree '{name}' can't be changed here, because it is in another file.",
          "Change it in {path}, which this file includes."),
     Code("BT136", "This mission can't be written onto {path}: {reason}.", "{advice}"),
+    Code("BT139", "'{words}' waits for another number, and nothing counts again.", "Write for example: {example}",
+         "warning", "no further count"),
     Code("BT140", "'{words}' is read as {time}, the next such time after '{before}'.",
          "To mean another one, put am or pm behind it.", "note", "assumed time"),
     Code("BT141", "I can't read '{words}': {wanted} is needed.", "Write for example: do \"OpenGripper\" with width 0.05"),

@@ -9,6 +9,7 @@ from btlang.passes.scope import Lowered, LoweringScope, new_node, new_round
 from btlang.passes.scripts import make_script, run_before
 from btlang.tree import ast
 from btlang.tree.catalogue import MOST_NODES
+from btlang.tree.endless import is_wait
 from btlang.tree.node import Node
 from btlang.vocabulary.references import keys_in
 
@@ -60,6 +61,9 @@ def _for(item: ast.For, done: list[Lowered], scope: LoweringScope) -> Lowered:
 
 
 def _until_time(item: ast.UntilTime, done: list[Lowered], _scope: LoweringScope) -> Lowered:
+    if is_wait(item.body):
+        children = _clock(item.time), new_round(done[0])
+        return Lowered(new_node("Parallel", children, item.span, success_count="1", failure_count="1"))
     return Lowered(_again_beside(_clock(item.time), item, done[0]))
 
 

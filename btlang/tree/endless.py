@@ -1,12 +1,15 @@
 """What is said behind rounds without an end, where it would never be done.
 
 - `every 10 min, count the cups. If there are 3, A` asks in each round;
-- `A every 10 min. Stop at 5 pm` and `A every 10 min. Stop when C` end the rounds.
+- `A every 10 min. Stop at 5 pm` and `A every 10 min. Stop when C` end the rounds;
+- `count the cups every 10 min until 5 pm. As soon as there are 3, A` ends them, too, and does A.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
+from itertools import pairwise
 
 from btlang.text.source import Span
 from btlang.tree import ast
@@ -18,14 +21,15 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-_STOP = "Stop"
+_SENTENCE_END = re.compile(r"[.!\n]")
+_STOP, _WAITS = "Stop", "WaitForPerson"
 
 
 def with_ends(mission: ast.Program) -> ast.Program:
     """Return the mission with what belongs to rounds without an end where it is done."""
 
     def body(root: ast.Ast) -> ast.Ast:
-        return fold(root, ast.parts, _join) if any(map(_never_ends_before, ast.parents_first(root))) else root
+        return fold(root, ast.parts, _join) if any(map(_has_rounds_before, ast.parents_first(root))) else root
 
     def program(part: ast.Program) -> ast.Program:
         return ast.with_bodies(part, body, program)
@@ -36,10 +40,18 @@ def with_ends(mission: ast.Program) -> ast.Program:
 def _join(node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
     """Return a node with its parts, a sequence with what belongs to endless rounds of it in these."""
     whole = ast.with_parts(node, done)
-    if not isinstance(whole, ast.Chain) or not _never_ends_before(whole):
+    if not isinstance(whole, ast.Chain) or not _has_rounds_before(whole):
         return whole
     made: list[ast.Ast] = []
-    for item in whole.items:
+    items = list(whole.items)
+    while items:
+        item = items.pop(0)
+        if made and _is_awaited(made[-1], item):
+            pairs = enumerate(pairwise((item, *items)))
+            last = next((at for at, (one, other) in pairs if _SENTENCE_END.search(_between(one, other))), len(items))
+            made[-1:] = _until_counted(made[-1], item, items[:last])
+            del items[:last]
+            continue
         at, joined = _join_pair(made, item)
         made[at:] = joined
     return made[0] if len(made) == 1 else whole.replace(items=tuple(made))
@@ -57,11 +69,48 @@ def _join_pair(before: Sequence[ast.Ast], item: ast.Ast) -> tuple[int, list[ast.
         return at, [ast.UntilTime(timed.time, rounds, span), *behind]
     if isinstance(item, ast.If) and not item.negated and timed is None:
         stop, behind = _split(item.body)
+        counts = asks(item.condition, (COMPARED,)) and asks(rounds, COUNTING)
+        if _is_stop(stop) and item.otherwise is None and counts:
+            return at, [_counted_again(rounds, item.condition, span), *behind]
         if _is_stop(stop) and item.otherwise is None:
             return at, [ast.StopWhen(item.condition, rounds, span), *behind]
-        if asks(item.condition, (COMPARED,)) and asks(rounds, COUNTING):
+        if counts:
             return at, [_with_last(rounds, item, span)]
     return len(before), [item]
+
+
+def _is_awaited(rounds: ast.Ast, item: ast.Ast) -> bool:
+    """Whether a command waits for what the rounds before it count."""
+    is_asked = isinstance(item, ast.WaitUntil) and asks(item.condition, (COMPARED,))
+    return is_asked and _goes_round(rounds) and asks(rounds, COUNTING)
+
+
+def _until_counted(rounds: Any, wait: Any, behind: Sequence[ast.Ast]) -> list[ast.Ast]:
+    """Return rounds that end when so many are counted, and what is done then."""
+    counted = _counted_again(rounds, wait.condition, Span(wait.span.source, rounds.span.start, wait.span.end))
+    if _is_endless(rounds) or not behind:
+        return [counted, *behind]
+    span = Span(wait.span.source, wait.span.start, behind[-1].span.end)
+    body = behind[0] if len(behind) == 1 else ast.Chain("sequence", tuple(behind), False, span)
+    return [counted, ast.If(False, wait.condition, body, None, span)]
+
+
+def _counted_again(rounds: Any, condition: ast.Ast, span: Span) -> ast.Ast:
+    """Return rounds that count until a condition about that holds: it isn't known before the first count."""
+    if isinstance(rounds, ast.For):
+        return ast.UpTo(rounds.seconds, _counted_again(rounds.body, condition, span), span)
+    if isinstance(rounds, ast.UntilTime):
+        return ast.UntilTime(rounds.time, _counted_again(rounds.body, condition, span), span)
+    pause = rounds.seconds if isinstance(rounds, ast.Every) else ""
+    items = (rounds.body, ast.Check(condition, condition.span))
+    return ast.Retry("-1", ast.Chain("sequence", items, True, span), pause, span)
+
+
+def is_wait(node: ast.Ast) -> bool:
+    """Return whether a command only waits for something: until a time of day it does so once."""
+    if isinstance(node, ast.Retry) and node.attempts == "-1" and isinstance(node.body, ast.Chain):
+        return isinstance(node.body.items[-1], ast.Check)
+    return isinstance(node, ast.WaitUntil) or (isinstance(node, ast.Phrase) and node.entry.id == _WAITS)
 
 
 def _split_timed(node: ast.Ast) -> tuple[ast.Ast | None, ast.Ast | None, list[ast.Ast]]:
@@ -94,9 +143,15 @@ def _with_last(rounds: Any, item: ast.Ast, span: Span) -> ast.Ast:
     return made
 
 
-def _never_ends_before(node: ast.Ast) -> bool:
-    """Whether something stands behind rounds without an end."""
-    return isinstance(node, ast.Chain) and node.operator == "sequence" and any(map(_is_endless, node.items[:-1]))
+def _has_rounds_before(node: ast.Ast) -> bool:
+    """Whether something stands behind rounds."""
+    return isinstance(node, ast.Chain) and node.operator == "sequence" and any(map(_goes_round, node.items[:-1]))
+
+
+def _goes_round(node: ast.Ast) -> bool:
+    """Whether a command is done in rounds, which may end at a time."""
+    is_timed = isinstance(node, ast.UntilTime | ast.For) and isinstance(node.body, ast.Every)
+    return is_timed or _is_endless(node)
 
 
 def _is_endless(node: ast.Ast) -> bool:

@@ -32,6 +32,8 @@ UNKNOWABLE = {
     "BT029": "`the robot holds the cup` alone says what it does",
     "BT044": "`ball` alone is a thing, behind `count` a kind of things",
     "BT050": "`look for Bob for 5 minutes` goes on when he is found",
+    "BT139": "what is waited for is counted again",
+    "BT140": "which half of the day a time is in",
     "BT141": "the zone of a side is said by the name of a place that is one",
     "BT146": "nothing counts before what was counted is asked for",
     "BT149": "nothing brings the robot to who is asked",
@@ -117,6 +119,7 @@ def test_every_role_that_can_stand_in_one_line_has_a_rule() -> None:
         "may", "or_stay",  # what is permitted is left out
         "needs_world", "needs_words", "politeness", "times_of_day", "never",
         "on_way", "on_way_to", "start_at", "wait_at", "back_and_forth", "rounds_of", "pictures_of",
+        "received",  # behind what somebody is given
         "arrival", "arrival_at",  # about journeys, which no rule tells from others
         "any_time", "tries", "at_most", "up_to_times", "stop_after", "try_again", "if_unanswered",
         "if_one_fails", "instead", "between_times",

@@ -12,6 +12,7 @@ from btlang.backends.english.candidate import REFERENCE, Candidate, Checked
 from btlang.text.source import NOWHERE
 from btlang.tree import ast
 from btlang.tree.catalogue import CONSTRAINTS, zone_names
+from btlang.tree.endless import is_wait
 from btlang.tree.node import Node
 from btlang.vocabulary.references import ALL, Choice, names_key
 from btlang.vocabulary.value_type import WORLD
@@ -213,6 +214,10 @@ def _parallel(node: Node, children: tuple[Candidate, ...], checked: Checked) -> 
         if body is not None:
             yield from (ast.For(seconds, body, NOWHERE) for seconds in _seconds(timer.port("msec"), checked))
             yield from (ast.UntilTime(time, body, NOWHERE) for time in _times(timer.port("time"), checked))
+    if timer.id == "WaitForTime" and not children[1].in_lines:
+        wait = _round(children[1], checked)
+        if wait is not None and is_wait(wait):
+            yield from (ast.UntilTime(time, wait, NOWHERE) for time in _times(timer.port("time"), checked))
     if timer.id == "Sleep" and not children[1].in_lines:
         body = _round(children[1], checked)
         if body is not None:

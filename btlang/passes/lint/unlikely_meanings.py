@@ -37,6 +37,7 @@ if TYPE_CHECKING:
 
 _LOOPS = (ast.Repeat, ast.Retry, ast.Every, ast.While)
 _KEEP_ASKING = 'keep asking Alice "Tea?" until she says yes'
+_COUNTED_AGAIN = "every 10 min, count the people. As soon as there are more than 3, wave"
 _COUNTED = "count the people. If there are more than 3, wave"
 _ENDLESS, _PICK_UP = "-1", "PickUp"
 _PACES = ("every", "every_day", "weekly", "on_days", "at", "until_time")
@@ -245,6 +246,11 @@ def find_uncounted(compilation: Compilation) -> Iterator[Diagnostic]:
     asked = next((each for each in phrases if each.entry.id == COMPARED), None)
     if asked is not None and not any(each.entry.id in COUNTING for each in phrases):
         yield diagnostic("BT146", asked.span, words=asked.span.text, example=_COUNTED)
+    if asked is not None:
+        nodes = (node for body in ast.bodies(mission) for node in compilation.syntax(body))
+        waits = (node for node in nodes if isinstance(node, ast.WaitUntil) and asks(node.condition, (COMPARED,)))
+        for wait in waits:
+            yield diagnostic("BT139", wait.span, words=wait.span.text, example=_COUNTED_AGAIN)
 
 
 def _phrases(nodes: Iterable[ast.Ast]) -> list[ast.Phrase]:

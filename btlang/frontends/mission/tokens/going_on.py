@@ -95,6 +95,9 @@ class GoingOn(SentenceReader):
         if meaning is None:
             return
         meaning.end = end
+        if denied and not is_new and WORKS in self._statement(form)[1]:
+            if self._denies_what_worked(Span(self._text.source, meaning.start, end)):
+                meaning = Token("otherwise", meaning.start, end)  # `if he is there, A, and if he isn't there, B`
         del tokens[form:]
         if is_new:
             go_on(tokens)
@@ -290,11 +293,16 @@ class GoingOn(SentenceReader):
             return False  # `if he is there, go to the lab. If he isn't there, A`: it may be about the lab
         cannot = {phrase.split()[-1] for phrase in self._vocabulary.asking["unable"]}
         denied = (
-            [*asked[:at], *way.split(), *asked[at + 1 :]]
+            (asked[:at], [*way.split(), *asked[at + 1 :]])
             for at, verb in enumerate(asked)
             for way in (*self._vocabulary.negations.get(verb, ()), *(f"{word} {verb}" for word in cannot))
         )
-        return any(said[-len(each) :] == each for each in denied)
+        for subject, rest in denied:
+            before = said[: -len(rest)]
+            is_same = before[-len(subject) :] == subject or (before != [] and before[-1] in pronouns)
+            if said[-len(rest) :] == rest and is_same:
+                return True
+        return False
 
     def _has_answered(self) -> bool:
         """Whether the statement does something where somebody answers: `ask "Tea?". If he answers, wave`."""

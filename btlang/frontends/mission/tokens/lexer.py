@@ -32,6 +32,7 @@ from btlang.vocabulary.value_type import OBJECT, PLACE, TEXT, WORLD, ZONE
 from btlang.vocabulary.word_tree import find
 
 _MOST_ADJECTIVES = 3
+_ENDING = frozenset((END_OF_STATEMENT, END_OF_TEXT, ",", ";", ")"))
 
 
 class Lexer:
@@ -170,25 +171,23 @@ def _drop_still(text: Words, vocabulary: Lexicon) -> None:
 
 
 def _drop_left(text: Words, vocabulary: Lexicon) -> None:
-    """Take out `left` in a condition: `if nobody is left in the lab`, `there are no cups left`; not `on the left`."""
-    words, remaining = text.words, vocabulary.asking["remaining"]
+    """Take out `left` in a condition: `if nobody is left in the lab`, `if there are no cups left`; not `turn left`."""
+    words, remaining, values = text.words, vocabulary.asking["remaining"], vocabulary.values
     if not remaining or remaining[0] not in text.distinct:
         return  # as nearly always
-    introducing = vocabulary.values.role_words.introducing.values()
-    prepositions = {phrase[0] for phrases in introducing for phrase in phrases}
-    be, not_before = vocabulary.asking["asking_be"], prepositions.union(vocabulary.values.texts.completed)
-    for at in reversed(range(1, len(words) - 1)):
-        ends = not words[at + 1][0].isalpha()
-        if words[at] != remaining[0] or words[at - 1] in not_before or not (ends or words[at + 1] in prepositions):
-            continue
-        first = text.earlier(at)[1]
-        first = max((i + 1 for i in range(first, at) if words[i] == ","), default=first)
-        if not any(word in vocabulary.before_conditions for word in words[first:at]):
-            continue
-        if words[at - 1] in be and ends:
+    prepositions = {phrase[0] for phrases in values.role_words.introducing.values() for phrase in phrases}
+    be, things = vocabulary.asking["asking_be"], (OBJECT, "kind", "kinds")
+    for at in reversed([at for at in range(1, len(words) - 1) if words[at] == remaining[0]]):
+        ends, before = not words[at + 1][0].isalpha(), words[at - 1]
+        asks = (i for i in reversed(range(text.earlier(at)[1], at)) if words[i] in vocabulary.before_conditions)
+        first = next(asks, at)
+        is_thing = before in vocabulary.quantifiers or any(values.takes_word(kind, before) for kind in things)
+        is_thing = is_thing or values.is_number([before])
+        if before in be and ends and first < at:
             text.replace(at, [remaining[1]])
-        elif any(word in be for word in words[first:at]):
-            text.drop(at, at + 1)
+        elif (before in be or is_thing) and any(word in be for word in words[first:at]):
+            if ends or words[at + 1] in prepositions:
+                text.drop(at, at + 1)
 
 
 def _say_there(text: Words, vocabulary: Lexicon) -> None:
@@ -198,7 +197,7 @@ def _say_there(text: Words, vocabulary: Lexicon) -> None:
     words, there = text.words, vocabulary.asking["remaining"][-1:]
     for at in reversed([at for at in range(len(words) - 1) if words[at] in vocabulary.entering]):
         found = find(vocabulary.entering, words, at)
-        if found is not None and (not words[found[1]][0].isalnum() or words[found[1]] in vocabulary.joining):
+        if found is not None and (words[found[1]][0] in _ENDING or words[found[1]] in vocabulary.joining):
             text.replace(found[1] - 1, [words[found[1] - 1], *there])
 
 

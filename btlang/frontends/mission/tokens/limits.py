@@ -3,14 +3,24 @@
 from __future__ import annotations
 
 from btlang.diagnostics.diagnostic import diagnostic
-from btlang.frontends.mission.token import IN_CONDITIONS, JOINTS, STATEMENT_ENDS, Called, Listed, Token, run_start
+from btlang.frontends.mission.token import (
+    IN_CONDITIONS,
+    JOINTS,
+    STATEMENT_ENDS,
+    Called,
+    Listed,
+    Token,
+    run_start,
+    statement_start,
+)
 from btlang.frontends.mission.tokens.going_on import GoingOn
 from btlang.frontends.mission.tokens.sentence_reader import hears, searches
-from btlang.frontends.mission.tokens.settling import FAILS, MEASURES, STAYS, asked_about, lasting, misses
+from btlang.frontends.mission.tokens.settling import FAILS, MEASURES, STAYS, WORKS, asked_about, lasting, misses
 from btlang.frontends.mission.tokens.silent_words import BEGINS
 from btlang.text.source import Span
 from btlang.vocabulary.match import Match
 
+_TIME = "duration"
 _LIMITS = ("within", "delay", "for", "held")
 """What may say how long a command may take, behind words that ask how it went."""
 
@@ -145,6 +155,37 @@ class Limits(GoingOn):
             last += len(goes)
         tokens.insert(last + 1, Token("condition", here, here, asked.value))
         return last + 1
+
+    def _deny_before(self, form: int) -> None:
+        """`wait for Bob until 6 pm. If he comes, A, and if he doesn't come, B`: the second is `otherwise`."""
+        tokens = self._tokens
+        first = statement_start(tokens, form)
+        asked = [token.value for token in tokens[first:form] if token.kind == "condition"]
+        if tokens[form + 1].kind == "not" and tokens[first].kind == "if" and asked == [tokens[-1].value]:
+            start, end = tokens[form].start, tokens[-1].end
+            del tokens[run_start(tokens, form, JOINTS | {"semi"}) :]
+            tokens.append(Token("otherwise", start, end))
+
+    def _turn(self, wait: int, then: int, form: int, end: int) -> int:
+        """`wait for Bob for 10 min. When he comes, A, and if he doesn't come, B`: B is done if the wait fails.
+
+        BT152 where it waits until he does.
+        """
+        tokens, text = self._tokens, self._text
+        said = tokens[wait].value
+        has_time = isinstance(said, Called) and any(said.entry.slot(name).type == _TIME for name, _ in said.arguments)
+        if has_time or tokens[wait + 1].kind in MEASURES:
+            start, stop = tokens[form].start, tokens[-1].end
+            del tokens[run_start(tokens, form, JOINTS) :]
+            tokens.append(Token("otherwise", start, stop))
+            tokens[then] = Token(WORKS, tokens[then].start, tokens[then].end)
+            self._make_fail(wait)
+            return end
+        words = Span(text.source, tokens[form].start, tokens[-1].end)
+        waits = text.source.text[tokens[wait].start : tokens[wait].end]
+        reason, advice = f"'{waits}' only ends when it is so", f"Say how long it waits, for example: {waits} for 10 min"
+        self._calls.problems.append(diagnostic("BT152", words, words=words.text, reason=reason, advice=advice))
+        return end
 
     def _time_behind(self, end: int) -> Match | None:
         """The time that stands at a word: `within 5 min`; the `in` of `comes in five minutes` may be one of it."""

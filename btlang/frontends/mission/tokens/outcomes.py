@@ -43,10 +43,6 @@ from btlang.vocabulary.match import Match
 from btlang.vocabulary.value_type import OBJECT, PERSON, PLACE
 from btlang.vocabulary.word_tree import find
 
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    pass
-
 _ASKING = frozenset(("if", "as_soon_as", "once"))
 _HOLDS, _WHERE = "Holding", ("PersonIsAt", "ObjectIsAt")
 _DONE = ("command", "name")
@@ -122,6 +118,10 @@ class Outcomes(Limits):
         form = len(tokens) - (3 if denied else 2)
         if form < 1 or tokens[form].kind not in _ASKING:
             return end
+        wait = asked_about(tokens, form, lambda token: self._waits(token) and self._is_settled(token, asked))
+        if wait is not None and tokens[wait + 1].kind == "until_time":
+            self._deny_before(form)
+            return end
         if denied and tokens[form].kind == "if" and tokens[form - 1].kind == "comma":
             at = asked_about(tokens, form, lambda token: self._is_settled(token, asked))
             if at is not None and at + 1 < run_start(tokens, form, JOINTS):  # `when you find it, A, if you don't, B`
@@ -149,6 +149,9 @@ class Outcomes(Limits):
                 return self._go_on_then(form, end)
             return end
         first = self._statement(command)[0] if denied else command
+        then = next((at for at in range(wait or 0, form) if tokens[at].kind == "then"), 0)
+        if denied and wait is not None and then and tokens[then - 1].kind == "stop":
+            return self._turn(wait, then, form, end)
         has_found = not denied and searches(tokens[command]) and _has_it(tokens[command], asked)
         if has_found or any(_achieves(tokens[at], asked) for at in range(command, first - 1, -1)):
             said = tokens[command]

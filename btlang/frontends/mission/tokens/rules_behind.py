@@ -57,14 +57,16 @@ def with_exceptions(tokens: list[Token], vocabulary: Lexicon, source: Source) ->
         end, comma = _behind(tokens, at), run_start(tokens, at, ("comma",))
         first, last = statement_start(tokens, at), run_start(tokens, statement_end(tokens, at), STATEMENT_ENDS)
         lasts, unless = not while_words.isdisjoint(said), tokens[at:end]
+        if comma <= first or len(unless) < 2:
+            continue  # nothing is done before it, or nothing is asked
         every = next((each for each in range(first, comma) if tokens[each].kind == "every"), -1)
         rule = _behind(tokens, first) if tokens[first].kind in RULES else last
         if lasts and rule < comma and end == last:
             both = [*_one(tokens[first + 1 : rule]), _joint("and", unless[0]), _joint("not", unless[0])]
             tokens[first + 1 : end] = [*both, *_one(unless[1:]), *tokens[rule:comma]]
-        elif every == comma - 1:
+        elif every == comma - 1 >= first:
             tokens[every:end] = [*unless, tokens[every]]
-        elif every == first and tokens[first + 1].kind == "comma" and end == last:
+        elif every == first and tokens[first + 1].kind == "comma" and first + 2 < comma and end == last:
             tokens[first + 2 : end] = [*_in_brackets(tokens[first + 2 : comma]), *unless]
         elif lasts:
             span = Span(source, tokens[first].start, tokens[end - 1].end)
