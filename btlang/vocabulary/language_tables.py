@@ -48,7 +48,7 @@ ASKING = (
     "until_none", "rounds", "obliging", "failing", "found", "counted", "replied",
     "so", "being", "causing", "asking_for", "plea_for", "helping", "plea_for_help",
     "speaking", "spoken_of", "still", "motionless", "who", "somebody", "answering", "likewise",
-    "remaining", "entering", "turning_to", "ended",
+    "remaining", "entering", "turning_to", "ended", "having",
 )  # fmt: skip
 """What the table `asking` of a language may have; without it there are no questions, and no remarks."""
 

@@ -47,6 +47,7 @@ class Texts:
         self._purpose = frozenset(language["purpose"])
         self._relatives = frozenset(phrase.split()[0] for phrase in language["relatives"])
         self._owners = frozenset(language["possessives"].get("others", ()))
+        self._having = "".join(language["asking"].get("having", ())[:1])
         self._addressed = "".join(language["asking"].get("addressed", ())[:1])
         self._sayings = tree_of((phrase, True) for phrase in language["sayings"])
         self._then, self._otherwise = words_of("then"), words_of("otherwise")
@@ -151,7 +152,9 @@ class Texts:
             if front is not None and (front[1] < last or asks):
                 if not doubtful.isdisjoint(text.words[first:at]):
                     break  # `when she comes if she wants tea`
-                parts = [*([opener] if asks else []), *self._said(text, first, at), front[0]]
+                is_perfect = text.words[front[1] - 1] in self.completed and self._inverts(text, front[1] - 1)
+                begin = self._having if is_perfect and self._having else front[0]  # `if he has lost the key`
+                parts = [*([opener] if asks else []), *self._said(text, first, at), begin]
                 return self._question(parts, self._said(text, front[1], last), doubtful)
         if asks and text.words[first] in self.inverting:  # `what is 7 times 8`
             return self._question((opener, text.words[first]), self._said(text, first + 1, last), doubtful)

@@ -213,7 +213,8 @@ def find_distant_questions(compilation: Compilation) -> Iterator[Diagnostic]:
             yield diagnostic("BT149", phrase.span, words=words, person=named[0], fixed=fixed)
             return
         is_at_thing = {phrase.entry.slot(name).type for name, _ in phrase.arguments} == {OBJECT}
-        if named or (MOVES in phrase.entry.resources and not is_at_thing) or phrase.entry.sort == "name":
+        leads = MOVES in phrase.entry.resources and not (is_at_thing or phrase.entry.first)
+        if named or leads or phrase.entry.sort == "name":
             return
 
 

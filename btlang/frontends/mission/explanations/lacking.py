@@ -8,7 +8,7 @@ from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.references import DENIED
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.value_type import OBJECT, PLACE, ValueType
+from btlang.vocabulary.value_type import OBJECT, PLACE, WORLD, ValueType
 from btlang.vocabulary.word_tree import find
 
 
@@ -17,6 +17,8 @@ def untold(text: Words, at: int, end: int, vocabulary: Lexicon) -> Diagnostic | 
     values = vocabulary.values
     is_told = values.likenesses.is_told
     for i in range(at, end):
+        if any(find(values.names_tree(kind), text.words, i) is not None for kind in WORLD):
+            continue  # `the cold room`, where one is called so
         is_clause = values.modifiers.ends_clause(text, i)
         for parts, last in values.adjectives.chains(text, i, values.names_tree):
             nouns = [kind for kind in (OBJECT, PLACE) if values.begins_noun(kind, text, last)]

@@ -94,7 +94,8 @@ def explain_unknown(
         return diagnostic("BT019", text.span(at, end), example='say "hello"')
     goes_on = bool(before) and before[-1].kind == "command" and _ends_in_a_bare_text(before[-1])  # `say still here`
     journey = vocabulary.asking["journey"]
-    if text.words[at] == journey[-1] and at + 1 < end and _journey_before(before):
+    is_new = text.words[at] == journey[-1] and context.read(PLACE, text, at + 1) is None
+    if is_new and at + 1 < end and _journey_before(before):
         understood = f"I understood '{' '.join(journey)} ...'. "
         return unnamed(text.span(at + 1, end), [vocabulary.types[PLACE]], understood, vocabulary)
     part = None if goes_on else explain_fragment(text, at, end, _asks(before), vocabulary, context)

@@ -66,7 +66,18 @@ class AddressedTexts(ToldWords):
         return end
 
     def _doubt_words(self, entry: Entry, first: int, last: int) -> bool:
-        return self._doubt(entry, self._vocabulary.values.texts.doubt(self._text, first, last))
+        if self._doubt(entry, self._vocabulary.values.texts.doubt(self._text, first, last)):
+            return True
+        self._note_unnamed(first, last)
+        return False
+
+    def _note_unnamed(self, first: int, last: int) -> None:
+        """BT137 for `tell Bob that it was open`, behind a door."""
+        word, context = self._text.words[first], self._context
+        things = {kind for kind in context.values.pronouns.get(word, ()) if kind in (OBJECT, DOOR)}
+        if any(context.latest.get(kind) for kind in things):
+            words = self._text.span(first, last)
+            self._calls.problems.append(diagnostic("BT137", words, words=words.text, word=word))
 
     def _plead(self, entry: Entry, value: SlotValue, at: int, command: Token) -> int:
         """`ask Bob to close his door`: says "Please close your door" to him; `ask Bob for the cup`: to give it."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import JOINTS, Called, OnDays, Token, constraint_of, statement_start
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.frontends.mission.tokens.settling import STAYS
@@ -14,6 +15,7 @@ _TIME = "time_of_day"
 _WEEKDAYS = frozenset(map(str.lower, WEEKDAYS))
 _SIMPLE = frozenset(("command", "name", "wait", "nothing", *JOINTS))
 _TODAY, _DAYTIME = "TodayIs", "TimeOfDay"
+_KEEP_OUT, _LATEST = "keep out", "12:00"
 
 
 class ClockWords(SentenceReader):
@@ -81,6 +83,11 @@ class ClockWords(SentenceReader):
         condition = self._calls.token(match, at)
         condition.kind = "condition"
         tokens += [Token("while", start, start), condition]
+        said = dict(condition.value.arguments) if isinstance(condition.value, Called) else {}
+        if said.get("below", _LATEST) < _LATEST:  # `don't go into the lab before 7 am`, said in the evening
+            words = self._text.span(at, match.last)
+            until = f"{self._vocabulary.word('until')} {words.text.split(maxsplit=1)[-1]}"
+            self._calls.problems.append(diagnostic("BT138", words, words=words.text, fixed=f"... {until}"))
         return match.last
 
     def _is_singular(self, days: SlotValue) -> bool:
@@ -101,11 +108,17 @@ class ClockWords(SentenceReader):
         asked = Token("condition", start, end, Called(entry, _times(match.values[0].text, last[0])))
         if tokens and tokens[-1].kind == "every":
             return self._in_each_round(asked, last[1])
+        if tokens and _keeps_out(tokens[-1]):  # `stay out of the lab from 8 pm to 10 pm`
+            tokens += [Token("while", start, start), asked]
+            return last[1]
         first = statement_start(tokens, len(tokens))
         if len(tokens) > first and tokens[-1].kind not in BEGINS:
             return self._within_hours(match, asked, last) if self._is_end(last[1]) else 0
         if not self._begins_there(last[1]):
             return 0
+        if self._forbids(last[1]):  # `from 8 pm to 10 pm, stay out of the lab`
+            tokens += [Token("while", start, start), asked, Token("comma", end, end)]
+            return self._behind_comma(last[1])
         lasts = words[at] in self._vocabulary.roles["start_at"] or self._is_repeated(last[1])
         if not lasts or (tokens and tokens[-1].kind not in BEGINS):
             return 0
@@ -131,6 +144,13 @@ class ClockWords(SentenceReader):
         asking, word = self._vocabulary.asking, self._text.words[at]
         stays = word in asking["standing_verbs"] or any(words.split()[0] == word for words in asking["staying"])
         return word == "," or stays or is_command
+
+    def _forbids(self, at: int) -> bool:
+        """Whether something is forbidden from a word on, behind a comma."""
+        behind = self._phrase(self._behind_comma(at))
+        entry = behind.meaning.entry if behind is not None else None
+        keeps_out = entry is not None and entry.constrains == _KEEP_OUT
+        return keeps_out or (behind is not None and behind.meaning.role == "never")
 
     def _within_hours(self, match: Match, asked: Token, last: tuple[str, int]) -> int:
         """`patrol A and B from 10 pm to 6 am`, `stand at the door from 9 am to 5 pm`: as if it stood in front."""
@@ -175,6 +195,12 @@ class ClockWords(SentenceReader):
         is_behind = len(tokens) > 2 and tokens[-3].kind in ("command", "name", "close")
         if is_behind and tokens[-1].kind == "until_time" and tokens[-2].kind in ("at", "every_day"):
             tokens[-2:] = tokens[:-3:-1]
+
+
+def _keeps_out(token: Token) -> bool:
+    """Whether a command closes zones."""
+    constraint = constraint_of(token)
+    return constraint is not None and constraint.kind == _KEEP_OUT
 
 
 def _times(first: str, last: str) -> tuple[tuple[str, str], ...]:

@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Sequence
+from collections.abc import Container, Iterator, Sequence
 
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.frontends.mission.token import Called, Listed, Token
 from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of
+from btlang.text.source import Source, Span
 from btlang.text.words import Words
 from btlang.vocabulary.entry import MANNER, RECIPIENT, THEME, VIA
+from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.reading_context import ReadingContext
+from btlang.vocabulary.references import choice_of
 from btlang.vocabulary.trie import TrieNode
+
+_FROM = ("off", "inside", "at", "on")
+"""The relations of a thing to where it lies."""
 
 
 def left_out(
@@ -100,3 +108,20 @@ def _with_its_words(value: SlotValue, places: Container[int]) -> range:
     while first > 1 and first - 1 not in places:
         first -= 1
     return range(first, value.last)
+
+
+def find_unplaced(tokens: Sequence[Token], vocabulary: Lexicon, source: Source) -> Iterator[Diagnostic]:
+    """BT150 for `take the red cups from the lab to the hall and the blue ones to the kitchen`: those from the lab?"""
+    for at in range(2, len(tokens)):
+        said, before = tokens[at].value, tokens[at - 2].value
+        if tokens[at - 1].kind != "and" or not isinstance(said, Called | Listed) or not isinstance(before, Called):
+            continue
+        words = source.text[tokens[at].start : tokens[at].end].lower().split()
+        ones = next((word for word in words if word in vocabulary.values.ones), "")
+        choices = [choice for _, text in before.arguments if (choice := choice_of(text)) is not None]
+        places = [(part, value) for choice in choices for part, value in choice.parts if part in _FROM]
+        span = Span(source, tokens[at].start, tokens[at].end)
+        if said.entry is before.entry and ones and places and places[0][1] not in span.text:
+            reason = f"those from '{places[0][1]}' may be meant, or any"
+            example = span.text.replace(ones, f"{ones} from {places[0][1]}", 1)
+            yield diagnostic("BT150", span, words=span.text, reason=reason, example=example)

@@ -11,7 +11,12 @@ from btlang.frontends.mission.token import Token
 from btlang.frontends.mission.tokens.condition_names import condition_names, settle
 from btlang.frontends.mission.tokens.counted_things import with_counted_things
 from btlang.frontends.mission.tokens.ended_rules import with_ends
-from btlang.frontends.mission.tokens.repeated_statements import with_repeats_apart, with_times_first
+from btlang.frontends.mission.tokens.left_out import find_unplaced
+from btlang.frontends.mission.tokens.repeated_statements import (
+    with_questions_once,
+    with_repeats_apart,
+    with_times_first,
+)
 from btlang.frontends.mission.tokens.rules_behind import find_counted_rules, with_exceptions, with_rules_behind
 from btlang.frontends.mission.tokens.rules_inside import with_rules_inside
 from btlang.frontends.mission.tokens.settling import (
@@ -75,12 +80,14 @@ class Lexer:
         self._lines()
         self.problems += with_repeats_apart(self.tokens, source)
         with_times_first(self.tokens)
+        self.problems += with_questions_once(self.tokens, source)
         turn_branches(self.tokens)
         with_rounds(self.tokens)
         with_either_end(self.tokens)
         with_stays(self.tokens, source, vocabulary.asking["standing_verbs"])
         self.problems += find_brief_stays(self.tokens, vocabulary, source) if explain else ()
         self.problems += find_unclear_things(self.tokens, vocabulary, self.text) if explain else ()
+        self.problems += find_unplaced(self.tokens, vocabulary, source) if explain else ()
         with_meetings(self.tokens, vocabulary)
         with_sightings(self.tokens, vocabulary, source)
         self.problems += with_counted_things(self.tokens, source)

@@ -13,15 +13,18 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.token import (
     IN_CONDITIONS,
     JOINTS,
+    STATEMENT_ENDS,
     Called,
     Listed,
     Token,
     arguments_of,
     run_end,
+    statement_end,
     statement_start,
 )
 from btlang.frontends.mission.tokens.settling import MEASURES
 from btlang.text.source import Source, Span
+from btlang.tree.answers import ABOUT_ANSWERS, ASK
 from btlang.vocabulary.value_type import PLACE
 
 AGAIN = ("do_that", "repeat_that", "again")
@@ -32,6 +35,7 @@ _TIMES, _CONDITIONAL = ("at", "delay"), ("if", "unless")
 _LATER = (*_TIMES, *_CONDITIONAL)
 _DONE = ("command", "name", "close")
 _AMOUNTS = ("every", "until_time", "for")
+_UNTIL = ["until", "condition"]
 _ELSEWHERE = "go to the lab and wave. Do the same in the kitchen"
 _PLAIN = frozenset(("command", "name", "wait", "open", "close", *JOINTS, *MEASURES))
 
@@ -67,6 +71,38 @@ def with_repeats_apart(tokens: list[Token], source: Source) -> Iterator[Diagnost
             tokens[first + 1 : behind] = [
                 Token("comma", start, start), Token("open", start, start), *commands, Token("close", last, last),
             ]  # fmt: skip
+
+
+def with_questions_once(tokens: list[Token], source: Source) -> Iterator[Diagnostic]:
+    """Make `ask Bob "Q". Ask him again until he says yes` ask once before the answer is looked at.
+
+    What is done as soon as somebody answers so is done if the answer before it is so; BT151 for that in rounds.
+    """
+    for at in reversed(range(len(tokens) - 2)):
+        if not _asks(tokens[at]) or tokens[at + 1].kind not in STATEMENT_ENDS:
+            continue
+        until = next((i for i in range(at + 3, len(tokens)) if tokens[i].kind not in _AMOUNTS), at)
+        if tokens[at + 2].value == tokens[at].value and [each.kind for each in tokens[until : until + 2]] == _UNTIL:
+            del tokens[at : at + 2]
+    for at, form in enumerate(tokens[:-1]):
+        asked = tokens[at + 1].value
+        if form.kind != "as_soon_as" or not isinstance(asked, Called) or asked.entry.id not in ABOUT_ANSWERS:
+            continue
+        first, end = statement_start(tokens, at), statement_end(tokens, at)
+        question = next((token for token in reversed(tokens[:at]) if _asks(token)), None)
+        if question is None:
+            continue
+        form.kind = "if"
+        if any(token.kind == "every" for token in tokens[first:at]):
+            span = Span(source, tokens[first].start, tokens[end - 1].end)
+            said = source.text[question.start : question.end]
+            answer = source.text[tokens[at + 1].start : tokens[at + 1].end]
+            one, other = f"{said} ... until {answer}, then ...", f"... {said}, and if {answer}, ..."
+            yield diagnostic("BT151", span, words=span.text, one=one, other=other)
+
+
+def _asks(token: Token) -> bool:
+    return token.kind == "command" and isinstance(token.value, Called) and token.value.entry.id == ASK
 
 
 def with_times_first(tokens: list[Token]) -> None:

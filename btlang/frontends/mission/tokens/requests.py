@@ -76,6 +76,7 @@ class Requests(Questions):
             doubt = self._vocabulary.values.texts.doubt(self._text, value.first, value.last)
             doubt = doubt or self._measure_in(value.first, value.last)
             self._doubt(entry, doubt or self._addressee(value.first + 1, value.last) * (entry.id == SAY))
+            self._note_unnamed(value.first, value.last)
         if not (entry.accompaniment or "voice" in entry.needs):
             return 0  # a text that nobody says is its words: `listen for the bell`
         text, first = self._text, value.first

@@ -66,6 +66,7 @@ def _front(tokens: list[Token], rule: int) -> None:
     """Put a rule for the time of the commands before it in front: `stay at the door until noon and wave whenever C`."""
     first, end = statement_start(tokens, rule), statement_end(tokens, rule)
     joint = run_start(tokens, rule - 1, JOINTS)
+    first = _last_then(tokens, first, joint)
     condition = tokens[rule + 1 : run_start(tokens, end, STATEMENT_ENDS)]
     is_command = rule > 0 and tokens[rule - 1].kind == "command" and tokens[first].kind not in _LATER
     if not is_command or not first < joint < rule - 1 or any(each.kind not in _IN_CONDITIONS for each in condition):
@@ -78,6 +79,16 @@ def _front(tokens: list[Token], rule: int) -> None:
     if keeps_in or command[-1].role == STAYS:  # `stand at the door and wave whenever C`
         command += [Token("semi" if keeps_in else "then", here, here), Token("wait_forever", here, here)]
     tokens[first:end] = _made(tokens[first:end], command, made)
+
+
+def _last_then(tokens: Sequence[Token], first: int, last: int) -> int:
+    """Where the commands begin behind the last `then` out of brackets: `wave, then stay there and wave whenever C`."""
+    depth = 0
+    for at in reversed(range(first, last)):
+        depth += (tokens[at].kind == "close") - (tokens[at].kind == "open")
+        if tokens[at].kind == "then" and not depth and tokens[at - 1].role != STAYS:
+            return at + 1
+    return first
 
 
 def _journey_before(tokens: Sequence[Token], form: int) -> Called | Listed | None:

@@ -23,7 +23,6 @@ from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.frontends.mission.tokens.settling import STAYS
 from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of, words_of
 from btlang.text.source import Source
-from btlang.text.words import END_OF_TEXT
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.references import ALL, choice_of
@@ -39,7 +38,7 @@ class Visitors(SentenceReader):
     def read(self, at: int) -> int:
         """`say hi to anyone who comes near`: whenever somebody comes near, say hi to them.
 
-        Behind other commands it is a rule of the mission only where nothing follows them.
+        Behind other commands it is a rule for the time of these.
         """
         tokens = self._tokens
         event, said = self._event(at), tokens[-1].value if tokens else None
@@ -60,8 +59,6 @@ class Visitors(SentenceReader):
         is_plain = all(token.kind in _SIMPLE for token in tokens[first:])
         if choice is None or choice.parts or not is_plain:
             return 0
-        if joint > first and any(word != END_OF_TEXT for word in self._text.words[last + 1 :]):
-            return 0  # `stay here until noon and wave at everyone who comes near. Then dock`
         self._calls.note_nearest()
         nearest = self._context.latest[PERSON]
         start, end = tokens[-1].start, self._text.ends[last - 1]
@@ -72,10 +69,11 @@ class Visitors(SentenceReader):
         before = run_start(tokens, first, STATEMENT_ENDS)
         if joint <= first and 0 < before < first and tokens[before - 1].kind == "command":
             tokens[before - 1].role = STAYS  # `go to the door. Say hi to everyone who comes in`
-        ends = [Token("semi", start, start)] if joint > first else []
-        tokens[joint if joint > first else first :] = [
-            *ends, Token("whenever", start, start), condition, Token("comma", end, end), command,
-        ]  # fmt: skip
+        rule = Token("whenever", start, start)
+        if joint > first:  # a rule for the time of what is done before it
+            tokens[-1:] = [command, rule, condition]
+        else:
+            tokens[first:] = [rule, condition, Token("comma", end, end), command]
         return last
 
     def _event(self, at: int) -> Match | None:
