@@ -174,12 +174,13 @@ def value_key(name: str) -> str:
 _LONGEST = 60  # characters of a mission in its repr
 
 
-class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):
+class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax", "rules")):
     """A compiled mission, with its words and its world. Immutable: a Session runs it.
 
     `tree` is the tree itself. `world` is the path of its world file, or its text, None for the one that ships.
     `warnings` are diagnostics that don't keep it from running. `syntax` is the syntax tree that it was compiled from,
-    if there is one. `facts` are places of this mission, in addition to those of the world.
+    if there is one. `facts` are places of this mission, in addition to those of the world. `rules` are the house rules
+    round it, which its tree has too (btlang.house_rules), None without any.
     """
 
     tree: Tree
@@ -188,6 +189,7 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):
     warnings: tuple[Diagnostic, ...] = ()
     syntax: Program | None = None
     facts: tuple[Fact, ...] = ()
+    rules: Mission | None = None
 
     def __str__(self) -> str:
         return str(self.__rich__())

@@ -9,6 +9,7 @@ from btlang.api import Mission
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.engine.compile import outline
 from btlang.engine.status import NAMES
+from btlang.house_rules import describe_rules
 from btlang.passes.scripts import is_prepared
 from btlang.recording.diff import compare_endings, describe_step, first_pair, mission_differences, run_differences
 from btlang.recording.reader import RecordedNodes, open_recording
@@ -130,6 +131,7 @@ class Film:
         these is new; of people who walk and of what the robot doesn't know by its world;
         - `scans`: time and metres, counter-clockwise from straight ahead; `events`: see btlang/run/events.schema.json;
         - `story`: time, node (-1: none) and words; `why`: how it ended; `failed`: the node that failed, or -1;
+        - `rules`, `root`: the house rules round it, and the first node of the mission itself (see describe_rules);
         - `seconds`: how long it is; `is_cut`: whether more happened than is kept; `map`: see World.as_map.
         """
         nodes, mission = self._nodes, self._mission
@@ -162,6 +164,7 @@ class Film:
             "failed": self._story.failed,
             "seconds": round(self._end, 3),
             "is_cut": self.is_cut,
+            **describe_rules(mission, nodes),
             "map": read_world(mission.world).as_map(),
         }
 
@@ -176,7 +179,7 @@ def side_by_side(one: str, other: str) -> dict[str, Any]:
     - `ended`: the numbers of the nodes whose last status isn't the same.
     """
     with ExitStack() as stack:
-        sides = [stack.enter_context(open_recording(path, ())) for path in (one, other)]
+        sides = [stack.enter_context(open_recording(path)) for path in (one, other)]
         films = [Film(mission, dict(recording.about)) for recording, mission, _ in sides]
         events = [list(recording.events(nodes)) for recording, _, nodes in sides]
         stories = [

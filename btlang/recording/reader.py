@@ -236,11 +236,20 @@ def is_recording(path: str) -> bool:
 def open_recording(
     path: str, keywords: Sequence[str] | None = None
 ) -> Iterator[tuple[Recording, Mission, RecordedNodes]]:
-    """Give a recording, its mission and the nodes of that; with `keywords` the mission may be run.
+    """Give a recording, its mission and the nodes of that; with `keywords` the mission may be run, without them it has
+    all words that are kept with it.
 
     Raises MissionError.
     """
     recording = read_recording(path)
     name, language = recording.about.get("mission") or "a mission", recording.about.get("language", "en")
-    with open_mission(recording.files, name, language, keywords) as mission:
+    with open_mission(recording.files, name, language, keywords, _values_of(recording)) as mission:
         yield recording, mission, RecordedNodes(*outline(mission.tree))
+
+
+def _values_of(recording: Recording) -> dict[str, object]:
+    try:
+        values = json.loads(recording.about.get("values", "{}"))
+    except ValueError:
+        return {}
+    return values if isinstance(values, dict) else {}

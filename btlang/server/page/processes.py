@@ -80,7 +80,7 @@ def tree(path: str) -> bytes:
 
 
 def _film(path: str) -> dict[str, Any]:
-    with open_recording(path, ()) as (recording, mission, nodes):
+    with open_recording(path) as (recording, mission, nodes):
         data = Film(mission, dict(recording.about)).take(recording.events(nodes)).data()
     return in_units(data, data["text"])
 
@@ -91,7 +91,7 @@ def _comparison(one: str, other: str) -> dict[str, Any]:
 
 
 def _tree(path: str) -> dict[str, Any]:
-    with open_recording(path, ()) as (_, mission, _):
+    with open_recording(path) as (_, mission, _):
         return {"xml": str(mission.to("xml"))}
 
 

@@ -12,11 +12,11 @@ from btlang.api import Mission, value_key
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.engine.leaves.leaf import describe_exception
 from btlang.engine.status import RUNNING, SKIPPED
+from btlang.house_rules import HouseRules
 from btlang.run.outcome import EMERGENCY, SUSPENDED
 from btlang.session import Run, Session
 from btlang.task.execution.emergency import EmergencyLatch
 from btlang.task.execution.manager import ENDED, TaskManager, describe_recovery
-from btlang.task.execution.missions import HouseRules
 from btlang.task.execution.run_sinks import Recordings, RunWatch, add_sinks, commands_of, indices_of, reason_of
 from btlang.task.store.database import Outbox, StoreError
 from btlang.task.store.records import ACTIVE, FINAL, MissionText, RequestedEnd, Restart, Task, TaskState
@@ -290,7 +290,7 @@ class Executor:
 
     def _prepare(self, task: Task) -> Run:
         mission = self._rules.around(self._missions(task.mission))
-        recorder = self._recordings.recorder(mission, task.id) if self._recordings is not None else None
+        recorder = self._recordings.recorder(mission, task) if self._recordings is not None else None
         if recorder is not None:
             self._outbox.write(partial(self._store.amend, task.id, recording=os.path.abspath(recorder.path)))
         options: dict[str, Any] = {"speed": self._speed, "rate": self._rate, "sinks": [recorder] if recorder else []}

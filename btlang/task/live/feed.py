@@ -11,6 +11,7 @@ from contextlib import suppress
 from btlang.api import Mission
 from btlang.engine.leaves.leaf import describe_exception
 from btlang.engine.status import NAMES
+from btlang.house_rules import describe_rules
 from btlang.passes.scripts import is_prepared
 from btlang.run.bus import INLINE
 from btlang.run.events import LOGGED, Arrived, DoorMoved, Ended, Event, PeriodPassed, StatusesChanged, Stopped
@@ -317,7 +318,9 @@ def _tree(watched: _Watched) -> dict[str, Any]:
     unit = Utf16Units(text).unit
     spans = [place and [unit(place[0]), unit(place[1])] for place in places]
     prepared = [index for index, node in enumerate(filled) if is_prepared(node)]
-    return {"nodes": listed, "prepared": prepared, "text": text, "spans": spans}
+    return {
+        "nodes": listed, "prepared": prepared, "text": text, "spans": spans, **describe_rules(watched.mission, nodes),
+    }  # fmt: skip
 
 
 def _state(state: RobotState | None) -> dict[str, Any]:
