@@ -17,6 +17,7 @@ from btlang.support.record import Record
 from btlang.text.output import show
 from btlang.text.source import Source, Span
 from btlang.tree.ast import Fact, Program, all_facts, says_ports
+from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import Known
@@ -286,10 +287,23 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax", "
 
         return node.name or phrase_of(node, self.vocabulary)
 
+    def words(self, node: Node) -> str:
+        """Return the words of a node, also of one that only leads others, as the mission says it: `try up to 4
+        times`.
+        """
+        from btlang.printer.node_words import words_of_node
+
+        return node.name or words_of_node(node, self.vocabulary)
+
     def is_action(self, node: Node) -> bool:
         """Return whether the node is a command of a keyword file."""
         entry = self.vocabulary.entry(node.id)
         return entry is not None and entry.sort == "action"
+
+    def is_question(self, node: Node) -> bool:
+        """Return whether the node is a condition: its failure is an answer."""
+        entry, kind = self.vocabulary.entry(node.id), CATALOGUE.get(node.id)
+        return kind.kind == "Condition" if kind is not None else entry is not None and entry.sort == "condition"
 
     @property
     def says_ids(self) -> bool:

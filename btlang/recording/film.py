@@ -19,7 +19,7 @@ from btlang.run.bus import BLOCK
 from btlang.run.events import LOGGED, Event, PeriodPassed, Sampled, StatusesChanged
 from btlang.run.logs import as_json
 from btlang.run.robot_state import Movements, round_scan
-from btlang.run.snapshot import KnownNodes, RunState, Shape, text_and_places
+from btlang.run.snapshot import KnownNodes, RunState, Shape, find_questions, text_and_places
 from btlang.session import Session
 from btlang.text.source import NOWHERE
 
@@ -87,7 +87,7 @@ class Film:
             if changes:
                 self._statuses.append([round(event.t, 3), *(number for change in changes for number in change)])
             self._count += len(changes)
-            words = self._known.new_words(event.values_now(), self._mission.label)
+            words = self._known.new_words(event.values_now(), self._mission.words)
             self._words += [[round(event.t, 3), *each] for each in words]
         elif isinstance(event, PeriodPassed):
             self._take_state(event)
@@ -121,8 +121,8 @@ class Film:
         """Return the film as JSON has it.
 
         - `text`: the mission, "" where it had none; `nodes`: in preorder, with the number of the parent (-1: the root)
-        and the characters of the text that say it (None for none); `prepared` are those whose children but the
-        last only compute values for that one; `names`: those of statuses;
+        and the characters of the text that say it (None for none); with `asks` it only asks; `prepared` are those whose
+        children but the last only compute values for that one; `names`: those of statuses;
         - `words`: time, node and what it says with the values of its keys, where these are new;
         - `statuses`: a time in seconds, then node and status (a number of `names`) in turn, as a live view has them;
         - `doing`: time, task (0), where it is going, what it said and heard last, where one of these is new;
@@ -138,13 +138,16 @@ class Film:
         text, places = text_and_places(mission.syntax, nodes)
         if self._latest is not None:
             self._take_things(self._latest)
+        parents = [nodes.parent(index) for index in range(nodes.size)]
+        asks = find_questions([nodes.node(index) for index in range(nodes.size)], parents, mission.is_question)
         listed = []
         for index in range(nodes.size):
             node, (start, end) = nodes.node(index), places[index] or (None, None)
             listed.append(
                 {
-                    "parent": nodes.parent(index), "id": node.id, "label": mission.label(node), "ports": node.ports,
+                    "parent": nodes.parent(index), "id": node.id, "label": mission.words(node), "ports": node.ports,
                     "start": start, "end": end, "prepared": is_prepared(node),
+                    "asks": asks[index],
                 }
             )  # fmt: skip
         return {
@@ -191,7 +194,7 @@ def side_by_side(one: str, other: str) -> dict[str, Any]:
         first = pair and [
             {
                 "t": None if step is None else step[0], "node": -1 if step is None else step[1],
-                "words": describe_step(step, nodes.node, mission.label),
+                "words": describe_step(step, nodes.node, mission.words),
             }
             for step, (_, mission, nodes) in zip(pair, sides, strict=True)
         ]  # fmt: skip

@@ -67,7 +67,7 @@ class Story:
                         self._take_change(change.index, change.status, change.t, node, change.reason)
                     elif change.status == FAILURE and self._is_question(node) and not self._is_watched(change.index):
                         reason = "" if change.reason in _NO_REASON else f" ({change.reason})"
-                        answer = "false" if self._is_condition(node) else "failed"
+                        answer = "false" if self._mission.is_question(node) else "failed"
                         self._answers.append((change.t, f"{self._mission.label(node)}: {answer}", reason))
             elif isinstance(event, Chosen):
                 self._note(event.t, -1, f"It chooses {event.name}, the {event.how} {event.type}.")
@@ -178,11 +178,7 @@ class Story:
         """Return whether it is a condition, or chooses what a command is about."""
         entry = self._mission.vocabulary.entry(node.id)
         is_choice = entry is not None and entry.sort == "action" and not entry.phrases
-        return not node.children and (is_choice or self._is_condition(node))
-
-    def _is_condition(self, node: Node) -> bool:
-        entry, kind = self._mission.vocabulary.entry(node.id), CATALOGUE.get(node.id)
-        return kind.kind == "Condition" if kind is not None else entry is not None and entry.sort == "condition"
+        return not node.children and (is_choice or self._mission.is_question(node))
 
     def _is_watched(self, index: int) -> bool:
         """Return whether something waits until the node succeeds, so that its failure says nothing."""
