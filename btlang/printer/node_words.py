@@ -69,7 +69,7 @@ def _own_words(node: Node, leading: Sequence[tuple[str, ...]]) -> str:
         words = _words_between(span.source.text[at : max(at, start)], at > span.start, start < span.end).split()
         while words and (found := next((each for each in leading if _ends_with(words, each)), None)):
             del words[-len(found) :]
-        pieces.append(" ".join(words))
+        pieces.append(" ".join(words).strip(_EDGES))
         at = max(at, end)
     said = " … ".join(dict.fromkeys(piece for piece in pieces if piece))
     return said if len(said) <= _LONGEST else ""

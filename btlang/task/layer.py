@@ -208,7 +208,8 @@ class TaskLayer:
     def _hindrances(self) -> dict[str, Any]:
         return {
             "stopped": self.emergency.reason, "paused": self.executor.is_paused,
-            "hindrance": self.executor.hindrance(), "visitors": takes_visitors(self.session),
+            "hindrance": self.executor.hindrance(), "acting": self.executor.is_rule_acting,
+            "visitors": takes_visitors(self.session),
             "talks": takes_talk(self.session),
         }  # fmt: skip
 

@@ -32,6 +32,7 @@ def words_of(text: str, language: str = "en") -> list[str]:
     ("text", "words"),
     [
         ("try up to 4 times: go to the lab", ["try up to 4 times", "go to lab"]),
+        ("try up to 2 times: check that the battery is low", ["try up to 2 times", "battery is low"]),
         ("go to the lab, at most 3 times", ["at most 3 times", "go to lab"]),
         ("wave within 5 s", ["within 5 s", "wave"]),
         ("wave twice", ["twice", "wave"]),

@@ -261,6 +261,11 @@ class Executor:
         if run is not None and self._task is None and (self._new or due) and not self._acts():
             run.stop()
 
+    @property
+    def is_rule_acting(self) -> bool:
+        """Return whether a house rule acts now, during a task or between tasks."""
+        return self._acts()
+
     def _acts(self) -> bool:
         """Return whether a house rule acts now."""
         return self._watch is not None and bool(self._watch.acting)

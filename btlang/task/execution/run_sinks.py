@@ -52,7 +52,7 @@ class RunWatch:
         for index, status, _, _ in event.changes:
             if index in self._commands:
                 self._ended |= status in (SUCCESS, FAILURE)
-            elif index in self._rules:
+            if index in self._rules:  # what a rule does may be a single command
                 before = bool(self.acting)
                 if status == RUNNING:
                     self.began |= index not in self.acting

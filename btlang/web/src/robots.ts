@@ -45,6 +45,7 @@ function latest(robot: Robot): [kind: "good" | "bad" | "quiet", text: string] {
   const charge = battery === null || battery === undefined ? "" : ` · ${t("robot.battery", { percent: Math.round(battery) })}`;
   if (robot.state?.stopped) return ["bad", t("robot.stopped") + charge];
   if (robot.state?.paused) return ["quiet", t("robot.paused") + charge];
+  if (robot.state?.acting) return ["quiet", t("robot.rule") + charge];
   if (robot.state?.hindrance) return ["bad", robot.state.hindrance + charge];
   return ["good", t(robot.doing.task ? "robot.working" : "robot.ready") + charge];
 }

@@ -25,6 +25,7 @@ export class Player {
       "section",
       { class: "film" },
       scene.outcome,
+      scene.rules.element,
       h("div", { class: "panes" }, h("div", { class: "stage card" }, scene.tree.element), h("div", { class: "side" }, scene.place, scene.log, film.text && h("div", { class: "card" }, scene.words.element))),
       this.timeline.element,
     );

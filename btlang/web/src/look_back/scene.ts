@@ -1,10 +1,11 @@
 // A run at one moment: its tree, its map, its story, and the words of a node.
 import { fill, h, oncePerFrame } from "../dom";
 import { whole } from "../events";
-import { Robot, STATUSES, type Status, type Thing, type WorldMap } from "../fleet";
+import { Robot, STATUSES, type Rule, type Status, type Thing, type WorldMap } from "../fleet";
 import { t } from "../texts";
-import { TreeView, joined, type TreeNode } from "../tree/tree_view";
+import { TreeView, joined, withoutRules, type TreeNode } from "../tree/tree_view";
 import { MapView } from "../watch/map";
+import { RuleStrip } from "../watch/rules";
 import { Speech } from "../watch/speech";
 import { Words } from "../watch/words";
 import { clock } from "./timeline";
@@ -15,6 +16,8 @@ export interface Film {
   text: string;
   names: Status[];
   nodes: (TreeNode & { start: number | null; end: number | null })[];
+  rules: Rule[];
+  root: number;
   words: [t: number, node: number, words: string][];
   statuses: [t: number, ...number[]][];
   robot: [t: number, x: number | null, y: number | null, heading: number | null, battery: number | null, left: string | null, right: string | null][];
@@ -45,11 +48,18 @@ class Rows<Row extends [number, ...unknown[]]> {
   }
 }
 
+/** An end that nobody wished for: a failure, or an emergency stop. */
+const isBadEnd = (event: { event: string }): boolean => {
+  const end = whole(event);
+  return end.event === "end" && (end.outcome === "FAILURE" || end.stopped !== "");
+};
+
 export class Scene {
   readonly tree: TreeView;
   readonly place: HTMLElement;
   readonly log: HTMLElement;
   readonly words = new Words();
+  readonly rules = new RuleStrip((rule) => this.showRules(rule));
   /** How it ended, and why. */
   readonly outcome: HTMLElement;
   private robot!: Robot;
@@ -77,9 +87,17 @@ export class Scene {
     this.place = h("div", { class: "card place" }, this.map.canvas, this.speech.element);
     this.log = h("div", { class: "card events" }, h("h2", {}, t("log")), this.story);
     const words = [film.stopped && `${t("film.stopped")} ${film.stopped}.`, film.why, film.is_cut && t("film.cut")].filter(Boolean).join("\n");
-    this.outcome = h("p", { class: film.failed >= 0 || film.stopped ? "outcome bad" : "outcome", lang: "en", tabindex: 0 }, words);
-    this.tree.setNodes(joined(film.nodes));
+    this.outcome = h("p", { class: film.failed >= 0 || film.stopped || film.events.some(isBadEnd) ? "outcome bad" : "outcome", lang: "en", tabindex: 0 }, words);
+    this.tree.setNodes(withoutRules(joined(film.nodes), film.root));
     this.showWords(-1);
+  }
+
+  /** Shows the tree with the house rules, at one of them. */
+  private showRules([node]: Rule): void {
+    const { statuses } = this.tree.shown;
+    this.tree.setNodes(joined(this.film.nodes));
+    this.tree.setStatuses(statuses.entries());
+    this.select(node);
   }
 
   close(): void {
@@ -129,6 +147,7 @@ export class Scene {
     const changes = new Map<number, Status>();
     for (const [, ...row] of this.rows.statuses.upTo(now)) for (let at = 0; at < row.length; at += 2) changes.set(row[at]!, film.names[row[at + 1]!]!);
     this.tree.setStatuses(changes);
+    this.rules.show(film.rules, this.tree.shown.statuses);
     this.tree.setWords(new Map([...this.rows.words.upTo(now)].map(([, node, words]) => [node, words])));
     this.tell();
     this.speech.show(this.robot);

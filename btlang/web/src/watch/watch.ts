@@ -1,12 +1,12 @@
 // A robot at work: its tree, its map, what it says and does, why it failed, and what may be asked of it.
 import { may } from "../api";
 import { fill, h, oncePerFrame, set } from "../dom";
-import { entryOf, running, type Run } from "../fleet";
+import { entryOf, running, type Rule, type Run } from "../fleet";
 import { oldness, state } from "../robots";
 import { called, command, Queue } from "../tasks/queue";
 import { submitForm } from "../tasks/submit";
 import { t, type Key } from "../texts";
-import { TreeView, joined, type TreeNode } from "../tree/tree_view";
+import { TreeView, joined, withoutRules, type TreeNode } from "../tree/tree_view";
 import type { Context, View } from "../view";
 import { Body } from "./body";
 import { Failure } from "./failure";
@@ -15,13 +15,13 @@ import { MapView } from "./map";
 import { Offers } from "./offers";
 import { Parts } from "./parts";
 import { Question } from "./question";
+import { RuleStrip } from "./rules";
 import { Speech } from "./speech";
 import { Talk } from "./talk";
 import { Voice } from "./voice";
 import { Words } from "./words";
 
 const MOST_RUNNING = 12; // that are listed
-const RESTING = 2; // nodes of the tree of a robot that has nothing to do
 
 /** See `View`. */
 export function openWatch(context: Context): View {
@@ -43,6 +43,8 @@ class Watch implements View {
   private tree = new TreeView({ label: t("watch.tree") });
   private empty = h("p", { class: "empty" }, t("watch.nothing"));
   private words = new Words();
+  private rules = new RuleStrip((rule) => this.showRule(rule));
+  private withRules = false; // the tree has the house rules, too
   private text = h("div", { class: "card", hidden: true }, this.words.element);
   private map = new MapView(() => this.robot);
   private log = new LogView();
@@ -75,7 +77,7 @@ class Watch implements View {
     this.element = h(
       "section",
       { class: "watch" },
-      h("div", { class: "head" }, h("div", { class: "now" }, this.pill, this.title), this.controls, this.problem, this.gone, this.offers.element),
+      h("div", { class: "head" }, h("div", { class: "now" }, this.pill, this.title), this.controls, this.problem, this.gone, this.offers.element, this.rules.element),
       h("div", { class: "stage card" }, this.failure.element, h("div", { class: "doing" }, this.running, this.follow), this.empty, this.tree.element),
       h(
         "div",
@@ -118,7 +120,9 @@ class Watch implements View {
 
   private show(): void {
     const { robot } = this;
-    this.showRun(robot.run ?? (robot.rules && robot.rules.nodes.length > RESTING ? robot.rules : null));
+    const ruled = this.ruled;
+    this.rules.show(ruled?.rules ?? [], ruled?.statuses ?? []);
+    this.showRun(this.withRules && ruled ? ruled : robot.run);
     const task = this.queue.underway;
     const [kind, words] = state(robot);
     this.pill.className = `pill ${kind}`;
@@ -143,7 +147,7 @@ class Watch implements View {
     this.empty.hidden = run !== null;
     this.tree.element.hidden = run === null;
     if (run && run !== this.run) {
-      if (run.id !== this.run?.id) this.tree.setNodes(nodesOf(run));
+      if (run.id !== this.run?.id) this.tree.setNodes(this.withRules ? nodesOf(run) : withoutRules(nodesOf(run), run.root));
       else this.tree.setWords(nodesOf(run).map(({ label }, index) => [index, label] as const));
       this.tree.setStatuses(run.statuses.entries());
     }
@@ -157,6 +161,20 @@ class Watch implements View {
     this.running.dataset["shown"] = shown;
     fill(this.running, ...words.map((each) => h("li", { dir: "auto" }, each)));
     if (this.follow.getAttribute("aria-pressed") === "true" && leaves.length) this.tree.bring(leaves[0]!);
+  }
+
+  /** The run whose house rules hold now. */
+  private get ruled(): Run | null {
+    const { run, rules, doing } = this.robot;
+    return (doing.task ? run : rules) ?? run;
+  }
+
+  /** Shows the tree with the house rules, at one of them; again without them where it's shown already. */
+  private showRule([node]: Rule): void {
+    this.withRules = !(this.withRules && this.tree.selected === node);
+    this.run = null;
+    this.show();
+    if (this.withRules) this.tree.select(node);
   }
 
   private showControls(): void {
@@ -199,7 +217,7 @@ function nodesOf(run: Run): TreeNode[] {
     numbers.set(path, index);
     const above = path.slice(0, path.lastIndexOf("/")) || "/";
     const parent = path === "/" ? -1 : (numbers.get(above) ?? -1);
-    return { parent, id, label: label === id ? "" : label, ports: Object.entries(ports ?? {}), prepared: run.prepared.has(index) };
+    return { parent, id, label: label === id ? "" : label, ports: Object.entries(ports ?? {}), prepared: run.prepared.has(index), asks: run.asks.has(index) };
   });
   return joined(nodes);
 }
