@@ -119,7 +119,8 @@ def test_every_event_has_words(made: dict[str, Any], language: str) -> None:
 def test_texts_of_events_name_fields(language: str) -> None:
     """A text with a field that may be null, or left out as its default, is only for events that have it."""
     fields = {kind.tag: describe_event(kind) for kind in LOGGED_KINDS}
-    statuses = {name: describe_event(LOGGED[0]) for name in NAMES[:IDLE]}
+    said = (*NAMES[:IDLE], "TRUE", "FALSE")  # what a status means for a condition
+    statuses = {name: describe_event(LOGGED[0]) for name in said}
     texts = {key: text for key, text in TEXTS[language].items() if key.startswith("log.")}
     assert {key.split(".")[1] for key in texts} == fields.keys() | statuses.keys()
     for key, text in texts.items():

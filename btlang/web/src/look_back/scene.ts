@@ -48,11 +48,13 @@ class Rows<Row extends [number, ...unknown[]]> {
   }
 }
 
-/** An end that nobody wished for: a failure, or an emergency stop. */
-const isBadEnd = (event: { event: string }): boolean => {
-  const end = whole(event);
-  return end.event === "end" && (end.outcome === "FAILURE" || end.stopped !== "");
-};
+/** How a run ended, as a class: "bad" where it failed or the emergency stop was pressed, "quiet" where somebody ended it. */
+function ending({ failed, stopped, events }: Film): string {
+  const end = events.map(whole).find((event) => event.event === "end");
+  const by = stopped || (end?.event === "end" ? end.stopped : "");
+  if (failed >= 0 || stopped || by === "emergency stop" || (end?.event === "end" && !by && end.outcome === "FAILURE")) return "bad";
+  return by || !end ? "quiet" : "";
+}
 
 export class Scene {
   readonly tree: TreeView;
@@ -87,7 +89,7 @@ export class Scene {
     this.place = h("div", { class: "card place" }, this.map.canvas, this.speech.element);
     this.log = h("div", { class: "card events" }, h("h2", {}, t("log")), this.story);
     const words = [film.stopped && `${t("film.stopped")} ${film.stopped}.`, film.why, film.is_cut && t("film.cut")].filter(Boolean).join("\n");
-    this.outcome = h("p", { class: film.failed >= 0 || film.stopped || film.events.some(isBadEnd) ? "outcome bad" : "outcome", lang: "en", tabindex: 0 }, words);
+    this.outcome = h("p", { class: `outcome ${ending(film)}`, lang: "en", tabindex: 0 }, words);
     this.tree.setNodes(withoutRules(joined(film.nodes), film.root));
     this.showWords(-1);
   }
