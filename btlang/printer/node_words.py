@@ -9,7 +9,7 @@ from functools import lru_cache
 from btlang.printer.phrase import is_sentence, phrase_of, seconds
 from btlang.printer.printer import Printer
 from btlang.text.source import Span
-from btlang.tree.catalogue import CONSTRAINTS, SUBTREE, zone_names
+from btlang.tree.catalogue import CONSTRAINTS, SEQUENCE, SUBTREE, zone_names
 from btlang.tree.dump import describe_node
 from btlang.tree.node import Node
 from btlang.vocabulary.lexicon import Lexicon
@@ -66,7 +66,11 @@ def _own_words(node: Node, leading: Sequence[tuple[str, ...]]) -> str:
     pieces: list[str] = []
     at = span.start
     for start, end in [*sorted(holes), (span.end, span.end)]:
-        words = _words_between(span.source.text[at : max(at, start)], at > span.start, start < span.end).split()
+        gap = span.source.text[at : max(at, start)]
+        if at > span.start and node.id == SEQUENCE and "\n" in gap:
+            at = max(at, end)
+            continue  # one statement after the other: what is between them is said of these
+        words = _words_between(gap, at > span.start, start < span.end).split()
         while words and (found := next((each for each in leading if _ends_with(words, each)), None)):
             del words[-len(found) :]
         pieces.append(" ".join(words).strip(_EDGES))
@@ -171,7 +175,7 @@ def _constrained(role: str) -> Words:
 
 _CONSTRAINED = {"keep out": "without_entering", "keep in": "without_leaving"}
 _WORDS: dict[str, Words] = {
-    "Sequence": _sequence,
+    SEQUENCE: _sequence,
     "Fallback": _role("otherwise"),
     "Parallel": _role("in_parallel"),
     "IfThenElse": _role("if"),

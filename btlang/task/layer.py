@@ -19,6 +19,7 @@ from btlang.robots.registry import runs_on
 from btlang.run.controls import disable
 from btlang.run.world_input import WorldInput
 from btlang.session import Run, Session
+from btlang.task.commands.answers import refusal_data
 from btlang.task.commands.handler import Handler
 from btlang.task.commands.robot_handlers import component_data, takes_talk, takes_visitors
 from btlang.task.execution.emergency import EmergencyLatch, latch_path
@@ -148,7 +149,7 @@ class TaskLayer:
         try:  # also one that is a command already, since its texts may be anything
             command = read_command(as_json(command) if isinstance(command, Command) else command)
         except MissionError as error:
-            return Answer(False, str(error), {}, error.diagnostics[0].code)
+            return Answer(False, str(error), refusal_data(error), error.diagnostics[0].code)
         answer = self.handler.handle(command, person)
         self.feed.wake()
         return answer

@@ -43,14 +43,14 @@ await visit(base, async (page) => {
   await until("go to cafe", ".running");
   await page.focus("[role=tree]");
   await page.keyboard.press("Home");
-  assert.match(await current(), /^Sequence, running/);
+  assert.match(await current(), /^then, running/);
   await page.keyboard.press("ArrowRight");
-  assert.match(await current(), /^Repeat/);
+  assert.match(await current(), /^repeat 2 times/);
   await page.keyboard.press("ArrowLeft");
   assert.equal(await page.getAttribute(".node[aria-selected=true]", "aria-expanded"), "false");
   await page.keyboard.press("ArrowRight");
   await page.keyboard.press("ArrowRight");
-  assert.match(await current(), /^Sequence/);
+  assert.match(await current(), /^then/);
   await page.keyboard.press("End");
   assert.match(await current(), /wait/);
   await page.keyboard.type("go");

@@ -75,7 +75,7 @@ export class Drawing {
     return s(
       "g",
       { class: node.differs ? "node differs" : "node", id: name, transform: `translate(${item.x} ${item.y})`, role: "treeitem" },
-      s("title", {}, whole(node)),
+      s("title", {}, node.label ? `${whole(node)}\n${node.id}` : whole(node)),
       s("rect", { width: item.width, height: item.height, rx: 7 }),
       s("path", { class: "status", transform: `translate(16 ${middle})` }),
       ...texts.flatMap(({ text, kind }, line) => [s("text", { class: kind, x: GLYPH, y: TOP + LINE * line + 12 }, text), " "]), // spaces part words for screen readers
@@ -113,7 +113,7 @@ export function showStatus(element: SVGGElement, status: Status, node: TreeNode)
 
 /** With all that is cut in the drawing, and what is only shown on demand. */
 function whole(node: TreeNode): string {
-  return [label(node), ...(node.label && node.label !== node.id ? [node.id] : []), ...portsOf(node).map(([port, value]) => visible(`${port} = ${value}`))].join("\n");
+  return [label(node), ...portsOf(node).map(([port, value]) => visible(`${port} = ${value}`))].join("\n");
 }
 
 /** Its words; its id where it has none. */

@@ -137,10 +137,15 @@ export class Editor {
         severity: each.severity === "note" ? "info" : each.severity,
         message: [each.message, each.hint].filter(Boolean).join("\n"),
         source: each.code,
-        actions: this.actions(each, from),
+        actions: this.fixes(each, from),
       };
     });
     this.view.dispatch(setDiagnostics(this.view.state, found));
+  }
+
+  /** The number of the line of a character, from 1. */
+  lineAt(at: number): number {
+    return this.view.state.doc.lineAt(Math.min(at, this.view.state.doc.length)).number;
   }
 
   lock(locked: boolean): void {
@@ -167,7 +172,7 @@ export class Editor {
   }
 
   /** `told` is where the message began. The text before it may have changed since then, and what it is about, too. */
-  private actions(message: Message, told: number): Action[] {
+  fixes(message: Message, told = message.start): Action[] {
     const { doc } = this.view.state;
     const changes = [...(message.readings.length ? message.readings : message.fix ? [message.fix] : [])];
     return changes.map((change) => ({
