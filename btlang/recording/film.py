@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack
 
 from btlang.api import Mission
@@ -64,6 +64,7 @@ class Film:
         self._movements, self._next_look = Movements(), 0.0
         self._latest: PeriodPassed | None = None
         self._scans: list[list[Any]] = []
+        self._values: list[list[Any]] = []
         self._events: list[dict[str, Any]] = []
         self._count, self._end = 0, 0.0
         self.is_cut = False
@@ -95,14 +96,17 @@ class Film:
                 self._next_look = event.t + _APART
                 self._take_things(event)
             self._latest = event
-        elif isinstance(event, Sampled) and event.scan:
-            self._scans.append([round(event.t, 3), round_scan(event.scan)])
+        elif isinstance(event, Sampled):
+            if event.scan:
+                self._scans.append([round(event.t, 3), round_scan(event.scan)])
+            self._values += [[round(event.t, 3), *each] for each in _numbers(event.values)]
         elif isinstance(event, LOGGED):
             self._events.append(as_json(event, self._mission.label))
             doing = [*self._state.doing.as_dict().values()]
             if not self._doing or self._doing[-1][1:] != doing:
                 self._doing.append([round(event.t, 3), *doing])
         full = self._count > MOST_CHANGES or len(self._events) > _MOST_EVENTS
+        full = full or len(self._values) > _MOST_STATES
         self.is_cut = full or len(self._robot) > _MOST_STATES or len(self._things) > _MOST_PLACES
 
     def _take_state(self, event: PeriodPassed) -> None:
@@ -129,6 +133,7 @@ class Film:
         - `robot`: time, x, y (metres), heading (degrees), battery (percent), what the left and the right hand hold;
         - `things`: time, name, x, y (metres, None where it isn't there) and whether the robot sees it, where one of
         these is new; of people who walk and of what the robot doesn't know by its world;
+        - `values`: time, name and number of what the mission counts or measures, where it is new;
         - `scans`: time and metres, counter-clockwise from straight ahead; `events`: see btlang/run/events.schema.json;
         - `story`: time, node (-1: none) and words; `why`: how it ended; `failed`: the node that failed, or -1;
         - `rules`, `root`: the house rules round it, and the first node of the mission itself (see describe_rules);
@@ -161,6 +166,7 @@ class Film:
             "robot": self._robot,
             "things": self._things,
             "scans": self._scans,
+            "values": self._values,
             "events": self._events,
             "story": [[round(t, 3), index, words] for t, index, words in self._story.notes],
             "why": "\n".join(self._story.ending()),
@@ -170,6 +176,13 @@ class Film:
             **describe_rules(mission, nodes),
             "map": read_world(mission.world).as_map(),
         }
+
+
+def _numbers(values: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
+    """Yield those that the mission names and that are numbers."""
+    for name, value in values.items():
+        if not name.startswith("_") and isinstance(value, int | float) and not isinstance(value, bool):
+            yield name, value
 
 
 def side_by_side(one: str, other: str) -> dict[str, Any]:

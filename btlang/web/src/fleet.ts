@@ -67,7 +67,7 @@ export type Rule = [node: number, does: number, words: string];
 export interface Entry {
   task: number;
   wall: number;
-  event: RunEvent | { event: Exclude<Status, "IDLE"> | "TRUE" | "FALSE"; name: string };
+  event: RunEvent | { event: Exclude<Status, "IDLE"> | "TRUE" | "FALSE"; name: string; node?: number };
 }
 
 export interface Component {
@@ -213,7 +213,7 @@ export class Robot {
       const asks = run.asks.has(index);
       const isNews = !this.fresh && run.task && run.leaves[index] && !(asks && index < run.root); // rules ask all the time
       const event = asks ? ANSWERS[status] : status;
-      if (isNews && event && event !== "IDLE") this.log({ task: run.task, wall: news["t"], event: { event, name: run.nodes[index]![2] } });
+      if (isNews && event && event !== "IDLE") this.log({ task: run.task, wall: news["t"], event: { event, name: run.nodes[index]![2], node: index } });
     }
   }
 

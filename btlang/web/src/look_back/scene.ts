@@ -7,7 +7,7 @@ import { TreeView, joined, withoutRules, type TreeNode } from "../tree/tree_view
 import { MapView } from "../watch/map";
 import { RuleStrip } from "../watch/rules";
 import { Speech } from "../watch/speech";
-import { Words } from "../watch/words";
+import { nodeAt, Words, type Place } from "../watch/words";
 import { clock } from "./timeline";
 
 /** See Film.data in btlang/recording/film.py. */
@@ -22,6 +22,8 @@ export interface Film {
   statuses: [t: number, ...number[]][];
   robot: [t: number, x: number | null, y: number | null, heading: number | null, battery: number | null, left: string | null, right: string | null][];
   things: [t: number, ...Thing][];
+  scans: [t: number, ranges: (number | null)[]][];
+  values: [t: number, name: string, value: number][];
   events: { t: number; event: string }[];
   doing: [t: number, task: number, goal: string, says: string, heard: string][];
   story: [t: number, node: number, words: string][];
@@ -60,7 +62,7 @@ export class Scene {
   readonly tree: TreeView;
   readonly place: HTMLElement;
   readonly log: HTMLElement;
-  readonly words = new Words();
+  readonly words = new Words((at) => this.chooseAt(at));
   readonly rules = new RuleStrip((rule) => this.showRules(rule));
   /** How it ended, and why. */
   readonly outcome: HTMLElement;
@@ -68,20 +70,24 @@ export class Scene {
   private map = new MapView(() => this.robot);
   private speech = new Speech();
   private story = h("ol", { class: "log story", lang: "en", tabindex: 0 });
+  private chosen = -1; // the node that somebody selected, -1 for none
   private now = 0;
   private shown = 0; // the moment that is shown
   private things = new Map<string, Thing>();
   private rows: ReturnType<Scene["begin"]>;
+  private inner: Set<number> | null = null; // nodes that lead others
   private draw = oncePerFrame(() => this.show());
 
-  /** `jump` is told what somebody chose in the story: a time, in seconds, and a node (-1: none). */
+  /** `jump` is told what somebody chose in the story: a time, in seconds, and a node (-1: none); `light` gets
+   *  the places in the text of what runs, or is selected. */
   constructor(
     readonly film: Film,
     jump: (seconds: number, node: number) => void,
-    selected: (node: number) => void = () => undefined,
+    private selected: (node: number) => void = () => undefined,
+    private light: (places: Place[]) => void = () => undefined,
   ) {
     this.rows = this.begin();
-    this.tree = new TreeView({ label: t("watch.tree"), select: (node) => { this.showWords(node); selected(node); } });
+    this.tree = new TreeView({ label: t("watch.tree"), select: (node) => { this.chosen = node; this.showWords(); this.selected(node); } });
     const items = film.story.map(([seconds, node, words]) =>
       h("li", {}, h("time", {}, clock(seconds)), h("button", { type: "button", class: "plain", onclick: () => jump(seconds, node) }, words)),
     );
@@ -91,7 +97,7 @@ export class Scene {
     const words = [film.stopped && `${t("film.stopped")} ${film.stopped}.`, film.why, film.is_cut && t("film.cut")].filter(Boolean).join("\n");
     this.outcome = h("p", { class: `outcome ${ending(film)}`, lang: "en", tabindex: 0 }, words);
     this.tree.setNodes(withoutRules(joined(film.nodes), film.root));
-    this.showWords(-1);
+    this.showWords();
   }
 
   /** Shows the tree with the house rules, at one of them. */
@@ -115,8 +121,9 @@ export class Scene {
 
   select(node: number): void {
     if (node < 0) return;
+    this.chosen = node;
     this.tree.select(node);
-    this.showWords(node);
+    this.showWords();
   }
 
   /** When a node failed last. */
@@ -154,6 +161,7 @@ export class Scene {
     this.tell();
     this.speech.show(this.robot);
     this.map.redraw();
+    this.showWords();
     const current = film.story.findLastIndex(([seconds]) => seconds <= now + 1e-6);
     [...this.story.children].forEach((item, index) => item.classList.toggle("now", index === current));
   }
@@ -180,9 +188,25 @@ export class Scene {
     this.robot.take({ type, robot: "film", ...fields });
   }
 
-  private showWords(node: number): void {
+  /** Selects what is said at a character. */
+  private chooseAt(at: number): void {
+    const node = nodeAt(this.film.nodes, at);
+    if (node < 0) return;
+    this.select(node);
+    this.selected(node);
+  }
+
+  private showWords(): void {
     const { text, nodes } = this.film;
-    const said = nodes[node];
-    this.words.show(text, [said && said.start !== null && said.end !== null ? [said.start, said.end] : null]);
+    const { statuses } = this.tree.shown;
+    const inner = (this.inner ??= new Set(nodes.map(({ parent }) => parent)));
+    const place = (at: number): Place => {
+      const { start = null, end = null } = nodes[at] ?? {};
+      return start !== null && end !== null ? [start, end] : null;
+    };
+    const running = nodes.flatMap((_, at) => (statuses[at] === "RUNNING" && !inner.has(at) ? [place(at)] : []));
+    const lit = [place(this.chosen), ...running];
+    this.words.show(text, lit);
+    this.light(lit);
   }
 }

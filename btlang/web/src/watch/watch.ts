@@ -19,7 +19,7 @@ import { RuleStrip } from "./rules";
 import { Speech } from "./speech";
 import { Talk } from "./talk";
 import { Voice } from "./voice";
-import { Words } from "./words";
+import { nodeAt, Words } from "./words";
 
 const MOST_RUNNING = 12; // that are listed
 
@@ -40,14 +40,15 @@ class Watch implements View {
   private problem = h("p", { class: "problem", role: "alert" });
   private gone = h("p", { class: "gone", role: "status" });
   private controls = h("div", { class: "controls", role: "group", "aria-label": t("watch.controls") });
-  private tree = new TreeView({ label: t("watch.tree") });
+  private chosen = -1; // the node that somebody selected, -1 for none
+  private tree = new TreeView({ label: t("watch.tree"), select: (node) => this.choose(node) });
   private empty = h("p", { class: "empty" }, t("watch.nothing"));
-  private words = new Words();
+  private words = new Words((at) => this.selectAt(at));
   private rules = new RuleStrip((rule) => this.showRule(rule));
   private withRules = false; // the tree has the house rules, too
-  private text = h("div", { class: "card", hidden: true }, this.words.element);
+  private text = h("div", { class: "card text-card", hidden: true }, this.words.element);
   private map = new MapView(() => this.robot);
-  private log = new LogView();
+  private log = new LogView((node) => this.choose(node, true));
   private visitor = h("button", { type: "button", class: "visitor", hidden: true, onclick: () => void this.act("visitor", {}) }, t("visitor"));
   private place: HTMLElement;
   private body: Body;
@@ -81,13 +82,12 @@ class Watch implements View {
       h("div", { class: "stage card" }, this.failure.element, h("div", { class: "doing" }, this.running, this.follow), this.empty, this.tree.element),
       h(
         "div",
-        { class: "side" },
-        this.place,
+        { class: "script" },
         operates && h("details", { class: "card" }, h("summary", {}, t("submit.title")), submitForm(context)),
         this.text,
-        this.parts.element,
         h("div", { class: "card events" }, h("h2", {}, t("log")), this.log.element),
       ),
+      h("div", { class: "side" }, this.place, this.parts.element),
     );
     this.unwatch = context.fleet.watch((robot, kind, news) => {
       if (robot !== this.robot) return;
@@ -147,6 +147,7 @@ class Watch implements View {
     this.empty.hidden = run !== null;
     this.tree.element.hidden = run === null;
     if (run && run !== this.run) {
+      this.chosen = -1;
       if (run.id !== this.run?.id) this.tree.setNodes(this.withRules ? nodesOf(run) : withoutRules(nodesOf(run), run.root));
       else this.tree.setWords(nodesOf(run).map(({ label }, index) => [index, label] as const));
       this.tree.setStatuses(run.statuses.entries());
@@ -154,7 +155,7 @@ class Watch implements View {
     this.run = run;
     const leaves = run && this.robot.up ? running(run) : [];
     this.text.hidden = !run?.text;
-    this.words.show(run?.text ?? "", leaves.map((leaf) => run!.places[leaf] ?? null));
+    this.words.show(run?.text ?? "", [...leaves, this.chosen].map((node) => run?.places[node] ?? null));
     const words = leaves.slice(0, MOST_RUNNING).map((leaf) => run!.nodes[leaf]![2]);
     const shown = JSON.stringify([run?.id, leaves, words]);
     if (this.running.dataset["shown"] === shown) return;
@@ -205,8 +206,21 @@ class Watch implements View {
   }
 
   private select(path: string): void {
-    const index = this.run?.nodes.findIndex(([each]) => each === path) ?? -1;
-    if (index >= 0) this.tree.select(index);
+    this.choose(this.run?.nodes.findIndex(([each]) => each === path) ?? -1, true);
+  }
+
+  /** What is said at a character. */
+  private selectAt(at: number): void {
+    const places = this.run?.places.map((place) => ({ start: place?.[0] ?? null, end: place?.[1] ?? null })) ?? [];
+    this.choose(nodeAt(places, at), true);
+  }
+
+  /** Shows a node in the text, too; with `inTree` in the tree. */
+  private choose(node: number, inTree = false): void {
+    if (node < 0) return;
+    this.chosen = node;
+    if (inTree) this.tree.select(node);
+    this.refresh();
   }
 }
 

@@ -21,11 +21,14 @@ export interface EditorOptions {
 }
 
 const mark = StateEffect.define<{ from: number; to: number } | null>();
+const lights = StateEffect.define<[start: number, end: number][]>();
 const marked = StateField.define<DecorationSet>({
   create: () => Decoration.none,
   update(before, transaction) {
     let now = before.map(transaction.changes);
     for (const effect of transaction.effects) {
+      const places = effect.is(lights) ? [...effect.value].filter(([start, end]) => start < end && end <= transaction.newDoc.length).sort(([one], [other]) => one - other) : null;
+      if (places) now = Decoration.set(places.map(([start, end]) => Decoration.mark({ class: "said" }).range(start, end)));
       if (effect.is(mark)) now = effect.value && effect.value.from < effect.value.to ? Decoration.set(Decoration.mark({ class: "said" }).range(effect.value.from, effect.value.to)) : Decoration.none;
     }
     return now;
@@ -118,6 +121,11 @@ export class Editor {
     this.silent = true;
     this.view.dispatch({ selection: { anchor: start }, effects: [mark.of({ from: start, to: end }), EditorView.scrollIntoView(start, { y: "nearest", yMargin: 40 })] });
     this.silent = false;
+  }
+
+  /** Marks some places, without going there. */
+  light(places: readonly ([start: number, end: number] | null)[]): void {
+    this.view.dispatch({ effects: lights.of(places.filter((place) => place !== null)) });
   }
 
   /** Puts the caret there. */

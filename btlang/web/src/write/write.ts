@@ -9,6 +9,7 @@ import { askSchedule } from "../tasks/schedule";
 import { t } from "../texts";
 import { TreeView } from "../tree/tree_view";
 import type { Context, View } from "../view";
+import { nodeAt } from "../watch/words";
 import { ask } from "./ask";
 import { Editor, smallest } from "./editor";
 import { Player } from "../look_back/player";
@@ -156,7 +157,7 @@ class Desk {
       this.mayWrite && h("div", { class: "doing" }, h("button", { type: "button", title: "Insert", onclick: () => this.edits.addSelected() }, t("write.add")), edit),
       this.tree.element,
     );
-    const words = h("section", { class: "stage card" }, this.text, this.problem, this.messages);
+    const words = h("section", { class: "stage card said-text" }, this.text, this.problem, this.messages);
     return h("div", { class: "desk" }, head, this.company, this.origin, this.offered, h("div", { class: "panes" }, words, trunk), this.tests.element);
   }
 
@@ -258,9 +259,10 @@ class Desk {
   private check(text: string, messages: Message[], compiles: boolean, sort: string): void {
     if (text !== this.editor.text) return;
     this.sort = sort;
+    if (!text.trim()) messages = []; // that there's no command yet is no mistake
     this.editor.tell(messages);
     const items = messages.map((each) => this.message(each));
-    fill(this.messages, ...(items.length ? items : [h("li", { class: "fine" }, t("write.fine"))]));
+    fill(this.messages, ...(items.length || !text.trim() ? items : [h("li", { class: "fine" }, t("write.fine"))]));
     if (!compiles) this.tree.element.classList.add("stale");
   }
 
@@ -291,13 +293,8 @@ class Desk {
   /** The caret shows the node: the smallest that is said there. */
   private moved(at: number): void {
     if (this.understood !== this.editor.text) return;
-    let best: number | null = null;
-    let size = Infinity;
-    this.nodes.forEach(({ start, end }, index) => {
-      if (start === null || end === null || at < start || at > end || end - start >= size) return;
-      [best, size] = [index, end - start];
-    });
-    if (best !== null && best !== this.tree.selected) this.tree.select(best);
+    const best = nodeAt(this.nodes, at);
+    if (best >= 0 && best !== this.tree.selected) this.tree.select(best);
   }
 
   private selected(node: number): void {
@@ -361,10 +358,11 @@ class Desk {
     const close = (): void => {
       this.player?.close();
       this.player = null;
+      this.editor.light([]);
       fill(this.trial);
       this.trial.hidden = true;
     };
-    const player = (this.player = new Player(film, 0, () => undefined, (start, end) => this.editor.text === text && this.editor.show(start, end)));
+    const player = (this.player = new Player(film, 0, () => undefined, (places) => this.editor.text === text && this.editor.light(places)));
     fill(this.trial, h("div", { class: "doing" }, h("h2", {}, t("write.try")), h("button", { type: "button", onclick: close }, t("close"))), player.element);
     this.trial.hidden = false;
   }
