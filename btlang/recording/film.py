@@ -19,6 +19,7 @@ from btlang.run.bus import BLOCK
 from btlang.run.events import LOGGED, Event, PeriodPassed, Sampled, StatusesChanged
 from btlang.run.logs import as_json
 from btlang.run.robot_state import Movements, round_scan
+from btlang.run.sampler import Sampler
 from btlang.run.snapshot import KnownNodes, RunState, Shape, find_questions, text_and_places
 from btlang.session import Session
 from btlang.text.source import NOWHERE
@@ -224,6 +225,7 @@ MOST_SECONDS = 3600.0
 """The limit of the mission's time."""
 _MOST_TICKS = 72_000
 _RATE = 20.0
+_SCANS = 2.0  # in a second of the mission
 _ENDING = 2.0  # seconds that a stopped run may take at least to end
 OURS = "btlang.actions."
 """The prefix of modules whose functions do nothing but command the robot that they are given."""
@@ -244,9 +246,11 @@ def simulate(
     """
     mission.check()
     limit = min(max(seconds, 0.0), MOST_SECONDS, min(max(ticks, 1), _MOST_TICKS) / _RATE)
-    options = {} if seed is None else {"seed": seed}
+    options: dict[str, Any] = {} if seed is None else {"seed": seed}
     session = Session("simulated", world=mission.world)
-    run = session.start(mission, speed="max", rate=_RATE, time_limit=limit, sinks=(sink,), **options)
+    run = session.prepare(mission, speed="max", rate=_RATE, time_limit=limit, sinks=(sink,), **options)
+    run.bus.add(Sampler(run.bus, run.nodes.blackboard, _SCANS))
+    run.start()
     outcome = run.wait(patience)
     if outcome is not None:
         session.close()

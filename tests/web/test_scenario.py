@@ -90,6 +90,16 @@ def test_the_words_stay_with_house_rules(page: Path, tmp_path: Path) -> None:
 
 
 @only_long
+def test_missions_are_written_mended_and_tried(robot: str, tmp_path: Path) -> None:
+    node(HERE / "desk.mjs", robot, PASSWORD, str(tmp_path), folder=installed(HERE))
+
+
+@only_long
+def test_live_and_replay_are_one_view(robot: str, tmp_path: Path) -> None:
+    node(HERE / "one_view.mjs", robot, PASSWORD, str(tmp_path), folder=installed(HERE))
+
+
+@only_long
 def test_a_button_is_held_to_talk(page: Path, tmp_path: Path) -> None:
     pytest.importorskip("av")
     with wave.open(str(tmp_path / "silence.wav"), "wb") as file:

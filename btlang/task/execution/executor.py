@@ -14,6 +14,7 @@ from btlang.engine.leaves.leaf import describe_exception
 from btlang.engine.status import RUNNING, SKIPPED
 from btlang.house_rules import HouseRules
 from btlang.run.outcome import EMERGENCY, SUSPENDED
+from btlang.run.sampler import Sampler
 from btlang.session import Run, Session
 from btlang.task.execution.emergency import EmergencyLatch
 from btlang.task.execution.manager import ENDED, TaskManager, describe_recovery
@@ -37,6 +38,7 @@ _ANSWER = 3.0  # seconds of real time that a mission gets to end when it is aske
 NOTHING_TO_DO = "there was nothing to do"
 """The reason of a task whose mission was skipped as a whole."""
 _BLOCKED = "house rule"
+_SCANS = 1.0  # in a second that are recorded
 """The setting of the store that says why all tasks wait."""
 
 
@@ -308,6 +310,8 @@ class Executor:
         commands = commands_of(run, mission)
         self._watch = RunWatch(indices_of(run, self._rules.reactions), commands, self.wake)
         add_sinks(run, self._watch, *self._sinks(task, mission, run))
+        if recorder is not None:
+            add_sinks(run, Sampler(run.bus, run.nodes.blackboard, _SCANS))
         run.after_ticks(partial(self._after_tick, task, run, self._watch))
         return run
 

@@ -204,7 +204,7 @@ export class Scene {
       const { start = null, end = null } = nodes[at] ?? {};
       return start !== null && end !== null ? [start, end] : null;
     };
-    const running = nodes.flatMap((_, at) => (statuses[at] === "RUNNING" && !inner.has(at) ? [place(at)] : []));
+    const running = nodes.flatMap((_, at) => (statuses[at] === "RUNNING" && !inner.has(at) && at !== this.chosen ? [place(at)] : []));
     const lit = [place(this.chosen), ...running];
     this.words.show(text, lit);
     this.light(lit);
