@@ -82,7 +82,7 @@ def test_of_a_long_text_little_is_sent_behind_a_key() -> None:
     whole = asked(text, "")
     for changed in (f"# {text}", text.replace("nod", "wave", 1)):
         found = asked(changed, whole["shown"])
-        parts = {name: found[name] for name in ("nodes", "outline", "change")}
+        parts = {name: found[name] for name in ("nodes", "outline", "kinds", "change")}
         assert len(json.dumps(parts)) < 3000 < len(json.dumps(whole["nodes"]))
         whole = asked(text, "")
 

@@ -62,7 +62,12 @@ class ShownDocuments:
             head, tail = _find_difference(before[1][part], lists[part], change)
             items = answer[part][head : len(lists[part]) - tail]
             parts[part] = {"head": head, "tail": tail, "items": list(items)}
-        return {**answer, **parts, "shown": name, "change": [change.start, change.end, change.longer]}
+        return {
+            **answer,
+            **_with_own_kinds(parts, answer["kinds"]),
+            "shown": name,
+            "change": [change.start, change.end, change.longer],
+        }
 
 
 def find_change(before: bytes, after: bytes) -> Change:
@@ -80,6 +85,15 @@ def _largest(most: int, holds: Any) -> int:
         middle = (least + most + 1) // 2
         least, most = (middle, most) if holds(middle) else (least, middle - 1)
     return least
+
+
+def _with_own_kinds(parts: dict[str, Any], kinds: list[Any]) -> dict[str, Any]:
+    """Return the parts with the kinds of their nodes alone: of a long text there are many, one for each phrase."""
+    nodes = parts["nodes"]
+    used = sorted({node["kind"] for node in nodes["items"] if "kind" in node})
+    numbers = {kind: number for number, kind in enumerate(used)}
+    items = [{**node, "kind": numbers[node["kind"]]} if "kind" in node else node for node in nodes["items"]]
+    return {**parts, "nodes": {**nodes, "items": items}, "kinds": [kinds[kind] for kind in used]}
 
 
 def _with_levels(answer: dict[str, Any]) -> list[dict[str, Any]]:

@@ -38,7 +38,7 @@ export class Player {
       { class: "film" },
       scene.outcome,
       scene.rules.element,
-      h("div", { class: "panes" }, h("div", { class: "script" }, text, scene.log), h("div", { class: "stage card" }, scene.tree.element), h("div", { class: "side" }, scene.place)),
+      h("div", { class: "panes" }, h("div", { class: "script" }, text, scene.log), h("div", { class: "stage card" }, scene.tree.element), h("div", { class: "side", tabindex: 0 }, scene.place)),
       this.timeline.element,
     );
     this.timeline.seek(at || (film.failed >= 0 ? scene.timeOf(film.failed) : 0));
