@@ -91,7 +91,7 @@ export class Drawing {
     const words = node.label || node.id;
     const texts = [{ text: cut(sign ? `${sign}  ${words}` : words, main), font: main, kind: "words" }];
     if (!this.details) return texts;
-    if (words !== node.id) texts.push({ text: cut(node.id, small), font: small, kind: "port" });
+    if (words !== node.id) texts.push({ text: cut(node.id, small), font: small, kind: "port id" });
     const conditions = portsOf(node).filter(([port]) => port.startsWith("_"));
     const ports = portsOf(node).filter(([port]) => !port.startsWith("_"));
     for (const [port, value] of conditions) texts.push({ text: cut(`${port.slice(1)}: ${value}`, small), font: small, kind: "condition" });
@@ -107,13 +107,15 @@ export function showStatus(element: SVGGElement, status: Status, node: TreeNode)
   set(element, { "data-answer": answer });
   element.querySelector(".status")?.setAttribute("d", answer === "FALSE" ? NO : SHAPES[status]);
   const shown = element.querySelector(".words")?.textContent ?? "";
-  const name = shown.endsWith("…") ? `${shown} ${whole(node)}` : whole(node); // a name begins with what is seen of it
+  const id = element.querySelector(".id") && node.id;
+  const said = whole(node, id);
+  const name = shown.endsWith("…") ? `${shown} ${said}` : said; // a name begins with what is seen of it
   set(element, { "aria-label": `${name}, ${t(`status.${answer ?? status}`)}${node.differs ? `, ${t("compare.differs")}` : ""}` });
 }
 
 /** With all that is cut in the drawing, and what is only shown on demand. */
-function whole(node: TreeNode): string {
-  return [label(node), ...portsOf(node).map(([port, value]) => visible(`${port} = ${value}`))].join("\n");
+function whole(node: TreeNode, id: string | null = null): string {
+  return [label(node), ...(id ? [id] : []), ...portsOf(node).map(([port, value]) => visible(`${port} = ${value}`))].join("\n");
 }
 
 /** Its words; its id where it has none. */
