@@ -136,7 +136,8 @@ class Film:
         these is new; of people who walk and of what the robot doesn't know by its world;
         - `values`: time, name and number of what the mission counts or measures, where it is new;
         - `scans`: time and metres, counter-clockwise from straight ahead; `events`: see btlang/run/events.schema.json;
-        - `story`: time, node (-1: none) and words; `why`: how it ended; `failed`: the node that failed, or -1;
+        - `story`: time, node (-1: none) and words; `why`, `ending`: how it ended, as text and for a page;
+        - `failed`: the node that failed, or -1;
         - `rules`, `root`: the house rules round it, and the first node of the mission itself (see describe_rules);
         - `seconds`: how long it is; `is_cut`: whether more happened than is kept; `map`: see World.as_map.
         """
@@ -171,6 +172,7 @@ class Film:
             "events": self._events,
             "story": [[round(t, 3), index, words] for t, index, words in self._story.notes],
             "why": "\n".join(self._story.ending()),
+            "ending": self._story.ending_data(),
             "failed": self._story.failed,
             "seconds": round(self._end, 3),
             "is_cut": self.is_cut,

@@ -12,12 +12,16 @@ from btlang.engine.status import FAILURE, IDLE, NAMES, RUNNING, SKIPPED, SUCCESS
 from btlang.engine.status_trace import is_rule
 from btlang.recording.reader import RecordedNodes, open_recording
 from btlang.run.events import Chosen, Ended, Event, FaultInjected, InTheWorld, Notice, PartChanged, StatusesChanged
-from btlang.run.failure_history import FailureHistory, failure_report
+from btlang.run.failure_history import FailureHistory, failure_context, failure_report
 from btlang.run.logs import is_asked_wait
 from btlang.text.formatting import one_line
 from btlang.tree.catalogue import CATALOGUE, ON_FAILURE
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import children_first
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
 
 _NO_REASON = ("", "it is not true")  # which say no more than "false"
 _ENDINGS = {FAILURE: "failed", IDLE: "was halted", SKIPPED: "was skipped"}
@@ -123,6 +127,26 @@ class Story:
             yield f"{'There was nothing to do' if skipped else 'The mission succeeded'} after {ended.seconds:.1f} s."
         if ended.still is not True and ended.motion:
             yield one_line(f"{ended.motion}.")
+
+    def ending_data(self) -> dict[str, Any]:
+        """Return the same for a page, which has words of its own for it.
+
+        `outcome` ("" where the recording ends before the mission did), who `stopped` it, `seconds`, and `motion` where
+        the robot isn't known to stand still; of a failure the `words`, the `reason`, and the `context`, in lines.
+        """
+        ended = self._ended
+        data: dict[str, Any] = {"outcome": "", "stopped": "", "seconds": round(self._latest, 1), "motion": ""}
+        data |= {"words": "", "reason": "", "context": []}
+        if ended is None:
+            return data
+        data |= {"outcome": ended.outcome, "stopped": ended.stopped, "seconds": round(ended.seconds, 1)}
+        data["motion"] = one_line(ended.motion) if ended.still is not True else ""
+        if self.failed >= 0:
+            failure = self._failure(ended)
+            context = failure_context(failure, self._history, self._mission.label)
+            words = self._mission.words(self._nodes.node(failure.index))
+            data |= {"words": one_line(words), "reason": one_line(failure.reason), "context": context}
+        return data
 
     @property
     def failed(self) -> int:

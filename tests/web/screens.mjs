@@ -111,6 +111,8 @@ await visit(base, async (page) => {
   await page.locator("li", { hasText: "It can't work." }).getByRole("link", { name: "Replay" }).click();
   await page.waitForSelector(".film .outcome.bad");
   assert.equal(await page.textContent(".film-text mark"), "fail");
+  assert.doesNotMatch(await page.innerText(".outcome"), /\^\^|AlwaysFailure|:\d+:\d+/, "a message for a terminal is in the page");
+  assert.match(await page.innerText(".outcome"), /Line 3: .*fail/);
   await look("film");
   for (const [kind, ending, begins] of [["MCAP", "mcap", "\x89MCAP0"], ["XML of BehaviorTree.CPP", "xml", "<?xml"], ["English", "txt", "# It can't"], ["SVG", "svg", "<svg"], ["PNG", "png", "\x89PNG"]]) {
     const [name, content] = await downloaded(page, kind);

@@ -1,8 +1,8 @@
 // A run at one moment: its tree, its map, its story, and the words of a node.
-import { fill, h, oncePerFrame } from "../dom";
+import { fill, h, oncePerFrame, type Child } from "../dom";
 import { whole } from "../events";
 import { Robot, STATUSES, type Rule, type Status, type Thing, type WorldMap } from "../fleet";
-import { t } from "../texts";
+import { t, type Key } from "../texts";
 import { TreeView, joined, withoutRules, type TreeNode } from "../tree/tree_view";
 import { MapView } from "../watch/map";
 import { RuleStrip } from "../watch/rules";
@@ -28,7 +28,7 @@ export interface Film {
   doing: [t: number, task: number, goal: string, says: string, heard: string][];
   story: [t: number, node: number, words: string][];
   map: WorldMap;
-  why: string;
+  ending: { outcome: string; stopped: string; seconds: number; motion: string; words: string; reason: string; context: string[] };
   failed: number;
   seconds: number;
   is_cut: boolean;
@@ -50,12 +50,26 @@ class Rows<Row extends [number, ...unknown[]]> {
   }
 }
 
+const EMERGENCY = "emergency stop";
+
 /** How a run ended, as a class: "bad" where it failed or the emergency stop was pressed, "quiet" where somebody ended it. */
-function ending({ failed, stopped, events }: Film): string {
-  const end = events.map(whole).find((event) => event.event === "end");
-  const by = stopped || (end?.event === "end" ? end.stopped : "");
-  if (failed >= 0 || stopped || by === "emergency stop" || (end?.event === "end" && !by && end.outcome === "FAILURE")) return "bad";
-  return by || !end ? "quiet" : "";
+function ending({ failed, stopped, ending }: Film): string {
+  if (failed >= 0 || stopped || ending.stopped === EMERGENCY) return "bad";
+  return ending.stopped || !ending.outcome ? "quiet" : "";
+}
+
+/** How a run ended, in words. */
+function inWords({ ending, stopped, is_cut, failed, nodes, text }: Film): Child[] {
+  const { outcome, seconds, reason, words, context, motion } = ending;
+  const by: Record<string, Key> = { "": outcome ? (`end.${outcome}` as Key) : "end.open", [EMERGENCY]: "end.emergency", interrupted: "end.interrupted" };
+  const start = nodes[failed]?.start ?? null;
+  const line = start === null ? "" : `${t("write.line", { line: text.slice(0, start).split("\n").length })}: `;
+  return [
+    h("p", {}, stopped && `${t("film.stopped")} ${stopped}. `, t(by[ending.stopped] ?? "end.stopped", { seconds, by: ending.stopped }), motion && ` ${motion}.`),
+    words && h("p", { class: "why" }, h("strong", {}, line), h("span", { lang: "en", dir: "auto" }, `${words}: ${reason}`)),
+    context.length > 0 && h("details", {}, h("summary", {}, t("film.context")), h("pre", { lang: "en", dir: "auto" }, context.join("\n"))),
+    is_cut && h("p", {}, t("film.cut")),
+  ];
 }
 
 export class Scene {
@@ -94,8 +108,7 @@ export class Scene {
     fill(this.story, ...items);
     this.place = h("div", { class: "card place" }, this.map.canvas, this.speech.element);
     this.log = h("div", { class: "card events" }, h("h2", {}, t("log")), this.story);
-    const words = [film.stopped && `${t("film.stopped")} ${film.stopped}.`, film.why, film.is_cut && t("film.cut")].filter(Boolean).join("\n");
-    this.outcome = h("p", { class: `outcome ${ending(film)}`, lang: "en", tabindex: 0 }, words);
+    this.outcome = h("div", { class: `outcome ${ending(film)}`, tabindex: 0 }, ...inWords(film));
     this.tree.setNodes(withoutRules(joined(film.nodes), film.root));
     this.showWords();
   }

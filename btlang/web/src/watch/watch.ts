@@ -97,7 +97,8 @@ class Watch implements View {
       }
       if (kind === "event") {
         const entry = entryOf(news!);
-        this.failure.note(entry, this.robot.run?.text ?? "");
+        const failed = entry.event.event === "end" ? entry.event.path : "";
+        this.failure.note(entry, this.robot.run?.text ?? "", this.robot.run?.nodes.find(([path]) => path === failed)?.[2] ?? "");
         this.voice.note(entry);
       }
       if (kind === "up") this.body.close(); // it may have another body by now

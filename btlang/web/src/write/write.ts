@@ -60,7 +60,7 @@ class Desk {
   private origin = h("div", { class: "offered origin" });
   private offered = h("div", { class: "offered" });
   private messages = h("ol", { class: "messages", lang: "en" });
-  private outline = h("select", { "aria-label": t("write.outline") });
+  private outline = h("select", { "aria-label": t("write.outline") }, h("option", { value: "0" }, t("write.outline")));
   private text = h("div", { class: "text" });
   private save = h("button", { type: "button", class: "primary", onclick: () => void this.keep() }, t("write.keep"));
   private tree = new TreeView({ label: t("write.tree"), select: (node) => this.selected(node), activate: (node) => this.entered(node), menu: (node) => this.edits.commands(node) });
