@@ -49,6 +49,11 @@ await visit(base, async (page) => {
 
   await page.click("header .robot"); // what works isn't ready
   await until("At work", ".robots .pill");
+  await until("set cups to 3", ".robots .mission");
+  await page.waitForSelector(".robots .place:not(.stale) .map");
+  assert.match(await page.getAttribute(".robots meter", "aria-label"), /battery \d+%/);
+  await accessible(page, "robots");
+  await page.screenshot({ path: `${pictures}/robots.png` });
   await page.click(".robots a");
   await until("go to cafe", ".running");
   await page.getByRole("button", { name: "Cancel" }).click();

@@ -1,4 +1,5 @@
 // A robot at work: its tree, its map, what it says and does, why it failed, and what may be asked of it.
+import { address } from "../address";
 import { may } from "../api";
 import { fill, h, oncePerFrame, set } from "../dom";
 import { entryOf, running, type Rule, type Run } from "../fleet";
@@ -43,6 +44,7 @@ class Watch implements View {
   private chosen = -1; // the node that somebody selected, -1 for none
   private tree = new TreeView({ label: t("watch.tree"), select: (node) => this.choose(node) });
   private empty = h("p", { class: "empty" }, t("watch.nothing"));
+  private first = h("p", { class: "empty", hidden: true }, h("a", { class: "button primary", href: address("write", t("watch.first_name")) }, t("watch.first")));
   private words = new Words((at) => this.selectAt(at));
   private rules = new RuleStrip((rule) => this.showRule(rule));
   private withRules = false; // the tree has the house rules, too
@@ -79,7 +81,7 @@ class Watch implements View {
       "section",
       { class: "watch" },
       h("div", { class: "head" }, h("div", { class: "now" }, this.pill, this.title), this.controls, this.problem, this.gone, this.offers.element, this.rules.element),
-      h("div", { class: "stage card" }, this.failure.element, h("div", { class: "doing" }, this.running, this.follow), this.empty, this.tree.element),
+      h("div", { class: "stage card" }, this.failure.element, h("div", { class: "doing" }, this.running, this.follow), this.empty, this.first, this.tree.element),
       h(
         "div",
         { class: "script" },
@@ -146,6 +148,7 @@ class Watch implements View {
 
   private showRun(run: Run | null): void {
     this.empty.hidden = run !== null;
+    this.first.hidden = run !== null || !may(this.context.me, "editor");
     this.tree.element.hidden = run === null;
     if (run && run !== this.run) {
       this.chosen = -1;
