@@ -146,7 +146,7 @@ def test_what_can_be_changed_of_a_node() -> None:
     assert found["go to lab"]["values"] == [("place", "place", "lab")]
     assert found["repeat … twice"]["values"] == [("rounds", "count", "2")]
     assert {"unwrap", "delete", "inside"} <= set(found["repeat … twice"]["edits"])
-    assert not {"delete", "move", "wrap"} & set(found["Sequence"]["edits"])
+    assert not {"delete", "move", "wrap"} & set(found["then"]["edits"])
     assert len(shown["kinds"]) < len(shown["nodes"])
 
 
