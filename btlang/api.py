@@ -17,6 +17,7 @@ from btlang.support.record import Record
 from btlang.text.output import show
 from btlang.text.source import Source, Span
 from btlang.tree.ast import Fact, Program, all_facts, says_ports
+from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import Known
@@ -174,12 +175,13 @@ def value_key(name: str) -> str:
 _LONGEST = 60  # characters of a mission in its repr
 
 
-class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):
+class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax", "rules")):
     """A compiled mission, with its words and its world. Immutable: a Session runs it.
 
     `tree` is the tree itself. `world` is the path of its world file, or its text, None for the one that ships.
     `warnings` are diagnostics that don't keep it from running. `syntax` is the syntax tree that it was compiled from,
-    if there is one. `facts` are places of this mission, in addition to those of the world.
+    if there is one. `facts` are places of this mission, in addition to those of the world. `rules` are the house rules
+    round it, which its tree has too (btlang.house_rules), None without any.
     """
 
     tree: Tree
@@ -188,6 +190,7 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):
     warnings: tuple[Diagnostic, ...] = ()
     syntax: Program | None = None
     facts: tuple[Fact, ...] = ()
+    rules: Mission | None = None
 
     def __str__(self) -> str:
         return str(self.__rich__())
@@ -284,10 +287,23 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):
 
         return node.name or phrase_of(node, self.vocabulary)
 
+    def words(self, node: Node) -> str:
+        """Return the words of a node, also of one that only leads others, as the mission says it: `try up to 4
+        times`.
+        """
+        from btlang.printer.node_words import words_of_node
+
+        return node.name or words_of_node(node, self.vocabulary)
+
     def is_action(self, node: Node) -> bool:
         """Return whether the node is a command of a keyword file."""
         entry = self.vocabulary.entry(node.id)
         return entry is not None and entry.sort == "action"
+
+    def is_question(self, node: Node) -> bool:
+        """Return whether the node is a condition: its failure is an answer."""
+        entry, kind = self.vocabulary.entry(node.id), CATALOGUE.get(node.id)
+        return kind.kind == "Condition" if kind is not None else entry is not None and entry.sort == "condition"
 
     @property
     def says_ids(self) -> bool:

@@ -108,15 +108,17 @@ def _nodes(mission: Mission, source: Source) -> list[dict[str, Any]]:
             said: object = node.id
             if ports or node.name:
                 said = said, ports, node.name, span.text if span is not None and is_written(node) else ""
-            if said not in labels:
-                labels[said] = mission.label(node)
+            if node.children and not node.name:  # its own words in the text, which few others share
+                label = mission.words(node)
+            else:
+                label = labels.get(said) or labels.setdefault(said, mission.words(node))
             start, end = (span.start, span.end) if span is not None and span.source is source else (None, None)
             if node.children:
                 number = len(found)
                 stack += [(child, number) for child in reversed(node.children)]
             found.append(
                 {
-                    "parent": parent, "id": node.id, "label": labels[said], "name": node.name, "ports": ports,
+                    "parent": parent, "id": node.id, "label": label, "name": node.name, "ports": ports,
                     "start": start, "end": end, "tree": name,
                 }
             )  # fmt: skip

@@ -127,6 +127,8 @@ def _value(kind: ValueType, vocabulary: Lexicon) -> str:
 
 
 def _is_whole(text: str, vocabulary: Lexicon) -> bool:
+    if any(token.kind == "unknown" for token in lexed(Source(text), vocabulary).tokens):
+        return False  # as most that are tried; to explain what is wrong with them takes long
     try:
         compile_mission(read_mission(Source(text), vocabulary).mission, vocabulary)
     except MissionError:

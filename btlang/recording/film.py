@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack
 
 from btlang.api import Mission
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.engine.compile import outline
 from btlang.engine.status import NAMES
+from btlang.house_rules import describe_rules
 from btlang.passes.scripts import is_prepared
 from btlang.recording.diff import compare_endings, describe_step, first_pair, mission_differences, run_differences
 from btlang.recording.reader import RecordedNodes, open_recording
@@ -18,7 +19,8 @@ from btlang.run.bus import BLOCK
 from btlang.run.events import LOGGED, Event, PeriodPassed, Sampled, StatusesChanged
 from btlang.run.logs import as_json
 from btlang.run.robot_state import Movements, round_scan
-from btlang.run.snapshot import KnownNodes, RunState, Shape, text_and_places
+from btlang.run.sampler import Sampler
+from btlang.run.snapshot import KnownNodes, RunState, Shape, find_questions, text_and_places
 from btlang.session import Session
 from btlang.text.source import NOWHERE
 
@@ -63,6 +65,7 @@ class Film:
         self._movements, self._next_look = Movements(), 0.0
         self._latest: PeriodPassed | None = None
         self._scans: list[list[Any]] = []
+        self._values: list[list[Any]] = []
         self._events: list[dict[str, Any]] = []
         self._count, self._end = 0, 0.0
         self.is_cut = False
@@ -86,7 +89,7 @@ class Film:
             if changes:
                 self._statuses.append([round(event.t, 3), *(number for change in changes for number in change)])
             self._count += len(changes)
-            words = self._known.new_words(event.values_now(), self._mission.label)
+            words = self._known.new_words(event.values_now(), self._mission.words)
             self._words += [[round(event.t, 3), *each] for each in words]
         elif isinstance(event, PeriodPassed):
             self._take_state(event)
@@ -94,14 +97,17 @@ class Film:
                 self._next_look = event.t + _APART
                 self._take_things(event)
             self._latest = event
-        elif isinstance(event, Sampled) and event.scan:
-            self._scans.append([round(event.t, 3), round_scan(event.scan)])
+        elif isinstance(event, Sampled):
+            if event.scan:
+                self._scans.append([round(event.t, 3), round_scan(event.scan)])
+            self._values += [[round(event.t, 3), *each] for each in _numbers(event.values)]
         elif isinstance(event, LOGGED):
             self._events.append(as_json(event, self._mission.label))
             doing = [*self._state.doing.as_dict().values()]
             if not self._doing or self._doing[-1][1:] != doing:
                 self._doing.append([round(event.t, 3), *doing])
         full = self._count > MOST_CHANGES or len(self._events) > _MOST_EVENTS
+        full = full or len(self._values) > _MOST_STATES
         self.is_cut = full or len(self._robot) > _MOST_STATES or len(self._things) > _MOST_PLACES
 
     def _take_state(self, event: PeriodPassed) -> None:
@@ -120,29 +126,35 @@ class Film:
         """Return the film as JSON has it.
 
         - `text`: the mission, "" where it had none; `nodes`: in preorder, with the number of the parent (-1: the root)
-        and the characters of the text that say it (None for none); `prepared` are those whose children but the
-        last only compute values for that one; `names`: those of statuses;
+        and the characters of the text that say it (None for none); with `asks` it only asks; `prepared` are those whose
+        children but the last only compute values for that one; `names`: those of statuses;
         - `words`: time, node and what it says with the values of its keys, where these are new;
         - `statuses`: a time in seconds, then node and status (a number of `names`) in turn, as a live view has them;
         - `doing`: time, task (0), where it is going, what it said and heard last, where one of these is new;
         - `robot`: time, x, y (metres), heading (degrees), battery (percent), what the left and the right hand hold;
         - `things`: time, name, x, y (metres, None where it isn't there) and whether the robot sees it, where one of
         these is new; of people who walk and of what the robot doesn't know by its world;
+        - `values`: time, name and number of what the mission counts or measures, where it is new;
         - `scans`: time and metres, counter-clockwise from straight ahead; `events`: see btlang/run/events.schema.json;
-        - `story`: time, node (-1: none) and words; `why`: how it ended; `failed`: the node that failed, or -1;
+        - `story`: time, node (-1: none) and words; `why`, `ending`: how it ended, as text and for a page;
+        - `failed`: the node that failed, or -1;
+        - `rules`, `root`: the house rules round it, and the first node of the mission itself (see describe_rules);
         - `seconds`: how long it is; `is_cut`: whether more happened than is kept; `map`: see World.as_map.
         """
         nodes, mission = self._nodes, self._mission
         text, places = text_and_places(mission.syntax, nodes)
         if self._latest is not None:
             self._take_things(self._latest)
+        parents = [nodes.parent(index) for index in range(nodes.size)]
+        asks = find_questions([nodes.node(index) for index in range(nodes.size)], parents, mission.is_question)
         listed = []
         for index in range(nodes.size):
             node, (start, end) = nodes.node(index), places[index] or (None, None)
             listed.append(
                 {
-                    "parent": nodes.parent(index), "id": node.id, "label": mission.label(node), "ports": node.ports,
+                    "parent": nodes.parent(index), "id": node.id, "label": mission.words(node), "ports": node.ports,
                     "start": start, "end": end, "prepared": is_prepared(node),
+                    "asks": asks[index],
                 }
             )  # fmt: skip
         return {
@@ -156,14 +168,24 @@ class Film:
             "robot": self._robot,
             "things": self._things,
             "scans": self._scans,
+            "values": self._values,
             "events": self._events,
             "story": [[round(t, 3), index, words] for t, index, words in self._story.notes],
             "why": "\n".join(self._story.ending()),
+            "ending": self._story.ending_data(),
             "failed": self._story.failed,
             "seconds": round(self._end, 3),
             "is_cut": self.is_cut,
+            **describe_rules(mission, nodes),
             "map": read_world(mission.world).as_map(),
         }
+
+
+def _numbers(values: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
+    """Yield those that the mission names and that are numbers."""
+    for name, value in values.items():
+        if not name.startswith("_") and isinstance(value, int | float) and not isinstance(value, bool):
+            yield name, value
 
 
 def side_by_side(one: str, other: str) -> dict[str, Any]:
@@ -176,7 +198,7 @@ def side_by_side(one: str, other: str) -> dict[str, Any]:
     - `ended`: the numbers of the nodes whose last status isn't the same.
     """
     with ExitStack() as stack:
-        sides = [stack.enter_context(open_recording(path, ())) for path in (one, other)]
+        sides = [stack.enter_context(open_recording(path)) for path in (one, other)]
         films = [Film(mission, dict(recording.about)) for recording, mission, _ in sides]
         events = [list(recording.events(nodes)) for recording, _, nodes in sides]
         stories = [
@@ -188,7 +210,7 @@ def side_by_side(one: str, other: str) -> dict[str, Any]:
         first = pair and [
             {
                 "t": None if step is None else step[0], "node": -1 if step is None else step[1],
-                "words": describe_step(step, nodes.node, mission.label),
+                "words": describe_step(step, nodes.node, mission.words),
             }
             for step, (_, mission, nodes) in zip(pair, sides, strict=True)
         ]  # fmt: skip
@@ -205,6 +227,7 @@ MOST_SECONDS = 3600.0
 """The limit of the mission's time."""
 _MOST_TICKS = 72_000
 _RATE = 20.0
+_SCANS = 2.0  # in a second of the mission
 _ENDING = 2.0  # seconds that a stopped run may take at least to end
 OURS = "btlang.actions."
 """The prefix of modules whose functions do nothing but command the robot that they are given."""
@@ -225,9 +248,11 @@ def simulate(
     """
     mission.check()
     limit = min(max(seconds, 0.0), MOST_SECONDS, min(max(ticks, 1), _MOST_TICKS) / _RATE)
-    options = {} if seed is None else {"seed": seed}
+    options: dict[str, Any] = {} if seed is None else {"seed": seed}
     session = Session("simulated", world=mission.world)
-    run = session.start(mission, speed="max", rate=_RATE, time_limit=limit, sinks=(sink,), **options)
+    run = session.prepare(mission, speed="max", rate=_RATE, time_limit=limit, sinks=(sink,), **options)
+    run.bus.add(Sampler(run.bus, run.nodes.blackboard, _SCANS))
+    run.start()
     outcome = run.wait(patience)
     if outcome is not None:
         session.close()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import struct
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
 MOST_BYTES = 64_000_000
 """The limit of one record: a broken length would fill the memory."""
 _STATUSES = range(len(NAMES))
-_FOR_OTHERS = frozenset((POSE.topic, SCAN.topic, LOG.topic))  # which say again what our own messages do
+_FOR_OTHERS = frozenset((POSE.topic, LOG.topic))  # which say again what our own messages do
 
 
 class RecordedNodes:
@@ -106,9 +107,15 @@ class Recording(Record):
         """Yield what happened, as the classes of events, up to the first that is broken."""
         run = self.about.get("run", "")
         things: dict[str, Whereabouts] = {}
-        for topic, data in self.entries:
+        began: float | None = None
+        for topic, text in self.entries:
             try:
-                event = _event(topic, json.loads(data), run, nodes, things)
+                data = json.loads(text)
+                if topic == SCAN.topic:
+                    event: Event | None = None if began is None else _scan(data, run, began)
+                else:
+                    began = data["wall"] - data["t"] if began is None else began
+                    event = _event(topic, data, run, nodes, things)
             except (ValueError, KeyError, IndexError, TypeError, AttributeError, RecursionError):
                 return
             if event is not None:
@@ -200,6 +207,13 @@ def _event(
     return kind(**{**dict.fromkeys(missing), **given})
 
 
+def _scan(data: Mapping[str, Any], run: str, began: float) -> Sampled:
+    """Make the event of a scan, which has its time as others read it, from when the run began."""
+    seconds = data["timestamp"]["sec"] + data["timestamp"]["nsec"] / 1e9
+    scan = tuple(float(distance) or math.inf for distance in data["ranges"])
+    return Sampled(max(0.0, seconds - began), run, 0, seconds, {}, scan)
+
+
 def _metres(value: Any) -> float | None:
     return None if value is None else float(value)
 
@@ -236,11 +250,20 @@ def is_recording(path: str) -> bool:
 def open_recording(
     path: str, keywords: Sequence[str] | None = None
 ) -> Iterator[tuple[Recording, Mission, RecordedNodes]]:
-    """Give a recording, its mission and the nodes of that; with `keywords` the mission may be run.
+    """Give a recording, its mission and the nodes of that; with `keywords` the mission may be run, without them it has
+    all words that are kept with it.
 
     Raises MissionError.
     """
     recording = read_recording(path)
     name, language = recording.about.get("mission") or "a mission", recording.about.get("language", "en")
-    with open_mission(recording.files, name, language, keywords) as mission:
+    with open_mission(recording.files, name, language, keywords, _values_of(recording)) as mission:
         yield recording, mission, RecordedNodes(*outline(mission.tree))
+
+
+def _values_of(recording: Recording) -> dict[str, object]:
+    try:
+        values = json.loads(recording.about.get("values", "{}"))
+    except ValueError:
+        return {}
+    return values if isinstance(values, dict) else {}

@@ -12,12 +12,16 @@ from btlang.engine.status import FAILURE, IDLE, NAMES, RUNNING, SKIPPED, SUCCESS
 from btlang.engine.status_trace import is_rule
 from btlang.recording.reader import RecordedNodes, open_recording
 from btlang.run.events import Chosen, Ended, Event, FaultInjected, InTheWorld, Notice, PartChanged, StatusesChanged
-from btlang.run.failure_history import FailureHistory, failure_report
+from btlang.run.failure_history import FailureHistory, failure_context, failure_report
 from btlang.run.logs import is_asked_wait
 from btlang.text.formatting import one_line
 from btlang.tree.catalogue import CATALOGUE, ON_FAILURE
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import children_first
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
 
 _NO_REASON = ("", "it is not true")  # which say no more than "false"
 _ENDINGS = {FAILURE: "failed", IDLE: "was halted", SKIPPED: "was skipped"}
@@ -67,7 +71,7 @@ class Story:
                         self._take_change(change.index, change.status, change.t, node, change.reason)
                     elif change.status == FAILURE and self._is_question(node) and not self._is_watched(change.index):
                         reason = "" if change.reason in _NO_REASON else f" ({change.reason})"
-                        answer = "false" if self._is_condition(node) else "failed"
+                        answer = "false" if self._mission.is_question(node) else "failed"
                         self._answers.append((change.t, f"{self._mission.label(node)}: {answer}", reason))
             elif isinstance(event, Chosen):
                 self._note(event.t, -1, f"It chooses {event.name}, the {event.how} {event.type}.")
@@ -124,6 +128,26 @@ class Story:
         if ended.still is not True and ended.motion:
             yield one_line(f"{ended.motion}.")
 
+    def ending_data(self) -> dict[str, Any]:
+        """Return the same for a page, which has words of its own for it.
+
+        `outcome` ("" where the recording ends before the mission did), who `stopped` it, `seconds`, and `motion` where
+        the robot isn't known to stand still; of a failure the `words`, the `reason`, and the `context`, in lines.
+        """
+        ended = self._ended
+        data: dict[str, Any] = {"outcome": "", "stopped": "", "seconds": round(self._latest, 1), "motion": ""}
+        data |= {"words": "", "reason": "", "context": []}
+        if ended is None:
+            return data
+        data |= {"outcome": ended.outcome, "stopped": ended.stopped, "seconds": round(ended.seconds, 1)}
+        data["motion"] = one_line(ended.motion) if ended.still is not True else ""
+        if self.failed >= 0:
+            failure = self._failure(ended)
+            context = failure_context(failure, self._history, self._mission.label)
+            words = self._mission.words(self._nodes.node(failure.index))
+            data |= {"words": one_line(words), "reason": one_line(failure.reason), "context": context}
+        return data
+
     @property
     def failed(self) -> int:
         """The number of the node whose failure ended it, -1 where none did."""
@@ -178,11 +202,7 @@ class Story:
         """Return whether it is a condition, or chooses what a command is about."""
         entry = self._mission.vocabulary.entry(node.id)
         is_choice = entry is not None and entry.sort == "action" and not entry.phrases
-        return not node.children and (is_choice or self._is_condition(node))
-
-    def _is_condition(self, node: Node) -> bool:
-        entry, kind = self._mission.vocabulary.entry(node.id), CATALOGUE.get(node.id)
-        return kind.kind == "Condition" if kind is not None else entry is not None and entry.sort == "condition"
+        return not node.children and (is_choice or self._mission.is_question(node))
 
     def _is_watched(self, index: int) -> bool:
         """Return whether something waits until the node succeeds, so that its failure says nothing."""

@@ -178,6 +178,11 @@ def failure_report(failure: Failure, story: FailureHistory, label: Callable[[Nod
     return "\n".join(_one_line(line) for line in _Report(failure, story, label).lines(colour))
 
 
+def failure_context(failure: Failure, story: FailureHistory, label: Callable[[Node], str]) -> list[str]:
+    """Return what `failure_report` says beside the sentence and the reason: what it was part of, and had been tried."""
+    return [_one_line(line) for line in _Report(failure, story, label).context()]
+
+
 class _Report:
     def __init__(self, failure: Failure, story: FailureHistory, label: Callable[[Node], str]) -> None:
         self._failure = failure
@@ -187,7 +192,6 @@ class _Report:
     def lines(self, colour: str) -> Iterator[str]:
         failure, story = self._failure, self._story
         named = self._name(failure.index)
-        last, before = self._apart(story.tried)
         yield f"The mission failed after {story.ended:.1f} s."
         yield f"{failure.path if failure.span is None else failure.span.place}: {self._words(failure.index)}"
         if failure.span is not None:
@@ -198,6 +202,10 @@ class _Report:
         yield f"  {denied.id}: {reason}"
         if place := find_raising_line(failure.exception):
             yield f"  raised in {place}"
+        yield from self.context()
+
+    def context(self) -> Iterator[str]:
+        last, before = self._apart(self._story.tried)
         for index, seconds in last.stopped if last is not None else ():
             yield f"  It stopped '{self._words(index)}' after {seconds:.1f} s."
         around = list(self._around())

@@ -95,6 +95,18 @@ def find_asked(nodes: Sequence[Node], parents: Sequence[int]) -> list[bool]:
     return asked
 
 
+def find_questions(nodes: Sequence[Node], parents: Sequence[int], is_question: Callable[[Node], bool]) -> list[bool]:
+    """Return for each node whether it only asks: it's a condition, or leads nothing but conditions."""
+    asks = [True] * len(nodes)
+    inner = set(parents)
+    for index in range(len(nodes) - 1, -1, -1):
+        if index not in inner:
+            asks[index] = is_question(nodes[index])
+        if not asks[index] and parents[index] >= 0:
+            asks[parents[index]] = False
+    return asks
+
+
 class Snapshot(Record):
     """A run after the event with this `number`, at `t` seconds of the mission: for who joins late.
 

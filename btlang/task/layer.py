@@ -12,18 +12,20 @@ from functools import partial
 from btlang.api import Mission
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.diagnostics.files import read_source
+from btlang.house_rules import HouseRules, no_house_rules, read_house_rules
 from btlang.robots.files import DataFileError, as_mission_error, load_data
 from btlang.robots.preflight import check_mission, needs_of_tree
 from btlang.robots.registry import runs_on
 from btlang.run.controls import disable
 from btlang.run.world_input import WorldInput
 from btlang.session import Run, Session
+from btlang.task.commands.answers import refusal_data
 from btlang.task.commands.handler import Handler
 from btlang.task.commands.robot_handlers import component_data, takes_talk, takes_visitors
 from btlang.task.execution.emergency import EmergencyLatch, latch_path
 from btlang.task.execution.executor import Executor
 from btlang.task.execution.manager import DAY, TaskManager
-from btlang.task.execution.missions import HouseRules, MissionReader, no_house_rules, read_house_rules
+from btlang.task.execution.missions import MissionReader
 from btlang.task.execution.run_sinks import Recordings
 from btlang.task.live.feed import Feed
 from btlang.task.messages import AddSchedule, Answer, Command, Put, RemoveSchedule, as_json, read_command
@@ -115,7 +117,9 @@ class TaskLayer:
         self.executor = Executor(
             self.session, self.store, self.manager, self.emergency, self.rules, self.reader.read(_IDLE),
             missions=self.reader.read, now=self.now, trouble=trouble,
-            recordings=None if recordings is None else Recordings(recordings, trouble),
+            recordings=None if recordings is None else Recordings(
+                recordings, trouble, keywords=self.reader.keywords, language=self.reader.language
+            ),
             speed=speed, idle_rate=20.0 if self._real else _SLOW,
             sinks=lambda task, mission, run: [
                 self.world_input, *self.feed.sinks(0 if task is None else task.id, mission, run),
@@ -145,7 +149,7 @@ class TaskLayer:
         try:  # also one that is a command already, since its texts may be anything
             command = read_command(as_json(command) if isinstance(command, Command) else command)
         except MissionError as error:
-            return Answer(False, str(error), {}, error.diagnostics[0].code)
+            return Answer(False, str(error), refusal_data(error), error.diagnostics[0].code)
         answer = self.handler.handle(command, person)
         self.feed.wake()
         return answer
@@ -205,7 +209,8 @@ class TaskLayer:
     def _hindrances(self) -> dict[str, Any]:
         return {
             "stopped": self.emergency.reason, "paused": self.executor.is_paused,
-            "hindrance": self.executor.hindrance(), "visitors": takes_visitors(self.session),
+            "hindrance": self.executor.hindrance(), "acting": self.executor.is_rule_acting,
+            "visitors": takes_visitors(self.session),
             "talks": takes_talk(self.session),
         }  # fmt: skip
 

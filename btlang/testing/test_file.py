@@ -18,11 +18,11 @@ from btlang.components.words import words_of
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.diagnostics.files import OUTSIDE, included_path, is_below, read_source
 from btlang.frontends.mission.symbols.needs import WORDS as NEEDED_WORDS
+from btlang.house_rules import read_house_rules
 from btlang.printer.layout import format_layout
 from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.robots.registry import body_of
 from btlang.support.record import Record
-from btlang.task.execution.missions import read_house_rules
 from btlang.testing.english import MissionEnglish, move_problem
 from btlang.testing.gauges import gauge_words
 from btlang.testing.statements import ScriptStatement, statements_of

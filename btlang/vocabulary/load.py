@@ -66,7 +66,7 @@ def _folder(language: str) -> str:
 
 def _items(keywords: Sequence[str | Entry | Callable[..., Any]]) -> tuple[list[str], list[Entry]]:
     """The paths of keyword files, and the entries."""
-    paths = [_path(item) for item in keywords if isinstance(item, str)]
+    paths = [keyword_path(item) for item in keywords if isinstance(item, str)]
     return paths, [_entry(item) for item in keywords if not isinstance(item, str)]
 
 
@@ -181,7 +181,8 @@ def _entry(word: Entry | Callable[..., Any]) -> Entry:
     return entry
 
 
-def _path(name: str) -> str:
+def keyword_path(name: str) -> str:
+    """The file of a keyword file or of an installed pack. Raises MissionError (BT063)."""
     if os.path.exists(name) or name.endswith(".toml"):
         return name
     from importlib.metadata import entry_points  # costs more than a whole check: only for named packs

@@ -80,7 +80,7 @@ def test_nodes_are_those_of_the_tree(mission: Any) -> None:
     read = LETTERS.mission(source)
     walked = list(read.tree.walk())
     assert [(each["id"], each["ports"], each["name"]) for each in nodes] == [(n.id, n.ports, n.name) for n in walked]
-    assert [each["label"] for each in nodes] == [read.label(node) for node in walked]
+    assert [each["label"] for each in nodes] == [read.words(node) for node in walked]
     children: list[list[str]] = [[] for _ in nodes]
     for each in nodes:
         if each["parent"] >= 0:
@@ -144,9 +144,9 @@ def test_what_can_be_changed_of_a_node() -> None:
     found = {node["label"]: shown["kinds"][node["kind"]] for node in shown["nodes"]}
     assert found["battery is low"]["sort"] == "condition"
     assert found["go to lab"]["values"] == [("place", "place", "lab")]
-    assert found["Repeat num_cycles=2"]["values"] == [("rounds", "count", "2")]
-    assert {"unwrap", "delete", "inside"} <= set(found["Repeat num_cycles=2"]["edits"])
-    assert not {"delete", "move", "wrap"} & set(found["Sequence"]["edits"])
+    assert found["repeat … twice"]["values"] == [("rounds", "count", "2")]
+    assert {"unwrap", "delete", "inside"} <= set(found["repeat … twice"]["edits"])
+    assert not {"delete", "move", "wrap"} & set(found["then"]["edits"])
     assert len(shown["kinds"]) < len(shown["nodes"])
 
 

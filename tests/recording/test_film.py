@@ -90,7 +90,7 @@ def test_a_trial() -> None:
     assert said[0] == TEXT[TEXT.index("go") :].split("  #")[0]
     assert said[1] == "go to the lab"
     shown = [(node["parent"], node["id"], node["label"]) for node in data["nodes"]]
-    assert shown[:2] == [(-1, "Sequence", "Sequence"), (0, "GoTo", "go to lab")]
+    assert shown[:2] == [(-1, "Sequence", "then"), (0, "GoTo", "go to lab")]
     failed = data["failed"]
     assert said[failed] == "battery is low"
     assert "battery is low" in data["why"]

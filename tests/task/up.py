@@ -14,9 +14,10 @@ import pytest
 
 from btlang.api import parse_tree
 from btlang.diagnostics.diagnostic import MissionError
+from btlang.house_rules import read_house_rules
 from btlang.session import Session
 from btlang.task.commands.client import socket_path
-from btlang.task.execution.missions import MissionReader, read_house_rules
+from btlang.task.execution.missions import MissionReader
 from btlang.task.layer import read_schedules
 from btlang.task.store.records import MissionText, TaskState
 from btlang.task.store.task_store import open_store

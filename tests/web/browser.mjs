@@ -95,9 +95,15 @@ export async function untilWritten(page, wanted, { isPart = false } = {}) {
   }, [wanted, isPart]);
 }
 
+/** Does what the menu "More" of the mission that is open offers. */
+export async function more(page, words) {
+  await page.getByRole("button", { name: "More …" }).click();
+  await page.getByRole("menuitem", { name: words, exact: true }).click();
+}
+
 /** A file of the menu of downloads: its name and content. */
 export async function downloaded(page, name) {
-  await page.click("button[aria-haspopup=menu]:has-text('Download')");
+  await page.click("button[aria-haspopup=menu]:is(:has-text('Download'), :has-text('More'))");
   const [download] = await Promise.all([page.waitForEvent("download"), page.click(`[role=menuitem]:has-text('(${name})')`)]);
   return [download.suggestedFilename(), readFileSync(await download.path())];
 }

@@ -1,14 +1,13 @@
-// The reducer of the page and its words for events, outside of a browser: prints what it makes of the cases in a file.
+// The reducer of the page, its words for events and what else needs no browser: prints what it makes of the cases in a file.
 import { readFileSync } from "node:fs";
 import { pathToFileURL } from "node:url";
 
 const [folder, file] = process.argv.slice(2);
-const { lists, events, steps } = JSON.parse(readFileSync(file, "utf8"));
+const { lists, events, steps, languages, documents, rules, film } = JSON.parse(readFileSync(file, "utf8"));
 let language = "en";
 globalThis.localStorage = { getItem: () => language };
-const { Robot } = await import(pathToFileURL(`${folder}/fleet.js`));
-const { inWords } = await import(pathToFileURL(`${folder}/log.js`));
-const { whole } = await import(pathToFileURL(`${folder}/events.js`));
+const { Robot, inWords, loadTexts, patched, ruleStates, seriesOf, valueAt, whole } = await import(pathToFileURL(`${folder}/page.js`));
+await loadTexts();
 
 const plain = (run) => run && { id: run.id, task: run.task, statuses: run.statuses, words: run.nodes.map(([, , words]) => words) };
 const states = lists.map((messages) => {
@@ -22,7 +21,12 @@ const states = lists.map((messages) => {
   };
 });
 const words = {};
-for (language of ["en", "de"]) words[language] = events.map((event) => inWords(whole(event)));
+for (language of languages) {
+  await loadTexts();
+  words[language] = events.map((event) => inWords(whole(event)));
+}
+language = "en";
+await loadTexts();
 // What the page says of the age of readings at some moments of its clock, each with what comes then, null for nothing.
 let clock = 0;
 performance.now = () => clock * 1000;
@@ -32,4 +36,8 @@ const ages = steps.map(([moment, message]) => {
   if (message) watched.take({ robot: "robot", ...message });
   return [watched.age, watched.scanAge, watched.isHeard];
 });
-console.log(JSON.stringify({ states, words, ages }));
+// A document of which only differences come, the states of house rules, and values over time.
+let nodes = [];
+const shown = documents.map(({ difference, change }) => (nodes = change ? patched(nodes, difference, change) : difference));
+const series = seriesOf(film);
+console.log(JSON.stringify({ states, words, ages, shown, rules: ruleStates(...rules), series, values: series.map((each) => [1, 2.5, 9].map((moment) => valueAt(each, moment))) }));

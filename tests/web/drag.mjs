@@ -1,7 +1,7 @@
 // Nodes of a tree are dragged by mouse and by finger; Escape, other kinds of nodes and a finger that scrolls change nothing.
 // Two values are changed at once, and nothing before the tree is that of the text.
 import assert from "node:assert/strict";
-import { logIn, replace, understood, untilWritten, visit, written } from "./browser.mjs";
+import { logIn, more, replace, understood, untilWritten, visit, written } from "./browser.mjs";
 
 const [base, password] = process.argv.slice(2);
 const TEXT = "wave  # to all\nrepeat 2 times:\n  nod\n  look around\nif the battery is low:\n  dock";
@@ -46,10 +46,10 @@ await visit(base, async (page, context) => {
   await untilText(into);
   assert.equal(await marked(), "");
   await fine();
-  await drag(await place("nod"), await place("Repeat", 0.1));
+  await drag(await place("nod"), await place("repeat 2 times", 0.1));
   await page.mouse.up();
   await untilText("nod\nrepeat 2 times:\n  wave  # to all\n  look around\nif the battery is low:\n  dock");
-  await page.getByRole("button", { name: "Undo" }).click();
+  await more(page, "Undo");
   await untilText(into);
   await fine();
 
@@ -59,13 +59,13 @@ await visit(base, async (page, context) => {
   await page.keyboard.press("Escape");
   assert.equal(await marked(), "");
   await page.mouse.up();
-  await drag(await place("Repeat"), await place("look around"));
+  await drag(await place("repeat 2 times"), await place("look around"));
   assert.equal(await marked(), "");
   await page.mouse.up();
   await drag(await place("nod"), await place("battery"));
   assert.equal(await marked(), "");
   await page.mouse.up();
-  await drag(await place("Sequence"), await place("dock", 0.9)); // the root has no other place
+  await drag(await place("then"), await place("dock", 0.9)); // the root has no other place
   assert.equal(await page.$(".node.lifted"), null);
   await page.mouse.up();
   await still(into);
@@ -119,7 +119,7 @@ await visit(base, async (page, context) => {
   await fine();
   await values("2 m", "0.3 m/s");
   await untilText("move forward 2 m at 0.3 m/s");
-  await button("Undo").click();
+  await more(page, "Undo");
   await untilText(moving);
   await fine();
   await values("2 m", "tea");

@@ -1,7 +1,7 @@
 // A first user writes a mission with two mistakes, mends it, runs and stops it, changes it by its tree, tries it, keeps and
 // schedules it, and finds out why yesterday's mission failed. With folders for pictures, each step is compared.
 import assert from "node:assert/strict";
-import { accessible, fits, logIn, replace, understood, untilWritten, visit, written } from "./browser.mjs";
+import { accessible, fits, logIn, more, replace, understood, untilWritten, visit, written } from "./browser.mjs";
 import { gallery } from "./golden.mjs";
 
 const [base, password, golden, found] = process.argv.slice(2);
@@ -62,7 +62,7 @@ await visit(base, async (page) => {
   await page.evaluate(() => (location.hash = "#/write/tea"));
   await page.click(".offered .primary");
   await fine();
-  await choose("Repeat");
+  await choose("2 times");
   await command("Change values");
   await page.fill("dialog [name=rounds]", "3");
   await page.click("dialog .primary");
@@ -84,9 +84,9 @@ await visit(base, async (page) => {
   const wrapped = await written(page);
   assert.ok(wrapped.includes("# Tea for everybody") && wrapped.includes("cafe  # where the cups are"), `comments in ${wrapped}`);
   assert.ok(wrapped.includes('  say "Tea is ready"\n  wave'), wrapped);
-  await button("Undo").click();
+  await more(page, "Undo");
   await page.waitForFunction(() => !document.querySelector(".panes .text .cm-content").textContent.includes("retry"));
-  await button("Redo").click();
+  await more(page, "Redo");
   await untilText("retry 2 times:");
   await fine();
   await accessible(page, "write");
@@ -99,20 +99,20 @@ await visit(base, async (page) => {
   await page.fill("dialog input", "say \"\\<script>alert(1)\\</script> \u202etea\"");
   await page.click("dialog .primary");
   await untilText("alert(1)");
-  await button("Undo").click();
+  await more(page, "Undo");
   await page.waitForFunction(() => !document.querySelector(".panes .text .cm-content").textContent.includes("alert"));
 
   // try it, keep it, schedule it for tomorrow
   await fine();
   await button("Try in simulation").click();
-  await page.waitForSelector("dialog .film .outcome");
-  assert.ok((await page.textContent("dialog .outcome")).includes("succeeded"), "a trial that succeeds");
+  await page.waitForSelector(".trial .film .outcome");
+  assert.ok((await page.textContent(".trial .outcome")).includes("succeeded"), "a trial that succeeds");
   await button("Close").click();
-  await button("Schedule …").click();
+  await more(page, "Schedule …");
   await page.waitForFunction(() => [...document.querySelectorAll(".problem")].some((each) => each.textContent.includes("Save it first")));
   await button("Save").click();
   await page.waitForFunction(() => document.querySelector(".desk .state").textContent === "Saved");
-  await button("Schedule …").click();
+  await more(page, "Schedule …");
   await page.fill("dialog [name=time]", "08:30");
   await look("schedule");
   await page.click("dialog .primary");

@@ -121,6 +121,21 @@ async function names(page) {
     return found;
   });
   assert.equal(boxes.length, 9);
+  const crowd = await page.evaluate(() => {
+    const canvas = document.body.appendChild(Object.assign(document.createElement("canvas"), { width: 240, height: 120 }));
+    const pen = canvas.getContext("2d");
+    const found = [];
+    pen.fillText = (text, x, y) => found.push([text, x, y - 7, x + pen.measureText(text).width, y + 7]);
+    const labels = new globalThis.labels.Labels();
+    for (let number = 0; number < 60; number++) labels.add(`place ${number}`, [(number * 37) % 240, (number * 53) % 120], "black", 5);
+    labels.write(pen, "white");
+    canvas.remove();
+    return found;
+  });
+  assert.ok(crowd.length > 10 && crowd.length < 60, "in a crowd the first ones are written");
+  for (const [name, left, top, right, bottom] of crowd) {
+    for (const [other, ...box] of crowd) assert.ok(other === name || box[0] >= right || box[2] <= left || box[1] >= bottom || box[3] <= top, `${name} is over ${other}`);
+  }
   for (const [name, left, top, right, bottom] of boxes) {
     assert.ok(left >= 0 && top >= 0 && right <= 300 && bottom <= 150, `${name} is outside`);
     for (const [other, ...box] of boxes) {

@@ -43,14 +43,14 @@ await visit(base, async (page) => {
   await until("go to cafe", ".running");
   await page.focus("[role=tree]");
   await page.keyboard.press("Home");
-  assert.match(await current(), /^Sequence, running/);
+  assert.match(await current(), /^then, running/);
   await page.keyboard.press("ArrowRight");
-  assert.match(await current(), /^Repeat/);
+  assert.match(await current(), /^repeat 2 times/);
   await page.keyboard.press("ArrowLeft");
   assert.equal(await page.getAttribute(".node[aria-selected=true]", "aria-expanded"), "false");
   await page.keyboard.press("ArrowRight");
   await page.keyboard.press("ArrowRight");
-  assert.match(await current(), /^Sequence/);
+  assert.match(await current(), /^then/);
   await page.keyboard.press("End");
   assert.match(await current(), /wait/);
   await page.keyboard.type("go");
@@ -111,6 +111,8 @@ await visit(base, async (page) => {
   await page.locator("li", { hasText: "It can't work." }).getByRole("link", { name: "Replay" }).click();
   await page.waitForSelector(".film .outcome.bad");
   assert.equal(await page.textContent(".film-text mark"), "fail");
+  assert.doesNotMatch(await page.innerText(".outcome"), /\^\^|AlwaysFailure|:\d+:\d+/, "a message for a terminal is in the page");
+  assert.match(await page.innerText(".outcome"), /Line 3: .*fail/);
   await look("film");
   for (const [kind, ending, begins] of [["MCAP", "mcap", "\x89MCAP0"], ["XML of BehaviorTree.CPP", "xml", "<?xml"], ["English", "txt", "# It can't"], ["SVG", "svg", "<svg"], ["PNG", "png", "\x89PNG"]]) {
     const [name, content] = await downloaded(page, kind);

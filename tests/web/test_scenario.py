@@ -82,6 +82,24 @@ def test_components_devices_and_a_camera(tmp_path: Path) -> None:
 
 
 @only_long
+def test_the_words_stay_with_house_rules(page: Path, tmp_path: Path) -> None:
+    rules = tmp_path / "rules.txt"
+    rules.write_text("whenever the robot is at the lab, wait 8 seconds\nwhenever the battery is below 5%, dock\n")
+    with served("--robot", robot_file(tmp_path, machine()), "--rules", str(rules), "--speed", "4") as address:
+        node(HERE / "rules.mjs", address, PASSWORD, str(tmp_path), folder=installed(HERE))
+
+
+@only_long
+def test_missions_are_written_mended_and_tried(robot: str, tmp_path: Path) -> None:
+    node(HERE / "desk.mjs", robot, PASSWORD, str(tmp_path), folder=installed(HERE))
+
+
+@only_long
+def test_live_and_replay_are_one_view(robot: str, tmp_path: Path) -> None:
+    node(HERE / "one_view.mjs", robot, PASSWORD, str(tmp_path), folder=installed(HERE))
+
+
+@only_long
 def test_a_button_is_held_to_talk(page: Path, tmp_path: Path) -> None:
     pytest.importorskip("av")
     with wave.open(str(tmp_path / "silence.wav"), "wb") as file:

@@ -54,6 +54,10 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
     ),
     "tests": {"type": "string", "description": "Tests, as a file of tests has them."},
     "called": {"type": "string", "description": "What the tests call the mission that they run."},
+    "shown": {
+        "type": "string",
+        "description": 'The name of the document that a page has, "" for none: it then gets only what differs.',
+    },
     "name": {"type": "string", "description": "The new name; without it, what would be renamed."},
 }
 

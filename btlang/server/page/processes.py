@@ -26,6 +26,7 @@ from btlang.frontends.table import frontend_of
 from btlang.recording.film import Film, side_by_side, try_mission
 from btlang.recording.reader import open_recording
 from btlang.server.http.access import AccessError, text_in
+from btlang.server.page.shown_documents import ShownDocuments
 from btlang.support.gc_pause import gc_paused
 from btlang.support.record import Record
 from btlang.testing.trial import results_of
@@ -80,7 +81,7 @@ def tree(path: str) -> bytes:
 
 
 def _film(path: str) -> dict[str, Any]:
-    with open_recording(path, ()) as (recording, mission, nodes):
+    with open_recording(path) as (recording, mission, nodes):
         data = Film(mission, dict(recording.about)).take(recording.events(nodes)).data()
     return in_units(data, data["text"])
 
@@ -91,7 +92,7 @@ def _comparison(one: str, other: str) -> dict[str, Any]:
 
 
 def _tree(path: str) -> dict[str, Any]:
-    with open_recording(path, ()) as (_, mission, _):
+    with open_recording(path) as (_, mission, _):
         return {"xml": str(mission.to("xml"))}
 
 
@@ -143,7 +144,11 @@ def _format(source: Source, words: RobotWords) -> dict[str, Any]:
 DOES: Mapping[str, TextQuery] = {
     "check": TextQuery("What is wrong with a mission.", _of_mission(lambda mission: {"outline": str(mission)})),
     "complete": TextQuery("What may follow at a place, by default the end.", complete, takes=("at",)),
-    "document": TextQuery("All that an editor shows of a text: messages, tree and outline.", document),
+    "document": TextQuery(
+        "All that an editor shows of a text: messages, tree and outline.",
+        lambda source, words, shown=None: document(source, words),
+        takes=("shown",),
+    ),
     "edit": TextQuery("A change of a mission by its tree.", edit, needs=("edit",)),
     "english": TextQuery("A mission, which may be a tree in XML or JSON, in English.", _english),
     "explain": TextQuery(
@@ -193,7 +198,7 @@ def arguments_of(kind: str, data: Mapping[str, Any], text: str) -> dict[str, Any
         if type(given["at"]) is not int or not 0 <= given["at"] <= units.length:
             raise AccessError(400, "'at' must be a place in the text, a whole number of UTF-16 units.")
         given["at"] = units.character(given["at"])
-    for field in ("name", "tests", "called"):
+    for field in ("name", "tests", "called", "shown"):
         if field in given:
             text_in(given, field)
     if len(given.get("tests", "")) > MOST_CHARACTERS:
@@ -210,7 +215,13 @@ def answer(kind: str, text: str, words: RobotWords, arguments: Mapping[str, Any]
         found = {"ok": True, "messages": [], **ASKED[kind].do(source=source, words=words, **arguments)}
     except MissionError as error:
         found = {"ok": False, "messages": messages(error.diagnostics, source)}
-    return in_units(found, text)
+    found = in_units(found, text)
+    shown = arguments.get("shown")
+    return found if shown is None else _shown.shorten(found, text, shown)
+
+
+_shown = ShownDocuments()
+"""What the pages of this process's server have."""
 
 
 def _write_answer(kind: str, text: str, words: RobotWords, arguments: Mapping[str, Any]) -> bytes:

@@ -7,6 +7,7 @@ from datetime import date, timedelta
 from difflib import unified_diff
 from itertools import takewhile
 
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.task.commands.checks import refusal_error
 from btlang.task.messages import Answer, Put
 from btlang.task.schedule.calendar import format_duration, format_moment
@@ -168,3 +169,19 @@ def _title(task: Task, schedule: Schedule | None) -> str:
 
 def _time_of(task: Task) -> float:
     return task.created if task.due is None else task.due
+
+
+_MOST_MESSAGES = 20
+
+
+def refusal_data(error: MissionError) -> dict[str, Any]:
+    """Return the data of a refusal: its `messages`, each with `code`, `message`, `hint` and `line` (0: of no text)."""
+    return {
+        "messages": [
+            {
+                "code": problem.code, "message": problem.message, "hint": problem.hint,
+                "line": problem.span.source.position(problem.span.start)[0] if problem.span.source.text else 0,
+            }
+            for problem in error.diagnostics[:_MOST_MESSAGES]
+        ]
+    }  # fmt: skip

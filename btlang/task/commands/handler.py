@@ -13,7 +13,7 @@ from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.diagnostics.report import report_crash
 from btlang.speech.marks import without_marks
 from btlang.task import messages
-from btlang.task.commands.answers import describe_times, task_data
+from btlang.task.commands.answers import describe_times, refusal_data, task_data
 from btlang.task.commands.checks import (
     check_labels,
     check_priority,
@@ -105,7 +105,7 @@ class Handler:
             answer = self.do(command, person)
         except MissionError as error:
             first = error.diagnostics[0]
-            answer = Answer(False, str(error), {}, first.code)
+            answer = Answer(False, str(error), refusal_data(error), first.code)
         except Exception as problem:  # whoever asked gets an answer, and the others go on
             if os.environ.get("BTC_DEBUG"):
                 raise

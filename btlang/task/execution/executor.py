@@ -12,11 +12,12 @@ from btlang.api import Mission, value_key
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.engine.leaves.leaf import describe_exception
 from btlang.engine.status import RUNNING, SKIPPED
+from btlang.house_rules import HouseRules
 from btlang.run.outcome import EMERGENCY, SUSPENDED
+from btlang.run.sampler import Sampler
 from btlang.session import Run, Session
 from btlang.task.execution.emergency import EmergencyLatch
 from btlang.task.execution.manager import ENDED, TaskManager, describe_recovery
-from btlang.task.execution.missions import HouseRules
 from btlang.task.execution.run_sinks import Recordings, RunWatch, add_sinks, commands_of, indices_of, reason_of
 from btlang.task.store.database import Outbox, StoreError
 from btlang.task.store.records import ACTIVE, FINAL, MissionText, RequestedEnd, Restart, Task, TaskState
@@ -37,6 +38,7 @@ _ANSWER = 3.0  # seconds of real time that a mission gets to end when it is aske
 NOTHING_TO_DO = "there was nothing to do"
 """The reason of a task whose mission was skipped as a whole."""
 _BLOCKED = "house rule"
+_SCANS = 1.0  # in a second that are recorded
 """The setting of the store that says why all tasks wait."""
 
 
@@ -261,6 +263,11 @@ class Executor:
         if run is not None and self._task is None and (self._new or due) and not self._acts():
             run.stop()
 
+    @property
+    def is_rule_acting(self) -> bool:
+        """Return whether a house rule acts now, during a task or between tasks."""
+        return self._acts()
+
     def _acts(self) -> bool:
         """Return whether a house rule acts now."""
         return self._watch is not None and bool(self._watch.acting)
@@ -290,7 +297,7 @@ class Executor:
 
     def _prepare(self, task: Task) -> Run:
         mission = self._rules.around(self._missions(task.mission))
-        recorder = self._recordings.recorder(mission, task.id) if self._recordings is not None else None
+        recorder = self._recordings.recorder(mission, task) if self._recordings is not None else None
         if recorder is not None:
             self._outbox.write(partial(self._store.amend, task.id, recording=os.path.abspath(recorder.path)))
         options: dict[str, Any] = {"speed": self._speed, "rate": self._rate, "sinks": [recorder] if recorder else []}
@@ -303,6 +310,8 @@ class Executor:
         commands = commands_of(run, mission)
         self._watch = RunWatch(indices_of(run, self._rules.reactions), commands, self.wake)
         add_sinks(run, self._watch, *self._sinks(task, mission, run))
+        if recorder is not None:
+            add_sinks(run, Sampler(run.bus, run.nodes.blackboard, _SCANS))
         run.after_ticks(partial(self._after_tick, task, run, self._watch))
         return run
 

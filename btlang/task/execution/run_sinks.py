@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 from contextlib import suppress
 
 from btlang.api import Mission
@@ -15,6 +16,7 @@ from btlang.recording.recorder import Recorder, recorder_in
 from btlang.run.bus import INLINE
 from btlang.run.events import Event, PeriodPassed, StatusesChanged
 from btlang.tree.catalogue import CATALOGUE
+from btlang.vocabulary.shipped import ENGLISH
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -23,6 +25,7 @@ if TYPE_CHECKING:
     from btlang.run.outcome import Outcome
     from btlang.run.robot_state import RobotState
     from btlang.session import Run
+    from btlang.task.store.records import Task
 
 
 class RunWatch:
@@ -49,7 +52,7 @@ class RunWatch:
         for index, status, _, _ in event.changes:
             if index in self._commands:
                 self._ended |= status in (SUCCESS, FAILURE)
-            elif index in self._rules:
+            if index in self._rules:  # what a rule does may be a single command
                 before = bool(self.acting)
                 if status == RUNNING:
                     self.began |= index not in self.acting
@@ -109,22 +112,34 @@ _EACH = 200_000_000  # bytes of one, which then goes on in another file
 
 class Recordings:
     """A recorder for each task, in `folder`; none if the package mcap isn't installed or the folder can't be written,
-    which `trouble` gets once.
+    which `trouble` gets once. `keywords` and `language` are the words of the robot, which are kept with each run.
     """
 
     def __init__(
-        self, folder: str, trouble: Callable[[str], object] = lambda text: None, most_bytes: int = MOST_BYTES
+        self,
+        folder: str,
+        trouble: Callable[[str], object] = lambda text: None,
+        most_bytes: int = MOST_BYTES,
+        keywords: Sequence[str] = (),
+        language: str = ENGLISH,
     ) -> None:
         self._folder, self._trouble, self._most = folder, trouble, most_bytes
+        self._keywords, self._language = tuple(keywords), language
         self.problem = ""
         """The reason why there are no recordings, "" if there are."""
         self._latest: Recorder | None = None
 
-    def recorder(self, mission: Mission, task: int) -> Recorder | None:
-        """Make the recorder for a run of a task that begins now, until `end`."""
+    def recorder(self, mission: Mission, task: Task) -> Recorder | None:
+        """Make the recorder for a run of a task that begins now, until `end`. `mission` is that of the task."""
         self.make_room()
+        text = task.mission
+        about = {
+            "task": str(task.id), "mission": text.name, "language": self._language,
+            "values": json.dumps(dict(text.values), default=str),
+        }  # fmt: skip
+        keywords = [*self._keywords, *text.keywords]
         try:
-            recorder = recorder_in(self._folder, mission, (), {"task": str(task)}, _EACH, note_latest)
+            recorder = recorder_in(self._folder, mission, keywords, about, _EACH, note_latest)
         except MissionError as error:
             if not self.problem:
                 self._trouble(str(error))

@@ -11,12 +11,13 @@ from contextlib import suppress
 from btlang.api import Mission
 from btlang.engine.leaves.leaf import describe_exception
 from btlang.engine.status import NAMES
+from btlang.house_rules import describe_rules
 from btlang.passes.scripts import is_prepared
 from btlang.run.bus import INLINE
 from btlang.run.events import LOGGED, Arrived, DoorMoved, Ended, Event, PeriodPassed, StatusesChanged, Stopped
 from btlang.run.logs import as_json
 from btlang.run.robot_state import RobotState, ask_sensor, round_scan
-from btlang.run.snapshot import Doing, KnownNodes, text_and_places
+from btlang.run.snapshot import Doing, KnownNodes, find_questions, text_and_places
 from btlang.session import Run
 from btlang.task.live.robot_now import BodyNow, MapNow
 from btlang.task.store.database import StoreError
@@ -302,7 +303,7 @@ def _statuses(watcher: _Watcher, watched: _Watched) -> Iterator[dict[str, Any]]:
     changed = watched.changed  # before the statuses, so that none of them is older
     codes = run.follower.codes()  # none before the first event
     found = watcher.known.new_statuses(codes) if codes else []
-    words = watcher.known.new_words(watched.valued.copy(), watched.mission.label)  # a copy: the run goes on
+    words = watcher.known.new_words(watched.valued.copy(), watched.mission.words)  # a copy: the run goes on
     if found or words:
         changes = [[index, NAMES[status]] for index, status in found]
         said = {"words": [[*pair] for pair in words]} if words else {}
@@ -310,14 +311,19 @@ def _statuses(watcher: _Watcher, watched: _Watched) -> Iterator[dict[str, Any]]:
 
 
 def _tree(watched: _Watched) -> dict[str, Any]:
-    nodes, label = watched.run.nodes, watched.mission.label
+    mission, nodes = watched.mission, watched.run.nodes
     filled = [nodes.filled(index) for index in range(nodes.size)]
-    listed = [[nodes.path(index), node.id, label(node), dict(node.ports)] for index, node in enumerate(filled)]
-    text, places = text_and_places(watched.mission.syntax, nodes)
+    listed = [[nodes.path(index), node.id, mission.words(node), dict(node.ports)] for index, node in enumerate(filled)]
+    text, places = text_and_places(mission.syntax, nodes)
     unit = Utf16Units(text).unit
     spans = [place and [unit(place[0]), unit(place[1])] for place in places]
+    parents = [nodes.parent(index) for index in range(nodes.size)]
+    asks = [index for index, asks in enumerate(find_questions(filled, parents, mission.is_question)) if asks]
     prepared = [index for index, node in enumerate(filled) if is_prepared(node)]
-    return {"nodes": listed, "prepared": prepared, "text": text, "spans": spans}
+    return {
+        "nodes": listed, "prepared": prepared, "text": text, "spans": spans, "asks": asks,
+        **describe_rules(mission, nodes),
+    }  # fmt: skip
 
 
 def _state(state: RobotState | None) -> dict[str, Any]:

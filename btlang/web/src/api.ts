@@ -1,4 +1,5 @@
 // Requests to the server that this page came from, and to no other.
+import { t } from "./texts";
 
 /** What the server answers to a command. */
 export interface Answer {
@@ -27,13 +28,18 @@ export function may(me: Me, role: Role): boolean {
 }
 
 /** A request that failed: the HTTP status (0: nobody answered), what the server says, and all of its answer. */
+/** Messages about a text, each with its line. */
+function inWords(messages: { message: string; hint: string; line: number }[]): string {
+  return messages.map(({ message, hint, line }) => [line && `${t("write.line", { line })}:`, message, hint].filter(Boolean).join(" ")).join("\n");
+}
+
 export class RequestError extends Error {
   constructor(
     readonly status: number,
     text: string,
     readonly data: any = {},
   ) {
-    super(text.replace(/^btc: error BT\d+: /, "")); // which is for a terminal
+    super(inWords(data.data?.messages ?? []) || text.replace(/^btc: error BT\d+: /, "")); // which is for a terminal
   }
 }
 

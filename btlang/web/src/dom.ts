@@ -52,8 +52,24 @@ export function oncePerFrame(draw: () => void): () => void {
   };
 }
 
+/** A line of a menu. */
+export interface MenuItem {
+  label: string;
+  run: () => void;
+}
+
+/** A button that opens a menu below it. */
+export function menuButton(label: string, items: () => MenuItem[]): HTMLElement {
+  const button = h("button", { type: "button", "aria-haspopup": "menu" }, label);
+  button.addEventListener("click", () => {
+    const { left, bottom } = button.getBoundingClientRect();
+    openMenu(left, bottom + 4, label, items());
+  });
+  return button;
+}
+
 /** A list of commands at a point of the window, closed by a click elsewhere, by Escape, or by a choice. */
-export function openMenu(x: number, y: number, label: string, items: { label: string; run: () => void }[]): void {
+export function openMenu(x: number, y: number, label: string, items: MenuItem[]): void {
   const before = document.activeElement as HTMLElement | null;
   const menu = h("div", { class: "menu", role: "menu", popover: "manual", "aria-label": label });
   // not the browser's own dismissal: it takes the end of a right click for one elsewhere

@@ -1,5 +1,5 @@
 // Files for the computer of whoever reads: their names, and the menu that offers them.
-import { h, openMenu } from "./dom";
+import { h, type MenuItem } from "./dom";
 import { t, type Key } from "./texts";
 import { asPng, asSvg } from "./tree/picture";
 import type { TreeView } from "./tree/tree_view";
@@ -19,9 +19,8 @@ export const pictures = (tree: TreeView): Offer[] => [
   { key: "download.png", ending: "png", content: () => asPng(asSvg(tree.shown)) },
 ];
 
-/** A button with a menu of files, which are named after the words and the moment (seconds since 1970) that `named` gives. */
-export function downloads(named: () => [words: string, seconds: number], offers: () => Offer[], fail: (problem: string) => void): HTMLElement {
-  const button = h("button", { type: "button", "aria-haspopup": "menu" }, t("download"));
+/** The lines of a menu for files, which are named after the words and the moment (seconds since 1970) that `named` gives. */
+export function downloadItems(named: () => [words: string, seconds: number], offers: Offer[], fail: (problem: string) => void): MenuItem[] {
   const give = async ({ ending, content }: Offer): Promise<void> => {
     try {
       save(fileName(...named(), ending), await content());
@@ -29,11 +28,7 @@ export function downloads(named: () => [words: string, seconds: number], offers:
       fail((error as Error).message);
     }
   };
-  button.addEventListener("click", () => {
-    const { left, bottom } = button.getBoundingClientRect();
-    openMenu(left, bottom + 4, t("download"), offers().map((offer) => ({ label: t(offer.key), run: () => void give(offer) })));
-  });
-  return button;
+  return offers.map((offer) => ({ label: t(offer.key), run: () => void give(offer) }));
 }
 
 /** A name that every computer takes: letters, digits and dashes, the time of the day, an ending. */

@@ -6,6 +6,9 @@ import type { Place } from "./watch/words";
 export const STATUSES = ["IDLE", "RUNNING", "SUCCESS", "FAILURE", "SKIPPED"] as const;
 export type Status = (typeof STATUSES)[number];
 
+/** What the statuses of a node that only asks mean. */
+export const ANSWERS: Partial<Record<Status, "TRUE" | "FALSE">> = { SUCCESS: "TRUE", FAILURE: "FALSE" };
+
 /** A point of the world, in metres. */
 export type Point = [number, number];
 
@@ -47,16 +50,24 @@ export interface Run {
   leaves: boolean[];
   /** Those whose children but the last only compute values for that one. */
   prepared: Set<number>;
+  /** Those that only ask: a failure of theirs is the answer "no". */
+  asks: Set<number>;
+  /** The house rules round it, and the first node of the mission itself. */
+  rules: Rule[];
+  root: number;
   /** What the mission was read from, "" for nothing, and where it says each node. */
   text: string;
   places: Place[];
 }
 
+/** A house rule: its node, what it does, and its words. */
+export type Rule = [node: number, does: number, words: string];
+
 /** A line of the log: an event, or a command or condition with a new status. */
 export interface Entry {
   task: number;
   wall: number;
-  event: RunEvent | { event: Exclude<Status, "IDLE">; name: string };
+  event: RunEvent | { event: Exclude<Status, "IDLE"> | "TRUE" | "FALSE"; name: string; node?: number };
 }
 
 export interface Component {
@@ -87,7 +98,7 @@ const MOST_STEPS = 2000;
 
 /** What is known of a robot that hasn't said anything yet. */
 const unknown = () => ({
-  state: null as { stopped: string; paused: boolean; hindrance: string; pose: [number, number, number] | null; battery: number | null; left: string | null; right: string | null; visitors?: boolean; talks?: boolean } | null,
+  state: null as { stopped: string; paused: boolean; hindrance: string; acting?: boolean; pose: [number, number, number] | null; battery: number | null; left: string | null; right: string | null; visitors?: boolean; talks?: boolean } | null,
   map: null as WorldMap | null,
   /** Those that may be elsewhere than the map has them. */
   things: [] as Thing[],
@@ -185,7 +196,7 @@ export class Robot {
   private begin(news: News): void {
     const nodes: Run["nodes"] = news["nodes"];
     const prepared = new Set<number>(news["prepared"]);
-    const run: Run = { id: news["run"], task: news["task"], nodes, statuses: nodes.map(() => "IDLE"), leaves: leavesOf(nodes, prepared), prepared, text: news["text"] ?? "", places: news["spans"] ?? [] };
+    const run: Run = { id: news["run"], task: news["task"], nodes, statuses: nodes.map(() => "IDLE"), leaves: leavesOf(nodes, prepared), prepared, asks: new Set(news["asks"]), rules: news["rules"] ?? [], root: news["root"] ?? 0, text: news["text"] ?? "", places: news["spans"] ?? [] };
     if (run.task && run.id !== this.run?.id) this.path = this.path.slice(-1);
     this[run.task ? "run" : "rules"] = run;
   }
@@ -199,8 +210,10 @@ export class Robot {
     }
     for (const [index, status] of news["changes"] as [number, Status][]) {
       run.statuses[index] = status;
-      const isNews = !this.fresh && run.task && run.leaves[index];
-      if (isNews && status !== "IDLE") this.log({ task: run.task, wall: news["t"], event: { event: status, name: run.nodes[index]![2] } });
+      const asks = run.asks.has(index);
+      const isNews = !this.fresh && run.task && run.leaves[index] && !(asks && index < run.root); // rules ask all the time
+      const event = asks ? ANSWERS[status] : status;
+      if (isNews && event && event !== "IDLE") this.log({ task: run.task, wall: news["t"], event: { event, name: run.nodes[index]![2], node: index } });
     }
   }
 

@@ -4,10 +4,11 @@ import { enter as enterByToken, whoAmI } from "./api";
 import { fill, h } from "./dom";
 import { showLogin } from "./login";
 import { Shell } from "./shell";
-import { language, t } from "./texts";
+import { language, loadTexts, t } from "./texts";
 import { applyTheme } from "./theme";
 
 async function start(): Promise<void> {
+  await loadTexts();
   document.documentElement.lang = language();
   applyTheme();
   const token = /^#token=([\w-]+)$/.exec(location.hash)?.[1];

@@ -1,15 +1,26 @@
 // All words that people see are in texts/*.json; this chooses the language and fills in names and numbers.
-import de from "./texts/de.json";
 import en from "./texts/en.json";
 
 export type Key = keyof typeof en;
-const LANGUAGES: Record<string, Record<string, string>> = { en, de };
+/** The languages with their own names. Others than English are loaded where they are chosen. */
+export const languages: [string, string][] = [["en", "English"], ["de", "Deutsch"], ["es", "Español"]];
+const FURTHER: Record<string, () => Promise<{ default: Record<string, string> }>> = {
+  de: () => import("./texts/de.json"),
+  es: () => import("./texts/es.json"),
+};
 const KEPT = "btlang.language";
+let texts: Record<string, string> = en;
+
+/** Loads the texts of the language of the page; until then, and where that fails, they are English. */
+export async function loadTexts(): Promise<void> {
+  const name = language();
+  texts = name in FURTHER ? await FURTHER[name]!().then((found) => found.default, () => en) : en;
+}
 
 /** The language of the page: the chosen one, else the browser's, else English. */
 export function language(): string {
   const wanted = localStorage.getItem(KEPT) ?? navigator.language.slice(0, 2);
-  return wanted in LANGUAGES ? wanted : "en";
+  return languages.some(([name]) => name === wanted) ? wanted : "en";
 }
 
 /** Keeps the language; the page has to be drawn again. */
@@ -17,15 +28,12 @@ export function setLanguage(name: string): void {
   localStorage.setItem(KEPT, name);
 }
 
-/** The languages with their own names. */
-export const languages: [string, string][] = Object.entries(LANGUAGES).map(([name, texts]) => [name, texts["language"] ?? name]);
-
 /** The texts that there are, in their order. */
 export const KEYS = Object.keys(en) as Key[];
 
 /** A text in the language of the page, with `{name}` filled in. */
 export function t(key: Key, values: Record<string, string | number> = {}): string {
-  const text = LANGUAGES[language()]?.[key] ?? en[key];
+  const text = texts[key] ?? en[key];
   return text.replace(/\{(\w+)\}/g, (whole, name: string) => String(values[name] ?? whole));
 }
 

@@ -146,8 +146,10 @@ class Answers(AddressedTexts):
 
         `ask Bob "Tea?". If he says yes, go to Alice. If he says no, wave at him`
         """
+        if not self._calls.speaks_of_people:
+            return  # and a text without people isn't looked through for each of its conditions
         question = next((token for token in reversed(self._tokens) if is_question(token)), None)
-        if question is None or not self._calls.speaks_of_people:
+        if question is None:
             return
         asked = self._asked_person() or (self._met if self._question_before() is not None else _person_in(question))
         choice = choice_of(asked)

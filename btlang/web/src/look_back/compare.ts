@@ -74,9 +74,9 @@ export class Comparison {
   }
 
   private side(scene: Scene, which: number): HTMLElement {
-    const { text, about } = scene.film;
-    const title = h("h2", { class: "what" }, badge(which), h("span", { dir: "auto" }, titleOf(text)), h("time", {}, about["wall"] ? moment(Number(about["wall"])) : ""));
-    return h("section", { class: "one", "aria-label": NAMES[which] }, title, scene.outcome, h("div", { class: "stage card" }, scene.tree.element), h("div", { class: "below" }, scene.log, scene.place));
+    const { about } = scene.film;
+    const title = h("h2", { class: "what" }, badge(which), h("span", { dir: "auto" }, titleOf(scene.film)), h("time", {}, about["wall"] ? moment(Number(about["wall"])) : ""));
+    return h("section", { class: "one", "aria-label": NAMES[which] }, title, h("div", { class: "ending" }, scene.outcome, scene.rules.element), h("div", { class: "stage card" }, scene.tree.element), h("div", { class: "below" }, scene.log, scene.place));
   }
 
   private summary(): HTMLElement {
@@ -134,7 +134,7 @@ function difference(line: string): HTMLElement {
   return h("li", {}, which >= 0 && badge(which), h("span", { dir: "auto" }, which >= 0 ? line.slice(2) : line));
 }
 
-/** The first line that says something. */
-export function titleOf(text: string): string {
-  return called({ mission: text.split("\n").find((line) => line.trim()) ?? "" }).trim() || t("runs.unnamed");
+/** The first line of a mission that says something, or its name. */
+export function titleOf({ text, about }: Film): string {
+  return called({ mission: text.split("\n").find((line) => line.trim()) ?? about["mission"] ?? "" }).trim() || t("runs.unnamed");
 }

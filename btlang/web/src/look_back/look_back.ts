@@ -1,8 +1,8 @@
 // What the robots did: the tasks that are over, newest first, the films of those that were recorded, and two side by side.
 import { address } from "../address";
 import { request } from "../api";
-import { fill, h } from "../dom";
-import { downloads, pictures, textBlob, type Offer } from "../download";
+import { fill, h, menuButton } from "../dom";
+import { downloadItems, pictures, textBlob, type Offer } from "../download";
 import { called, command, type Task } from "../tasks/queue";
 import { moment, t, type Key } from "../texts";
 import type { Context, View } from "../view";
@@ -67,10 +67,10 @@ function openFilm({ me }: Context, robot: string, name: string, at: number): Vie
       ...pictures(player.scene.tree),
     ];
     const began = Number(film.about["wall"]) || 0;
-    const download = downloads(() => [titleOf(film.text), began], offers, (text) => fill(problem, text));
+    const download = menuButton(t("download"), () => downloadItems(() => [titleOf(film), began], offers(), (text) => fill(problem, text)));
     const compare = h("a", { class: "button", href: address("runs", robot, name, WITH) }, t("compare.with"));
     const others = me.screen.length ? [] : [compare, share()];
-    const title = h("div", { class: "title" }, h("h1", { dir: "auto" }, titleOf(film.text)), h("div", { class: "controls" }, ...others, download), problem);
+    const title = h("div", { class: "title" }, h("h1", { dir: "auto" }, titleOf(film)), h("div", { class: "controls" }, ...others, download), problem);
     return { title, element: player.element, close: () => player.close() };
   });
 }

@@ -1,6 +1,8 @@
 // A film of a run, of a recording or of a trial, from any moment on.
 import { h } from "../dom";
 import { t } from "../texts";
+import type { Place } from "../watch/words";
+import { Plots, seriesOf } from "./plots";
 import { Scene, type Film } from "./scene";
 import { Timeline } from "./timeline";
 
@@ -11,21 +13,32 @@ export class Player {
   readonly scene: Scene;
   private timeline: Timeline;
 
-  /** `moved` is told the time, in seconds, when somebody chose it. */
+  /** `moved` is told the time, in seconds, when somebody chose it; `light` the places in the text of what runs and is
+   *  selected, where the text is beside the player.
+   */
   constructor(
     film: Film,
     at = 0,
     private moved: (seconds: number) => void = () => undefined,
+    light?: (places: Place[]) => void,
   ) {
-    const scene = new Scene(film, (seconds, node) => this.jump(seconds, node));
+    const scene = new Scene(film, (seconds, node) => this.jump(seconds, node), undefined, light);
     const failure = film.failed >= 0 && h("button", { type: "button", onclick: () => this.jump(scene.timeOf(film.failed), film.failed) }, t("film.failure"));
+    const plots = new Plots(seriesOf(film), film.seconds, (seconds) => this.jump(seconds, -1));
+    const seek = (): void => {
+      scene.seek(this.timeline.now);
+      plots.show(this.timeline.now);
+    };
     this.scene = scene;
-    this.timeline = new Timeline(film.seconds, () => scene.seek(this.timeline.now), moved, failure);
+    this.timeline = new Timeline(film.seconds, seek, moved, failure);
+    this.timeline.element.prepend(plots.element);
+    const text = film.text && !light && h("div", { class: "card text-card" }, scene.words.element);
     this.element = h(
       "section",
       { class: "film" },
       scene.outcome,
-      h("div", { class: "panes" }, h("div", { class: "stage card" }, scene.tree.element), h("div", { class: "side" }, scene.place, scene.log, film.text && h("div", { class: "card" }, scene.words.element))),
+      scene.rules.element,
+      h("div", { class: "panes" }, h("div", { class: "script" }, text, scene.log), h("div", { class: "stage card" }, scene.tree.element), h("div", { class: "side", tabindex: 0 }, scene.place)),
       this.timeline.element,
     );
     this.timeline.seek(at || (film.failed >= 0 ? scene.timeOf(film.failed) : 0));

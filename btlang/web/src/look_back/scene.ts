@@ -1,12 +1,13 @@
 // A run at one moment: its tree, its map, its story, and the words of a node.
-import { fill, h, oncePerFrame } from "../dom";
+import { fill, h, oncePerFrame, type Child } from "../dom";
 import { whole } from "../events";
-import { Robot, STATUSES, type Status, type Thing, type WorldMap } from "../fleet";
-import { t } from "../texts";
-import { TreeView, joined, type TreeNode } from "../tree/tree_view";
+import { Robot, STATUSES, type Rule, type Status, type Thing, type WorldMap } from "../fleet";
+import { t, type Key } from "../texts";
+import { TreeView, joined, withoutRules, type TreeNode } from "../tree/tree_view";
 import { MapView } from "../watch/map";
+import { RuleStrip } from "../watch/rules";
 import { Speech } from "../watch/speech";
-import { Words } from "../watch/words";
+import { nodeAt, Words, type Place } from "../watch/words";
 import { clock } from "./timeline";
 
 /** See Film.data in btlang/recording/film.py. */
@@ -15,15 +16,19 @@ export interface Film {
   text: string;
   names: Status[];
   nodes: (TreeNode & { start: number | null; end: number | null })[];
+  rules: Rule[];
+  root: number;
   words: [t: number, node: number, words: string][];
   statuses: [t: number, ...number[]][];
   robot: [t: number, x: number | null, y: number | null, heading: number | null, battery: number | null, left: string | null, right: string | null][];
   things: [t: number, ...Thing][];
+  scans: [t: number, ranges: (number | null)[]][];
+  values: [t: number, name: string, value: number][];
   events: { t: number; event: string }[];
   doing: [t: number, task: number, goal: string, says: string, heard: string][];
   story: [t: number, node: number, words: string][];
   map: WorldMap;
-  why: string;
+  ending: { outcome: string; stopped: string; seconds: number; motion: string; words: string; reason: string; context: string[] };
   failed: number;
   seconds: number;
   is_cut: boolean;
@@ -45,41 +50,75 @@ class Rows<Row extends [number, ...unknown[]]> {
   }
 }
 
+const EMERGENCY = "emergency stop";
+
+/** How a run ended, as a class: "bad" where it failed or the emergency stop was pressed, "quiet" where somebody ended it. */
+function ending({ failed, stopped, ending }: Film): string {
+  if (failed >= 0 || stopped || ending.stopped === EMERGENCY) return "bad";
+  return ending.stopped || !ending.outcome ? "quiet" : "";
+}
+
+/** How a run ended, in words. */
+function inWords({ ending, stopped, is_cut, failed, nodes, text }: Film): Child[] {
+  const { outcome, seconds, reason, words, context, motion } = ending;
+  const by: Record<string, Key> = { "": outcome ? (`end.${outcome}` as Key) : "end.open", [EMERGENCY]: "end.emergency", interrupted: "end.interrupted" };
+  const start = nodes[failed]?.start ?? null;
+  const line = start === null ? "" : `${t("write.line", { line: text.slice(0, start).split("\n").length })}: `;
+  return [
+    h("p", {}, stopped && `${t("film.stopped")} ${stopped}. `, t(by[ending.stopped] ?? "end.stopped", { seconds, by: ending.stopped }), motion && ` ${motion}.`),
+    words && h("p", { class: "why" }, h("strong", {}, line), h("span", { lang: "en", dir: "auto" }, `${words}: ${reason}`)),
+    context.length > 0 && h("details", {}, h("summary", {}, t("film.context")), h("pre", { lang: "en", dir: "auto" }, context.join("\n"))),
+    is_cut && h("p", {}, t("film.cut")),
+  ];
+}
+
 export class Scene {
   readonly tree: TreeView;
   readonly place: HTMLElement;
   readonly log: HTMLElement;
-  readonly words = new Words();
+  readonly words = new Words((at) => this.chooseAt(at));
+  readonly rules = new RuleStrip((rule) => this.showRules(rule));
   /** How it ended, and why. */
   readonly outcome: HTMLElement;
   private robot!: Robot;
   private map = new MapView(() => this.robot);
   private speech = new Speech();
   private story = h("ol", { class: "log story", lang: "en", tabindex: 0 });
+  private chosen = -1; // the node that somebody selected, -1 for none
   private now = 0;
   private shown = 0; // the moment that is shown
   private things = new Map<string, Thing>();
   private rows: ReturnType<Scene["begin"]>;
+  private inner: Set<number> | null = null; // nodes that lead others
   private draw = oncePerFrame(() => this.show());
 
-  /** `jump` is told what somebody chose in the story: a time, in seconds, and a node (-1: none). */
+  /** `jump` is told what somebody chose in the story: a time, in seconds, and a node (-1: none); `light` gets
+   *  the places in the text of what runs, or is selected. */
   constructor(
     readonly film: Film,
     jump: (seconds: number, node: number) => void,
-    selected: (node: number) => void = () => undefined,
+    private selected: (node: number) => void = () => undefined,
+    private light: (places: Place[]) => void = () => undefined,
   ) {
     this.rows = this.begin();
-    this.tree = new TreeView({ label: t("watch.tree"), select: (node) => { this.showWords(node); selected(node); } });
+    this.tree = new TreeView({ label: t("watch.tree"), select: (node) => { this.chosen = node; this.showWords(); this.selected(node); } });
     const items = film.story.map(([seconds, node, words]) =>
       h("li", {}, h("time", {}, clock(seconds)), h("button", { type: "button", class: "plain", onclick: () => jump(seconds, node) }, words)),
     );
     fill(this.story, ...items);
     this.place = h("div", { class: "card place" }, this.map.canvas, this.speech.element);
     this.log = h("div", { class: "card events" }, h("h2", {}, t("log")), this.story);
-    const words = [film.stopped && `${t("film.stopped")} ${film.stopped}.`, film.why, film.is_cut && t("film.cut")].filter(Boolean).join("\n");
-    this.outcome = h("p", { class: film.failed >= 0 || film.stopped ? "outcome bad" : "outcome", lang: "en", tabindex: 0 }, words);
-    this.tree.setNodes(joined(film.nodes));
-    this.showWords(-1);
+    this.outcome = h("div", { class: `outcome ${ending(film)}`, tabindex: 0 }, ...inWords(film));
+    this.tree.setNodes(withoutRules(joined(film.nodes), film.root));
+    this.showWords();
+  }
+
+  /** Shows the tree with the house rules, at one of them. */
+  private showRules([node]: Rule): void {
+    const { statuses } = this.tree.shown;
+    this.tree.setNodes(joined(this.film.nodes));
+    this.tree.setStatuses(statuses.entries());
+    this.select(node);
   }
 
   close(): void {
@@ -95,8 +134,9 @@ export class Scene {
 
   select(node: number): void {
     if (node < 0) return;
+    this.chosen = node;
     this.tree.select(node);
-    this.showWords(node);
+    this.showWords();
   }
 
   /** When a node failed last. */
@@ -129,10 +169,12 @@ export class Scene {
     const changes = new Map<number, Status>();
     for (const [, ...row] of this.rows.statuses.upTo(now)) for (let at = 0; at < row.length; at += 2) changes.set(row[at]!, film.names[row[at + 1]!]!);
     this.tree.setStatuses(changes);
+    this.rules.show(film.rules, this.tree.shown.statuses);
     this.tree.setWords(new Map([...this.rows.words.upTo(now)].map(([, node, words]) => [node, words])));
     this.tell();
     this.speech.show(this.robot);
     this.map.redraw();
+    this.showWords();
     const current = film.story.findLastIndex(([seconds]) => seconds <= now + 1e-6);
     [...this.story.children].forEach((item, index) => item.classList.toggle("now", index === current));
   }
@@ -159,9 +201,25 @@ export class Scene {
     this.robot.take({ type, robot: "film", ...fields });
   }
 
-  private showWords(node: number): void {
+  /** Selects what is said at a character. */
+  private chooseAt(at: number): void {
+    const node = nodeAt(this.film.nodes, at);
+    if (node < 0) return;
+    this.select(node);
+    this.selected(node);
+  }
+
+  private showWords(): void {
     const { text, nodes } = this.film;
-    const said = nodes[node];
-    this.words.show(text, [said && said.start !== null && said.end !== null ? [said.start, said.end] : null]);
+    const { statuses } = this.tree.shown;
+    const inner = (this.inner ??= new Set(nodes.map(({ parent }) => parent)));
+    const place = (at: number): Place => {
+      const { start = null, end = null } = nodes[at] ?? {};
+      return start !== null && end !== null ? [start, end] : null;
+    };
+    const running = nodes.flatMap((_, at) => (statuses[at] === "RUNNING" && !inner.has(at) && at !== this.chosen ? [place(at)] : []));
+    const lit = [place(this.chosen), ...running];
+    this.words.show(text, lit);
+    this.light(lit);
   }
 }

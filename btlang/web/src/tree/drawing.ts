@@ -1,6 +1,6 @@
 // One node as SVG. A status is a colour, a shape and a word, so that nobody needs the colour.
 import { s, set } from "../dom";
-import type { Status } from "../fleet";
+import { ANSWERS, type Status } from "../fleet";
 import { t, visible } from "../texts";
 import type { Item, TreeNode } from "./items";
 
@@ -19,6 +19,9 @@ const SHAPES: Record<Status, string> = {
   FAILURE: "M-5 -5L5 5M5 -5L-5 5",
   SKIPPED: "M-6 -4L-1 0L-6 4M0 -4L5 0L0 4",
 };
+
+/** The answer "no" is no failure. */
+const NO = "M-5 0L5 0";
 
 /** What control nodes are drawn with, as on whiteboards. */
 const SIGNS: Record<string, string> = {
@@ -72,7 +75,7 @@ export class Drawing {
     return s(
       "g",
       { class: node.differs ? "node differs" : "node", id: name, transform: `translate(${item.x} ${item.y})`, role: "treeitem" },
-      s("title", {}, whole(node)),
+      s("title", {}, node.label ? `${whole(node)}\n${node.id}` : whole(node)),
       s("rect", { width: item.width, height: item.height, rx: 7 }),
       s("path", { class: "status", transform: `translate(16 ${middle})` }),
       ...texts.flatMap(({ text, kind }, line) => [s("text", { class: kind, x: GLYPH, y: TOP + LINE * line + 12 }, text), " "]), // spaces part words for screen readers
@@ -88,6 +91,7 @@ export class Drawing {
     const words = node.label || node.id;
     const texts = [{ text: cut(sign ? `${sign}  ${words}` : words, main), font: main, kind: "words" }];
     if (!this.details) return texts;
+    if (words !== node.id) texts.push({ text: cut(node.id, small), font: small, kind: "port id" });
     const conditions = portsOf(node).filter(([port]) => port.startsWith("_"));
     const ports = portsOf(node).filter(([port]) => !port.startsWith("_"));
     for (const [port, value] of conditions) texts.push({ text: cut(`${port.slice(1)}: ${value}`, small), font: small, kind: "condition" });
@@ -98,20 +102,25 @@ export class Drawing {
 
 /** Shows a status. */
 export function showStatus(element: SVGGElement, status: Status, node: TreeNode): void {
+  const answer = node.asks ? ANSWERS[status] : undefined;
   element.dataset["status"] = status;
-  element.querySelector(".status")?.setAttribute("d", SHAPES[status]);
+  set(element, { "data-answer": answer });
+  element.querySelector(".status")?.setAttribute("d", answer === "FALSE" ? NO : SHAPES[status]);
   const shown = element.querySelector(".words")?.textContent ?? "";
-  const name = shown.endsWith("…") ? `${shown} ${whole(node)}` : whole(node); // a name begins with what is seen of it
-  set(element, { "aria-label": `${name}, ${t(`status.${status}`)}${node.differs ? `, ${t("compare.differs")}` : ""}` });
+  const id = element.querySelector(".id") && node.id;
+  const said = whole(node, id);
+  const name = shown.endsWith("…") ? `${shown} ${said}` : said; // a name begins with what is seen of it
+  set(element, { "aria-label": `${name}, ${t(`status.${answer ?? status}`)}${node.differs ? `, ${t("compare.differs")}` : ""}` });
 }
 
 /** With all that is cut in the drawing, and what is only shown on demand. */
-function whole(node: TreeNode): string {
-  return [label(node), ...portsOf(node).map(([port, value]) => visible(`${port} = ${value}`))].join("\n");
+function whole(node: TreeNode, id: string | null = null): string {
+  return [label(node), ...(id ? [id] : []), ...portsOf(node).map(([port, value]) => visible(`${port} = ${value}`))].join("\n");
 }
 
+/** Its words; its id where it has none. */
 export function label(node: TreeNode): string {
-  return visible(node.label.startsWith(node.id) ? node.label : node.label ? `${node.id}: ${node.label}` : node.id);
+  return visible(node.label || node.id);
 }
 
 /** Those that the words of a node don't have already, as in "Repeat num_cycles=2". */

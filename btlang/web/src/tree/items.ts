@@ -11,6 +11,8 @@ export interface TreeNode {
   edits?: string[];
   /** It's marked, since it ended otherwise in another run. */
   differs?: boolean;
+  /** It only asks: its failure is the answer "no". */
+  asks?: boolean;
   /** Its children but the last only compute values for that one. */
   prepared?: boolean;
   /** The node that stands for it: it isn't shown itself. */
@@ -31,10 +33,15 @@ export function joined(nodes: readonly TreeNode[]): TreeNode[] {
     for (const part of below[index]!) found[part]!.shownBy = index;
     for (const child of below[last]!) found[child]!.parent = index;
     below[index] = below[last]!;
-    const { id, label, ports, differs } = found[last]!;
-    Object.assign(node, { id, label, ports, says: last, differs: node.differs || differs });
+    const { id, label, ports, differs, asks } = found[last]!;
+    Object.assign(node, { id, label, ports, asks, says: last, differs: node.differs || differs });
   }
   return found;
+}
+
+/** The same nodes without those before the first one of a mission, which are of the house rules round it. */
+export function withoutRules(nodes: readonly TreeNode[], root: number): TreeNode[] {
+  return nodes.map((node, index) => (index < root ? { ...node, shownBy: root } : index === root ? { ...node, parent: -1 } : { ...node }));
 }
 
 /** A place where a node is shown. Below a subtree that opens in place, one node may be shown at several. */

@@ -5,7 +5,7 @@ import { TreeKeys } from "./keys";
 import { toolbar } from "./toolbar";
 import { TreeCanvas, type TreeOptions } from "./tree_canvas";
 
-export { joined, type TreeNode } from "./items";
+export { joined, withoutRules, type TreeNode } from "./items";
 
 export class TreeView extends TreeCanvas {
   private drag: TreeDrag | null = null;

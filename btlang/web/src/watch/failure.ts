@@ -16,12 +16,12 @@ export class Failure {
   }
 
   /** Shows a failed end, with the lines of the mission around it. */
-  note({ task, event }: Entry, text: string): void {
+  note({ task, event }: Entry, text: string, said: string): void {
     if (event.event !== "end" || event.outcome !== "FAILURE" || event.stopped || !task) return;
     const words = h("pre", { class: "words", dir: "auto" });
     fill(
       this.element,
-      h("p", {}, h("strong", {}, t("failure", { what: event.id })), " ", h("span", { lang: "en", dir: "auto" }, event.reason)),
+      h("p", {}, h("strong", {}, t("failure", { what: said || event.id })), " ", h("span", { lang: "en", dir: "auto" }, event.reason)),
       words,
       event.path && h("button", { type: "button", onclick: () => this.select(event.path) }, t("failure.node")),
     );

@@ -1,4 +1,4 @@
-// The names on a map, each beside what it names, where no other name is.
+// The names on a map, each beside what it names, where no other name is. One that has no such place isn't written.
 import type { Point } from "../fleet";
 
 const FONT = "12px system-ui, sans-serif";
@@ -41,8 +41,12 @@ export class Labels {
     context.lineWidth = 3;
     context.setLineDash([]);
     context.strokeStyle = edge;
+    const names: Box[] = [];
     for (const { text, at, paint, gap } of this.labels) {
-      const box = freest(placesOf(at, context.measureText(text).width, gap, wide, high), this.taken);
+      const places = placesOf(at, context.measureText(text).width, gap, wide, high).filter((place) => names.every((box) => !shared(place, box)));
+      const box = freest(places, this.taken);
+      if (!box) continue;
+      names.push(box);
       this.taken.push(box);
       const middle = (box.top + box.bottom) / 2;
       context.strokeText(text, box.left, middle);
@@ -59,13 +63,14 @@ function placesOf([x, y]: Point, width: number, gap: number, wide: number, high:
     return { left, right: left + width, top, bottom: top + HEIGHT };
   };
   const rows = [0, 1, 2, 3].flatMap((row) => [-1, 1].map((side) => box(x - width / 2, y + side * (gap + HEIGHT * (row + 0.5)))));
-  return [...rows.slice(0, 2), box(x + gap, y), box(x - gap - width, y), ...rows.slice(2)];
+  const aside = [-1, 1, -2, 2].flatMap((row) => [box(x + gap, y + row * HEIGHT), box(x - gap - width, y + row * HEIGHT)]);
+  return [...rows.slice(0, 2), box(x + gap, y), box(x - gap - width, y), ...rows.slice(2), ...aside];
 }
 
-/** The first place that is free, or the one with the least of other names in it. */
-function freest(places: Box[], taken: Box[]): Box {
+/** The first place that is free, or the one with the least of what should be seen in it. */
+function freest(places: Box[], taken: Box[]): Box | undefined {
   const covered = places.map((place) => taken.reduce((sum, box) => sum + shared(place, box), 0));
-  return places[covered.indexOf(Math.min(...covered))]!;
+  return places[covered.indexOf(Math.min(...covered))];
 }
 
 /** Square pixels that two boxes have in common. */

@@ -41,7 +41,8 @@ export class LogView {
   private entries: Entry[] = [];
   private timer = 0;
 
-  constructor() {
+  /** `choose` gets the node of a line that somebody clicks on. */
+  constructor(private choose: (node: number) => void) {
     this.element.addEventListener("scroll", () => {
       const { scrollTop, clientHeight, scrollHeight } = this.element;
       this.atEnd = scrollTop + clientHeight >= scrollHeight - 8;
@@ -64,7 +65,10 @@ export class LogView {
       if (!words || words === this.lastWords) continue; // several parts of a robot say that they were stopped
       this.lastWords = words;
       this.lines.append(
-        h("li", { class: ALARMS.has(entry.event.event) || entry.event.event === "FAILURE" ? "bad" : null }, h("time", {}, moment(entry.wall)), h("span", { dir: "auto" }, words)),
+        h("li", { class: ALARMS.has(entry.event.event) || entry.event.event === "FAILURE" ? "bad" : null }, h("time", {}, moment(entry.wall)), "node" in entry.event && entry.event.node !== undefined
+            ? h("button", { type: "button", class: "plain", dir: "auto", onclick: () => entry.task === this.entries.at(-1)?.task && this.choose((entry.event as { node: number }).node) }, words)
+            : h("span", { dir: "auto" }, words),
+        ),
       );
     }
     while (this.lines.childElementCount > NEWEST) this.lines.firstElementChild!.remove();

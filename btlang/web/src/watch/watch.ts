@@ -1,12 +1,13 @@
 // A robot at work: its tree, its map, what it says and does, why it failed, and what may be asked of it.
+import { address } from "../address";
 import { may } from "../api";
 import { fill, h, oncePerFrame, set } from "../dom";
-import { entryOf, running, type Run } from "../fleet";
+import { entryOf, running, type Rule, type Run } from "../fleet";
 import { oldness, state } from "../robots";
 import { called, command, Queue } from "../tasks/queue";
 import { submitForm } from "../tasks/submit";
 import { t, type Key } from "../texts";
-import { TreeView, joined, type TreeNode } from "../tree/tree_view";
+import { TreeView, joined, withoutRules, type TreeNode } from "../tree/tree_view";
 import type { Context, View } from "../view";
 import { Body } from "./body";
 import { Failure } from "./failure";
@@ -15,13 +16,13 @@ import { MapView } from "./map";
 import { Offers } from "./offers";
 import { Parts } from "./parts";
 import { Question } from "./question";
+import { RuleStrip } from "./rules";
 import { Speech } from "./speech";
 import { Talk } from "./talk";
 import { Voice } from "./voice";
-import { Words } from "./words";
+import { nodeAt, Words } from "./words";
 
 const MOST_RUNNING = 12; // that are listed
-const RESTING = 2; // nodes of the tree of a robot that has nothing to do
 
 /** See `View`. */
 export function openWatch(context: Context): View {
@@ -40,12 +41,16 @@ class Watch implements View {
   private problem = h("p", { class: "problem", role: "alert" });
   private gone = h("p", { class: "gone", role: "status" });
   private controls = h("div", { class: "controls", role: "group", "aria-label": t("watch.controls") });
-  private tree = new TreeView({ label: t("watch.tree") });
+  private chosen = -1; // the node that somebody selected, -1 for none
+  private tree = new TreeView({ label: t("watch.tree"), select: (node) => this.choose(node) });
   private empty = h("p", { class: "empty" }, t("watch.nothing"));
-  private words = new Words();
-  private text = h("div", { class: "card", hidden: true }, this.words.element);
+  private first = h("p", { class: "empty", hidden: true }, h("a", { class: "button primary", href: address("write", t("watch.first_name")) }, t("watch.first")));
+  private words = new Words((at) => this.selectAt(at));
+  private rules = new RuleStrip((rule) => this.showRule(rule));
+  private withRules = false; // the tree has the house rules, too
+  private text = h("div", { class: "card text-card", hidden: true }, this.words.element);
   private map = new MapView(() => this.robot);
-  private log = new LogView();
+  private log = new LogView((node) => this.choose(node, true));
   private visitor = h("button", { type: "button", class: "visitor", hidden: true, onclick: () => void this.act("visitor", {}) }, t("visitor"));
   private place: HTMLElement;
   private body: Body;
@@ -75,17 +80,16 @@ class Watch implements View {
     this.element = h(
       "section",
       { class: "watch" },
-      h("div", { class: "head" }, h("div", { class: "now" }, this.pill, this.title), this.controls, this.problem, this.gone, this.offers.element),
-      h("div", { class: "stage card" }, this.failure.element, h("div", { class: "doing" }, this.running, this.follow), this.empty, this.tree.element),
+      h("div", { class: "head" }, h("div", { class: "now" }, this.pill, this.title), this.controls, this.problem, this.gone, this.offers.element, this.rules.element),
+      h("div", { class: "stage card" }, this.failure.element, h("div", { class: "doing" }, this.running, this.follow), this.empty, this.first, this.tree.element),
       h(
         "div",
-        { class: "side" },
-        this.place,
+        { class: "script" },
         operates && h("details", { class: "card" }, h("summary", {}, t("submit.title")), submitForm(context)),
         this.text,
-        this.parts.element,
         h("div", { class: "card events" }, h("h2", {}, t("log")), this.log.element),
       ),
+      h("div", { class: "side" }, this.place, this.parts.element),
     );
     this.unwatch = context.fleet.watch((robot, kind, news) => {
       if (robot !== this.robot) return;
@@ -95,7 +99,8 @@ class Watch implements View {
       }
       if (kind === "event") {
         const entry = entryOf(news!);
-        this.failure.note(entry, this.robot.run?.text ?? "");
+        const failed = entry.event.event === "end" ? entry.event.path : "";
+        this.failure.note(entry, this.robot.run?.text ?? "", this.robot.run?.nodes.find(([path]) => path === failed)?.[2] ?? "");
         this.voice.note(entry);
       }
       if (kind === "up") this.body.close(); // it may have another body by now
@@ -118,7 +123,9 @@ class Watch implements View {
 
   private show(): void {
     const { robot } = this;
-    this.showRun(robot.run ?? (robot.rules && robot.rules.nodes.length > RESTING ? robot.rules : null));
+    const ruled = this.ruled;
+    this.rules.show(ruled?.rules ?? [], ruled?.statuses ?? []);
+    this.showRun(this.withRules && ruled ? ruled : robot.run);
     const task = this.queue.underway;
     const [kind, words] = state(robot);
     this.pill.className = `pill ${kind}`;
@@ -141,22 +148,38 @@ class Watch implements View {
 
   private showRun(run: Run | null): void {
     this.empty.hidden = run !== null;
+    this.first.hidden = run !== null || !may(this.context.me, "editor");
     this.tree.element.hidden = run === null;
     if (run && run !== this.run) {
-      if (run.id !== this.run?.id) this.tree.setNodes(nodesOf(run));
+      this.chosen = -1;
+      if (run.id !== this.run?.id) this.tree.setNodes(this.withRules ? nodesOf(run) : withoutRules(nodesOf(run), run.root));
       else this.tree.setWords(nodesOf(run).map(({ label }, index) => [index, label] as const));
       this.tree.setStatuses(run.statuses.entries());
     }
     this.run = run;
     const leaves = run && this.robot.up ? running(run) : [];
     this.text.hidden = !run?.text;
-    this.words.show(run?.text ?? "", leaves.map((leaf) => run!.places[leaf] ?? null));
+    this.words.show(run?.text ?? "", [...leaves, this.chosen].map((node) => run?.places[node] ?? null));
     const words = leaves.slice(0, MOST_RUNNING).map((leaf) => run!.nodes[leaf]![2]);
     const shown = JSON.stringify([run?.id, leaves, words]);
     if (this.running.dataset["shown"] === shown) return;
     this.running.dataset["shown"] = shown;
     fill(this.running, ...words.map((each) => h("li", { dir: "auto" }, each)));
     if (this.follow.getAttribute("aria-pressed") === "true" && leaves.length) this.tree.bring(leaves[0]!);
+  }
+
+  /** The run whose house rules hold now. */
+  private get ruled(): Run | null {
+    const { run, rules, doing } = this.robot;
+    return (doing.task ? run : rules) ?? run;
+  }
+
+  /** Shows the tree with the house rules, at one of them; again without them where it's shown already. */
+  private showRule([node]: Rule): void {
+    this.withRules = !(this.withRules && this.tree.selected === node);
+    this.run = null;
+    this.show();
+    if (this.withRules) this.tree.select(node);
   }
 
   private showControls(): void {
@@ -187,8 +210,21 @@ class Watch implements View {
   }
 
   private select(path: string): void {
-    const index = this.run?.nodes.findIndex(([each]) => each === path) ?? -1;
-    if (index >= 0) this.tree.select(index);
+    this.choose(this.run?.nodes.findIndex(([each]) => each === path) ?? -1, true);
+  }
+
+  /** What is said at a character. */
+  private selectAt(at: number): void {
+    const places = this.run?.places.map((place) => ({ start: place?.[0] ?? null, end: place?.[1] ?? null })) ?? [];
+    this.choose(nodeAt(places, at), true);
+  }
+
+  /** Shows a node in the text, too; with `inTree` in the tree. */
+  private choose(node: number, inTree = false): void {
+    if (node < 0) return;
+    this.chosen = node;
+    if (inTree) this.tree.select(node);
+    this.refresh();
   }
 }
 
@@ -199,7 +235,7 @@ function nodesOf(run: Run): TreeNode[] {
     numbers.set(path, index);
     const above = path.slice(0, path.lastIndexOf("/")) || "/";
     const parent = path === "/" ? -1 : (numbers.get(above) ?? -1);
-    return { parent, id, label: label === id ? "" : label, ports: Object.entries(ports ?? {}), prepared: run.prepared.has(index) };
+    return { parent, id, label: label === id ? "" : label, ports: Object.entries(ports ?? {}), prepared: run.prepared.has(index), asks: run.asks.has(index) };
   });
   return joined(nodes);
 }

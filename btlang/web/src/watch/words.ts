@@ -5,9 +5,31 @@ import { t } from "../texts";
 /** Where the text says a node: from a character to another one, null where it doesn't. */
 export type Place = [start: number, end: number] | null;
 
+/** The smallest node that is said at a character, -1 for none. */
+export function nodeAt(nodes: readonly { start: number | null; end: number | null }[], at: number): number {
+  let [best, size] = [-1, Infinity];
+  nodes.forEach(({ start, end }, index) => {
+    if (start === null || end === null || at < start || at > end || end - start >= size) return;
+    [best, size] = [index, end - start];
+  });
+  return best;
+}
+
 export class Words {
   readonly element = h("pre", { class: "film-text", tabindex: 0, dir: "auto", lang: "en", "aria-label": t("write.text") });
   private shown = "";
+
+  /** `choose` gets the number of the character that somebody clicks on. */
+  constructor(choose?: (at: number) => void) {
+    this.element.addEventListener("click", () => {
+      const selection = getSelection();
+      if (!choose || !selection?.isCollapsed || !selection.anchorNode || !this.element.contains(selection.anchorNode)) return;
+      const before = document.createRange();
+      before.setStart(this.element, 0);
+      before.setEnd(selection.anchorNode, selection.anchorOffset);
+      choose(before.toString().length);
+    });
+  }
 
   /** Shows a text with some places marked; brings the first of them into view. */
   show(text: string, places: Place[]): void {

@@ -21,11 +21,14 @@ export interface EditorOptions {
 }
 
 const mark = StateEffect.define<{ from: number; to: number } | null>();
+const lights = StateEffect.define<[start: number, end: number][]>();
 const marked = StateField.define<DecorationSet>({
   create: () => Decoration.none,
   update(before, transaction) {
     let now = before.map(transaction.changes);
     for (const effect of transaction.effects) {
+      const places = effect.is(lights) ? [...effect.value].filter(([start, end]) => start < end && end <= transaction.newDoc.length).sort(([one], [other]) => one - other) : null;
+      if (places) now = Decoration.set(places.map(([start, end]) => Decoration.mark({ class: "said" }).range(start, end)));
       if (effect.is(mark)) now = effect.value && effect.value.from < effect.value.to ? Decoration.set(Decoration.mark({ class: "said" }).range(effect.value.from, effect.value.to)) : Decoration.none;
     }
     return now;
@@ -120,6 +123,11 @@ export class Editor {
     this.silent = false;
   }
 
+  /** Marks some places, without going there. */
+  light(places: readonly ([start: number, end: number] | null)[]): void {
+    this.view.dispatch({ effects: lights.of(places.filter((place) => place !== null)) });
+  }
+
   /** Puts the caret there. */
   go(at: number): void {
     this.view.dispatch({ selection: { anchor: at }, scrollIntoView: true });
@@ -137,10 +145,15 @@ export class Editor {
         severity: each.severity === "note" ? "info" : each.severity,
         message: [each.message, each.hint].filter(Boolean).join("\n"),
         source: each.code,
-        actions: this.actions(each, from),
+        actions: this.fixes(each, from),
       };
     });
     this.view.dispatch(setDiagnostics(this.view.state, found));
+  }
+
+  /** The number of the line of a character, from 1. */
+  lineAt(at: number): number {
+    return this.view.state.doc.lineAt(Math.min(at, this.view.state.doc.length)).number;
   }
 
   lock(locked: boolean): void {
@@ -167,7 +180,7 @@ export class Editor {
   }
 
   /** `told` is where the message began. The text before it may have changed since then, and what it is about, too. */
-  private actions(message: Message, told: number): Action[] {
+  fixes(message: Message, told = message.start): Action[] {
     const { doc } = this.view.state;
     const changes = [...(message.readings.length ? message.readings : message.fix ? [message.fix] : [])];
     return changes.map((change) => ({

@@ -49,9 +49,64 @@ export interface Listener {
   failed: (problem: string) => void;
 }
 
-/** The nodes with what stands once for all of a kind. */
-function whole(answer: any): SaidNode[] {
-  return answer.nodes.map((node: any) => ({ ...node, ...answer.kinds[node.kind] }));
+/** A list of which a part is as before; see `ShownDocuments.shorten` in btlang/server/page/shown_documents.py. */
+interface Difference<Item> {
+  head: number;
+  tail: number;
+  items: Item[];
+}
+
+type Placed = { start: number | null; end: number | null; of?: [number, number]; parent?: number };
+
+/** A list after a change of its text: [start, end, units more]. Nodes come in preorder, so that their levels say their parents. */
+export function patched<Item extends Placed>(before: Item[], { head, tail, items }: Difference<Item>, [start, end, longer]: [number, number, number]): Item[] {
+  const moved = <Place extends number | null>(place: Place): Place => (place === null || place <= start || place < end ? place : ((place + longer) as Place));
+  const levels: number[] = [];
+  before.forEach(({ parent = -1 }) => levels.push(parent < 0 ? 0 : levels[parent]! + 1));
+  const latest: number[] = []; // of each level
+  const after: Item[] = [];
+  const add = (item: Item, level: number): void => {
+    latest[level] = after.length;
+    levelsNow.push(level);
+    after.push(item);
+  };
+  const levelsNow: number[] = [];
+  const keep = (from: number, to: number): void => {
+    for (let at = from; at < to; at++) {
+      const item: Item = { ...before[at]!, start: moved(before[at]!.start), end: moved(before[at]!.end) };
+      if (item.of) item.of = [moved(item.of[0]), moved(item.of[1])];
+      const level = levels[at]!;
+      if (item.parent !== undefined) item.parent = level ? latest[level - 1]! : -1;
+      add(item, level);
+    }
+  };
+  keep(0, head);
+  for (const item of items) add(item, (item.parent ?? -1) < 0 ? 0 : levelsNow[item.parent!]! + 1);
+  keep(before.length - tail, before.length);
+  return after;
+}
+
+/** What the page has of the latest document, which the server names. */
+class Shown {
+  private name = "";
+  private nodes: SaidNode[] = [];
+  private outline: Named[] = [];
+
+  /** What to ask for: what it lacks. */
+  get asked(): object {
+    return { shown: this.name };
+  }
+
+  /** The nodes with what is said once for all of a kind, and the outline. */
+  take(answer: any): [SaidNode[], Named[]] {
+    const { change } = answer;
+    const whole = (nodes: any[]): SaidNode[] => nodes.map((node) => ({ ...node, ...answer.kinds[node.kind] }));
+    const { nodes } = answer;
+    this.nodes = change ? patched(this.nodes, { ...nodes, items: whole(nodes.items) }, change) : whole(nodes);
+    this.outline = change ? patched(this.outline, answer.outline, change) : answer.outline;
+    this.name = answer.shown ?? "";
+    return [this.nodes.map((node) => ({ ...node })), this.outline];
+  }
 }
 
 function pause(milliseconds: number): Promise<void> {
@@ -62,6 +117,7 @@ function pause(milliseconds: number): Promise<void> {
 export class Reader {
   private page = crypto.randomUUID?.() ?? String(Math.random());
   private text: string | null = null;
+  private shown = new Shown();
   private busy = false;
   private ended = false;
   private retry: ReturnType<typeof setTimeout> | undefined;
@@ -109,8 +165,10 @@ export class Reader {
         this.listener.failed("");
         await pause(performance.now() - began); // of a long text somebody who types sees messages, and the tree when he stops
         if (!isNewest()) continue;
-        const answer = ok && (await post("/api/document", this.asked(text)));
-        if (answer.nodes && isNewest()) this.listener.understood(text, whole(answer), answer.outline);
+        const answer = ok && (await post("/api/document", { ...this.asked(text), ...this.shown.asked }));
+        if (!answer.nodes) continue;
+        const found = this.shown.take(answer);
+        if (isNewest()) this.listener.understood(text, ...found);
       } catch (error) {
         if (isNewest()) {
           this.listener.failed((error as Error).message);

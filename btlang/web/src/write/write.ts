@@ -1,20 +1,22 @@
 // Missions: a list of those in the library, and one as English and tree side by side.
 import { address } from "../address";
 import { may, type RequestError } from "../api";
-import { fill, h, set } from "../dom";
-import { downloads, pictures, textBlob, type Offer } from "../download";
+import { fill, h, menuButton, set } from "../dom";
+import { downloadItems, pictures, textBlob, type Offer } from "../download";
 import { libraryOf } from "../tasks/library";
 import { command } from "../tasks/queue";
 import { askSchedule } from "../tasks/schedule";
 import { t } from "../texts";
 import { TreeView } from "../tree/tree_view";
 import type { Context, View } from "../view";
+import { nodeAt } from "../watch/words";
 import { ask } from "./ask";
 import { Editor, smallest } from "./editor";
+import { Player } from "../look_back/player";
 import { SavedMission } from "./saved_mission";
 import { merge } from "./merge";
-import { play } from "./play";
 import { FileStore, LibraryStore, type Kept, type Store } from "./store";
+import { Start } from "./start";
 import { Tests } from "./tests";
 import { TreeEdits } from "./tree_edits";
 import { problemOf, Reader, type Message, type Named, type SaidNode } from "./understood";
@@ -58,7 +60,7 @@ class Desk {
   private origin = h("div", { class: "offered origin" });
   private offered = h("div", { class: "offered" });
   private messages = h("ol", { class: "messages", lang: "en" });
-  private outline = h("select", { "aria-label": t("write.outline") });
+  private outline = h("select", { "aria-label": t("write.outline") }, h("option", { value: "0" }, t("write.outline")));
   private text = h("div", { class: "text" });
   private save = h("button", { type: "button", class: "primary", onclick: () => void this.keep() }, t("write.keep"));
   private tree = new TreeView({ label: t("write.tree"), select: (node) => this.selected(node), activate: (node) => this.entered(node), menu: (node) => this.edits.commands(node) });
@@ -72,6 +74,9 @@ class Desk {
   private sort = "english";
   private mayWrite: boolean;
   private closed = false;
+  private trial = h("div", { class: "trial", hidden: true });
+  private player: Player | null = null;
+  private start: Start;
   private unwatch: () => void;
   private leaving = (event: BeforeUnloadEvent): void => {
     this.saved.keepDraft();
@@ -84,6 +89,7 @@ class Desk {
     tests: Store,
   ) {
     this.mayWrite = may(context.me, "editor");
+    this.start = new Start(context, (kind, text) => this.reader.service(kind, text, {}), (text) => (this.editor.text = text));
     this.title = h("h1", { dir: "auto" }, store.name);
     this.reader = new Reader(context.robot, {
       checked: (text, messages, compiles, sort) => this.check(text, messages, compiles, sort),
@@ -119,29 +125,39 @@ class Desk {
     const edit = h("button", { type: "button", "aria-haspopup": "menu" }, t("write.edit"));
     edit.addEventListener("click", () => this.edits.menu(edit));
     const testing = h("button", { type: "button", "aria-expanded": "false", onclick: () => set(testing, { "aria-expanded": String(this.tests.toggle()) }) }, t("tests"));
+    const operates = may(this.context.me, "operator");
+    const more = menuButton(t("write.more"), () => [
+      ...(this.store instanceof LibraryStore && operates ? [{ label: t("write.schedule"), run: () => this.schedule() }] : []),
+      ...(this.mayWrite
+        ? [
+            { label: t("write.format"), run: () => void this.format() },
+            { label: t("write.rename"), run: () => this.rename() },
+            { label: t("write.undo"), run: () => this.editor.undo() },
+            { label: t("write.redo"), run: () => this.editor.redo() },
+          ]
+        : []),
+      ...downloadItems(() => [this.saved.name.replace(/\.\w+$/, ""), Date.now() / 1000], this.offers(), (problem) => this.fail(problem)),
+    ]);
     const tools = h(
       "div",
       { class: "controls" },
+      this.outline,
       this.mayWrite && this.save,
-      this.context.robot && may(this.context.me, "operator") && h("button", { type: "button", title: "Ctrl+Enter", onclick: () => this.run() }, t("write.run")),
-      this.store instanceof LibraryStore && may(this.context.me, "operator") && h("button", { type: "button", onclick: () => this.schedule() }, t("write.schedule")),
+      this.context.robot && operates && h("button", { type: "button", title: "Ctrl+Enter", onclick: () => this.run() }, t("write.run")),
       h("button", { type: "button", title: "Alt+Enter", onclick: () => void this.attempt() }, t("write.try")),
       testing,
-      this.mayWrite && h("button", { type: "button", title: "Shift+Alt+F", onclick: () => void this.format() }, t("write.format")),
-      this.mayWrite && h("button", { type: "button", title: "F2", onclick: () => this.rename() }, t("write.rename")),
-      this.mayWrite && h("button", { type: "button", title: "Ctrl+Z", onclick: () => this.editor.undo() }, t("write.undo")),
-      this.mayWrite && h("button", { type: "button", title: "Ctrl+Y", onclick: () => this.editor.redo() }, t("write.redo")),
-      downloads(() => [this.saved.name.replace(/\.\w+$/, ""), Date.now() / 1000], () => this.offers(), (problem) => this.fail(problem)),
-      this.outline,
+      more,
     );
     const head = h("div", { class: "head" }, h("div", { class: "now" }, this.title, this.state), tools);
     const trunk = h(
       "section",
       { class: "stage card" },
+      this.start.element,
+      this.trial,
       this.mayWrite && h("div", { class: "doing" }, h("button", { type: "button", title: "Insert", onclick: () => this.edits.addSelected() }, t("write.add")), edit),
       this.tree.element,
     );
-    const words = h("section", { class: "stage card" }, this.text, this.problem, this.messages);
+    const words = h("section", { class: "stage card said-text" }, this.text, this.problem, this.messages);
     return h("div", { class: "desk" }, head, this.company, this.origin, this.offered, h("div", { class: "panes" }, words, trunk), this.tests.element);
   }
 
@@ -153,6 +169,8 @@ class Desk {
     removeEventListener("beforeunload", this.leaving);
     this.reader.close();
     this.tests.close();
+    this.player?.close();
+    this.start.close();
     this.editor.close();
     this.tree.close();
   }
@@ -175,6 +193,7 @@ class Desk {
     const before = draft.read();
     if (before && before.text !== kept.text) this.offer(before);
     this.reader.read(this.editor.text);
+    this.start.show(this.mayWrite && !this.editor.text.trim());
     this.tell();
   }
 
@@ -231,6 +250,7 @@ class Desk {
   // -- the text
 
   private changed(text: string): void {
+    this.start.show(this.mayWrite && !text.trim());
     this.tree.element.ariaBusy = "true";
     this.reader.read(text);
     this.saved.changed();
@@ -239,12 +259,23 @@ class Desk {
   private check(text: string, messages: Message[], compiles: boolean, sort: string): void {
     if (text !== this.editor.text) return;
     this.sort = sort;
+    if (!text.trim()) messages = []; // that there's no command yet is no mistake
     this.editor.tell(messages);
-    const items = messages.map((each) =>
-      h("li", { class: each.severity }, h("button", { type: "button", onclick: () => this.editor.go(each.start) }, h("b", {}, each.code), ` ${each.message}`)),
-    );
-    fill(this.messages, ...(items.length ? items : [h("li", { class: "fine" }, t("write.fine"))]));
+    const items = messages.map((each) => this.message(each));
+    fill(this.messages, ...(items.length || !text.trim() ? items : [h("li", { class: "fine" }, t("write.fine"))]));
     if (!compiles) this.tree.element.classList.add("stale");
+  }
+
+  /** A message with its line, which is the way there, and a button for each fix. */
+  private message(each: Message): HTMLElement {
+    const { view } = this.editor;
+    const fixes = this.mayWrite ? this.editor.fixes(each) : [];
+    return h(
+      "li",
+      { class: each.severity },
+      h("button", { type: "button", class: "go", title: each.code, onclick: () => this.editor.go(each.start) }, h("b", {}, t("write.line", { line: this.editor.lineAt(each.start) })), ` ${each.message}`, each.hint && h("small", {}, each.hint)),
+      ...fixes.map(({ name, apply }) => h("button", { type: "button", class: "fix", dir: "auto", onclick: () => apply(view, each.start, each.end) }, name)),
+    );
   }
 
   private understand(text: string, nodes: SaidNode[], outline: Named[]): void {
@@ -262,13 +293,8 @@ class Desk {
   /** The caret shows the node: the smallest that is said there. */
   private moved(at: number): void {
     if (this.understood !== this.editor.text) return;
-    let best: number | null = null;
-    let size = Infinity;
-    this.nodes.forEach(({ start, end }, index) => {
-      if (start === null || end === null || at < start || at > end || end - start >= size) return;
-      [best, size] = [index, end - start];
-    });
-    if (best !== null && best !== this.tree.selected) this.tree.select(best);
+    const best = nodeAt(this.nodes, at);
+    if (best >= 0 && best !== this.tree.selected) this.tree.select(best);
   }
 
   private selected(node: number): void {
@@ -324,10 +350,21 @@ class Desk {
   /** Runs the mission in the simulated world, on the server. */
   private async attempt(): Promise<void> {
     fill(this.state, t("write.trying"));
-    const film = await this.reader.service("try", this.editor.text, {});
+    const text = this.editor.text;
+    const film = await this.reader.service("try", text, {});
     this.tell();
     if (!film.ok) return this.fail(problemOf(film));
-    play(t("write.try"), film);
+    this.player?.close();
+    const close = (): void => {
+      this.player?.close();
+      this.player = null;
+      this.editor.light([]);
+      fill(this.trial);
+      this.trial.hidden = true;
+    };
+    const player = (this.player = new Player(film, 0, () => undefined, (places) => this.editor.text === text && this.editor.light(places)));
+    fill(this.trial, h("div", { class: "doing" }, h("h2", {}, t("write.try")), h("button", { type: "button", onclick: close }, t("close"))), player.element);
+    this.trial.hidden = false;
   }
 
   /** Gives the mission to the robot. */

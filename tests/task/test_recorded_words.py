@@ -1,0 +1,72 @@
+"""The words of a task that was done under house rules, with words of a component, in its recording and live."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import pytest
+
+from btlang.components.words import robot_words
+from btlang.server.page.processes import comparison, film
+from btlang.task.execution.missions import MissionReader
+from btlang.task.layer import TaskLayer
+from btlang.task.store.records import TaskState
+from tests.components.robots import machine, robot_file
+from tests.task.layers import submit, wait_for
+
+RULES = """\
+# What holds all day.
+whenever the battery is below 5%:
+    dock
+whenever somebody says "stop", wait 1 second
+"""
+TEXT = 'say "hello {name}"\nbrew tea\ncheck that the battery is low\n'
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, Any], list[str]]:
+    """What was told live of the run of a task that failed, and its recordings."""
+    folder = tmp_path_factory.mktemp("robot")
+    robot = robot_file(folder, machine())
+    (folder / "rules.txt").write_text(RULES, encoding="utf-8")
+    reader = MissionReader(robot_words(robot))
+    options: dict[str, Any] = {"rules": str(folder / "rules.txt"), "recordings": str(folder / "recordings")}
+    with TaskLayer(robot, reader, folder=str(folder / "data"), speed="max", **options) as layer:
+        watched = layer.feed.watch()
+        assert next(watched)["type"] == "hello"
+        for _ in range(2):
+            wait_for(layer, submit(layer, TEXT, values={"name": "Ann"}), TaskState.FAILED)
+        told = next(message for message in watched if message["type"] == "run" and message["task"])
+        watched.close()
+    return told, sorted(map(str, (folder / "recordings").iterdir()))
+
+
+def test_a_recording_has_the_words_of_mission_component_and_rules(done: tuple[dict[str, Any], list[str]]) -> None:
+    data = json.loads(film(done[1][0]))
+    assert data["text"] == TEXT
+    assert [words for _, _, words in data["rules"]] == [
+        "whenever the battery is below 5%", 'whenever somebody says "stop", wait 1 second',
+    ]  # fmt: skip
+    said = [data["text"][node["start"] : node["end"]] for node in data["nodes"][data["root"] :]]
+    assert said[0] == TEXT.strip()
+    assert said[-2:] == ["brew tea", "battery is low"]
+    assert all(node["start"] is None for node in data["nodes"][: data["root"]])
+    assert data["nodes"][data["failed"]]["label"] == "battery is low"
+    assert "Brew" not in data["why"]
+    assert "{" not in data["why"]
+
+
+def test_live_and_replay_tell_the_same(done: tuple[dict[str, Any], list[str]]) -> None:
+    told, data = done[0], json.loads(film(done[1][0]))
+    assert told["text"] == data["text"]
+    assert (told["rules"], told["root"]) == (data["rules"], data["root"])
+    live = [words for _, _, words, _ in told["nodes"]]
+    filled = [node["label"].replace("{name}", "Ann") for node in data["nodes"]]
+    assert [words.replace("{name}", "Ann") for words in live] == filled
+
+
+def test_two_runs_are_compared_with_their_words(done: tuple[dict[str, Any], list[str]]) -> None:
+    data = json.loads(comparison(*done[1]))
+    assert [each["text"] for each in data["films"]] == [TEXT, TEXT]
+    assert data["missions"] == []
