@@ -14,6 +14,8 @@ from btlang.task.execution.missions import MissionReader
 from btlang.task.layer import LABEL, TaskLayer, make_robot_layer, read_schedules
 from btlang.vocabulary.shipped import STANDARD_BODY
 
+from .layers import layer_in, submit, wait_until
+
 WEEK = """
 [[schedule]]
 mission = "tour"
@@ -108,3 +110,15 @@ def test_they_are_in_the_folder_of_the_robot_file(robot: Path, key: str) -> None
         robot.write_text(text.replace(line, f'{key} = "{other}"'), encoding="utf-8")
         with pytest.raises(MissionError, match="in the folder of the robot file"):
             read_body(str(robot))
+
+
+def test_a_rule_of_a_single_command_acts(tmp_path: Path) -> None:
+    """It was taken for a command of the mission, so nobody heard that a rule acts."""
+    rules = tmp_path / "rules.txt"
+    rules.write_text("whenever the battery is below 60%, wait 10 minutes\n")
+    with layer_in(tmp_path, rules=str(rules)) as layer:
+        submit(layer, "wait 10 minutes")
+        wait_until(lambda: layer.executor.task is not None and layer.executor.run is not None)
+        assert not layer.executor.is_rule_acting
+        layer.session.robot.power.set_level(50.0)
+        wait_until(lambda: layer.executor.is_rule_acting)

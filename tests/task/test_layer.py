@@ -165,18 +165,6 @@ def test_house_rules_hold_during_and_between_missions(tmp_path: Path) -> None:
     assert printer.texts == ["a", "b", "c"]
 
 
-def test_a_rule_of_a_single_command_acts(tmp_path: Path) -> None:
-    """It was taken for a command of the mission, so nobody heard that a rule acts."""
-    rules = tmp_path / "rules.txt"
-    rules.write_text("whenever the battery is below 60%, wait 10 minutes\n")
-    with layer_in(tmp_path, rules=str(rules)) as layer:
-        submit(layer, "wait 10 minutes")
-        wait_until(lambda: layer.executor.task is not None and layer.executor.run is not None)
-        assert not layer.executor.is_rule_acting
-        layer.session.robot.power.set_level(50.0)
-        wait_until(lambda: layer.executor.is_rule_acting)
-
-
 def test_a_house_rule_that_fails_stops_the_robot_until_somebody_helps(tmp_path: Path) -> None:
     rules = tmp_path / "rules.txt"
     rules.write_text("whenever the battery is below 60%, grasp the book\n")

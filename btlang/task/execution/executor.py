@@ -37,9 +37,7 @@ _END = 8.0  # seconds of real time that a mission gets to halt and to bring the 
 _ANSWER = 3.0  # seconds of real time that a mission gets to end when it is asked to, before who asked is answered
 NOTHING_TO_DO = "there was nothing to do"
 """The reason of a task whose mission was skipped as a whole."""
-_BLOCKED = "house rule"
-_SCANS = 1.0  # in a second that are recorded
-"""The setting of the store that says why all tasks wait."""
+_BLOCKED, _SCANS = "house rule", 1.0  # the setting that says why all tasks wait; scans in a second of a recording
 
 
 class Executor:
@@ -159,7 +157,7 @@ class Executor:
         blocked = self._store.setting(_BLOCKED)
         if blocked:
             return f"a house rule failed: {blocked}"
-        if self._task is None and self._acts():
+        if self._task is None and self.is_rule_acting:
             return "a house rule acts"
         return "the store can't be written to" if self._outbox else ""
 
@@ -260,16 +258,12 @@ class Executor:
     def _leave_idle(self) -> None:
         run = self._run
         due = self._next is not None and self._now() >= self._next
-        if run is not None and self._task is None and (self._new or due) and not self._acts():
+        if run is not None and self._task is None and (self._new or due) and not self.is_rule_acting:
             run.stop()
 
     @property
     def is_rule_acting(self) -> bool:
         """Return whether a house rule acts now, during a task or between tasks."""
-        return self._acts()
-
-    def _acts(self) -> bool:
-        """Return whether a house rule acts now."""
         return self._watch is not None and bool(self._watch.acting)
 
     def _do(self, task: Task) -> None:
@@ -309,9 +303,8 @@ class Executor:
                 run.nodes.blackboard.set(value_key(name), value)
         commands = commands_of(run, mission)
         self._watch = RunWatch(indices_of(run, self._rules.reactions), commands, self.wake)
-        add_sinks(run, self._watch, *self._sinks(task, mission, run))
-        if recorder is not None:
-            add_sinks(run, Sampler(run.bus, run.nodes.blackboard, _SCANS))
+        samplers = [Sampler(run.bus, run.nodes.blackboard, _SCANS)] if recorder is not None else []
+        add_sinks(run, self._watch, *self._sinks(task, mission, run), *samplers)
         run.after_ticks(partial(self._after_tick, task, run, self._watch))
         return run
 

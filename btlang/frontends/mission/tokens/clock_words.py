@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
+
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import JOINTS, Called, OnDays, Token, constraint_of, statement_start
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
@@ -15,6 +17,7 @@ _TIME = "time_of_day"
 _WEEKDAYS = frozenset(map(str.lower, WEEKDAYS))
 _SIMPLE = frozenset(("command", "name", "wait", "nothing", *JOINTS))
 _TODAY, _DAYTIME = "TodayIs", "TimeOfDay"
+_TODAY, _DAYS = "TodayIs", "days"
 _KEEP_OUT, _LATEST = "keep out", "12:00"
 
 
@@ -68,10 +71,42 @@ class ClockWords(SentenceReader):
         self._tokens += [Token("unless", text.starts[at], text.ends[at + 1]), condition]
         return match.last
 
+    def _not_on_days(self, at: int) -> int:
+        """`at noon, wave, except on Mondays`: unless it is one of these days."""
+        text, entry = self._text, self._vocabulary.entry(_TODAY)
+        behind = self._context.values.exception(text, at)
+        on = {phrase.split()[0] for phrase in self._vocabulary.roles["on_days"]}
+        last, asked = behind + 1, list[Token]()
+        while behind and entry is not None and self._tokens and text.words[behind] in on:
+            days = self._context.read(_DAYS, text, last)
+            if days is None:
+                break
+            start, last = text.starts[last], days[1]
+            said = Called(entry, ((entry.slots[0].name, days[0]),))
+            asked += [Token("or", start, start)] if asked else []
+            asked.append(Token("condition", start, text.ends[last - 1], said))
+            last += text.words[last] in self._context.joiners
+        if not asked:
+            return 0
+        self._tokens += [Token("unless", text.starts[at], text.ends[behind]), *asked]
+        return bisect_left(text.ends, asked[-1].end) + 1
+
+    def _until_then(self, at: int) -> int:
+        """`avoid the hall until 7 am. Wave until then`: until the time that was said last."""
+        text, roles = self._text, self._vocabulary.roles
+        is_until = any(phrase.split()[0] == text.words[at] for phrase in roles["until_time"])
+        if not is_until or text.words[at + 1] not in roles["then"] or not self._is_end(at + 2):
+            return 0
+        said = next((token for token in reversed(self._tokens) if token.kind == "until_time"), None)
+        if said is None:
+            return 0
+        self._tokens.append(Token("until_time", text.starts[at], text.ends[at + 1], said.value))
+        return at + 2
+
     def hours(self, at: int) -> int:
         """`never enter the hall after 6 pm`, `... between 10 pm and 6 am`: while it is then."""
         tokens, start = self._tokens, self._text.starts[at]
-        if end := self._not_then(at):
+        if end := self._not_then(at) or self._not_on_days(at) or self._until_then(at):
             return end
         if not tokens or self._text.words[at] not in self._vocabulary.asking["hours"]:
             return 0
@@ -172,8 +207,9 @@ class ClockWords(SentenceReader):
         tokens, start = self._tokens, asked.start
         first = statement_start(tokens, len(tokens))
         form = [Token("comma", start, start), Token("if", start, start), asked]
-        if first == len(tokens) - 1 and self._text.words[end] == ",":
-            tokens += form
+        if first == len(tokens) - 1 and self._begins_there(end):
+            here = self._text.starts[end]
+            tokens += form if self._text.words[end] == "," else [*form, Token("comma", here, here)]
             return end
         behind = self._phrase(self._behind_comma(end))
         joins = behind is not None and behind.meaning.role in ("and", "then")

@@ -27,10 +27,12 @@ from btlang.frontends.mission.token import (
     texts_of,
 )
 from btlang.text.source import Span
+from btlang.text.time_of_day import seconds_of, shown
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.value_type import PLACE
 
+_DAYTIME, _MOMENT = "TimeOfDay", 600.0  # seconds in which a rule notices that it has become a time
 _EXAMPLE = "it is after 6 pm"
 _HEADS = frozenset(("every", "every_day", "at", "delay"))
 _OPEN, GO = "OpenZone", "GoTo"
@@ -48,7 +50,7 @@ _WHILE = frozenset(("while", "if", "unless"))
 def with_ends(tokens: list[Token], vocabulary: Lexicon, span: Callable[[int, int], Span]) -> list[Diagnostic]:
     """Make two statements of each constraint to keep out that depends on a condition: the second opens its zones.
 
-    Returns what is wrong with constraints that a time ends (BT161), or that stand in a statement with others before a
+    Returns what is wrong with constraints that a duration ends (BT161), or that stand in a statement with others before a
     condition (BT151); `span` gives the place of some characters.
     """
     opening = vocabulary.entry(_OPEN)
@@ -68,6 +70,10 @@ def with_ends(tokens: list[Token], vocabulary: Lexicon, span: Callable[[int, int
             pass  # `avoid the hall until 6 pm, then go to the hall`
         elif constraint is not None and constraint.kind == "keep in" and until.kind in WAITING:
             _wait(tokens, at, vocabulary)
+        elif is_timed and begins and opening is not None and (clock := vocabulary.entry(_DAYTIME)) is not None:
+            then = Token("condition", until.start, until.end, _comes(str(until.value), clock))
+            tokens[at + 1 : at + 2] = [Token("until", until.start, until.start), then]
+            _open_again(tokens, at, opening)
         elif constraint is not None and until.kind != "until":
             forbidden, whole = span(tokens[at].start, tokens[at].end).text, span(tokens[at].start, until.end)
             example = f"{forbidden} {vocabulary.word('until')} {_EXAMPLE}"
@@ -87,6 +93,12 @@ def with_ends(tokens: list[Token], vocabulary: Lexicon, span: Callable[[int, int
                 problems.append(_two_readings(tokens, at, vocabulary, span))
         at += 1
     return problems
+
+
+def _comes(time: str, clock: Entry) -> Called:
+    """The condition that it has just become a time of day: `after 6 am` would hold in the evening before."""
+    over = shown(seconds_of(time) + _MOMENT)
+    return Called(clock, (("at_least", time), ("at_most", over)))
 
 
 def _end_whole_rules(tokens: list[Token], vocabulary: Lexicon, span: Callable[[int, int], Span]) -> None:

@@ -46,6 +46,8 @@ def with_repeats_apart(tokens: list[Token], source: Source) -> Iterator[Diagnost
     BT150 where they are to be done elsewhere, and were done in no one place.
     """
     for at in reversed([at for at, token in enumerate(tokens) if token.kind in AGAIN and at > 0]):
+        if tokens[at - 1].kind == "and" and tokens[at + 1 : at + 2] and tokens[at + 1].kind == "at":
+            _at_both(tokens, at)
         if tokens[at - 1].kind != "stop":
             continue
         kinds = [token.kind for token in tokens[at : at + 3]]
@@ -103,6 +105,17 @@ def with_questions_once(tokens: list[Token], source: Source) -> Iterator[Diagnos
 
 def _asks(token: Token) -> bool:
     return token.kind == "command" and isinstance(token.value, Called) and token.value.entry.id == ASK
+
+
+def _at_both(tokens: list[Token], at: int) -> None:
+    """`A at 6 pm and again at 9 pm`: at both times."""
+    first = statement_start(tokens, at)
+    commands = tokens[first : at - 2]
+    if tokens[at - 2].kind == "at" and commands and all(token.kind in _PLAIN for token in commands):
+        here = tokens[at].start
+        end = Token("close", tokens[at - 2].end, tokens[at - 2].end)
+        tokens[at - 1 : at + 1] = [end, Token("semi", here, here), *_bracketed(commands, tokens[at])]
+        tokens.insert(first, Token("open", tokens[first].start, tokens[first].start))
 
 
 def with_times_first(tokens: list[Token]) -> None:

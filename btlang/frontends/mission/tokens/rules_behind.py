@@ -22,7 +22,9 @@ from btlang.vocabulary.lexicon import Lexicon
 _ENDING = ("until", "until_time")
 _EACH_TIME = "it may be how often each time, or in all"
 _RULE = "whenever bumped, say ouch 3 times, or: the first time bumped, say ouch"
+_PACES = ("every", "every_day", "weekly", "at")
 _DONE = ("command", "name")
+_PLAIN = frozenset((*_DONE, "wait", "open", "close", "count", *JOINTS))
 _ASKED = (*RULES, "if")
 
 
@@ -49,25 +51,30 @@ def with_exceptions(tokens: list[Token], vocabulary: Lexicon, source: Source) ->
     """Make `A every hour, but not if C` ask each time, and `whenever C, A, but not while D` a rule for both together:
     where D ends and C still holds, A is done then. `A, but not while D` alone can be read in two ways (BT151).
     """
+    leaving_out = {phrase.split()[0] for role in ("but", "except") for phrase in vocabulary.roles[role]}
     while_words = {word for phrase in vocabulary.roles["while"] for word in phrase.split()}
     for at in reversed([at for at, token in enumerate(tokens) if token.kind == "unless" and at > 0]):
         said = source.text[tokens[at].start : tokens[at].end].lower().split()
-        if said[:1] == [] or said[0] not in vocabulary.roles["but"]:
+        if said[:1] == [] or said[0] not in leaving_out:
             continue
         end, comma = _behind(tokens, at), run_start(tokens, at, ("comma",))
         first, last = statement_start(tokens, at), run_start(tokens, statement_end(tokens, at), STATEMENT_ENDS)
         lasts, unless = not while_words.isdisjoint(said), tokens[at:end]
         if comma <= first or len(unless) < 2:
             continue  # nothing is done before it, or nothing is asked
-        every = next((each for each in range(first, comma) if tokens[each].kind == "every"), -1)
+        every = next((each for each in range(first, comma) if tokens[each].kind in _PACES), -1)
         rule = _behind(tokens, first) if tokens[first].kind in RULES else last
         if lasts and rule < comma and end == last:
             both = [*_one(tokens[first + 1 : rule]), _joint("and", unless[0]), _joint("not", unless[0])]
             tokens[first + 1 : end] = [*both, *_one(unless[1:]), *tokens[rule:comma]]
         elif every == comma - 1 >= first:
             tokens[every:end] = [*unless, tokens[every]]
-        elif every == first and tokens[first + 1].kind == "comma" and first + 2 < comma and end == last:
-            tokens[first + 2 : end] = [*_in_brackets(tokens[first + 2 : comma]), *unless]
+        elif every == first or (not lasts and all(token.kind in _PLAIN for token in tokens[first:comma])):
+            begin = run_end(tokens, first + (every == first), ("comma",))
+            body = _in_brackets(tokens[begin:comma])
+            tokens[begin:end] = [*body, *unless]
+            if every == first and begin == first + 1:
+                tokens[begin:begin] = [_joint("comma", body[0])]
         elif lasts:
             span = Span(source, tokens[first].start, tokens[end - 1].end)
             done, asked = (source.text[part[0].start : part[-1].end] for part in (tokens[first:comma], unless[1:]))
