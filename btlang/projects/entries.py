@@ -27,6 +27,7 @@ _SAME = {"int32_t": "int", "unsigned": "unsigned int", "uint32_t": "unsigned int
 _SCALARS = ("bool", "double", "float", "int", "unsigned int", "int8_t", "int16_t", "uint8_t", "uint16_t")
 _TEXT = "std::string"
 _MESSAGE = re.compile(r"\w+::msg::\w+")
+_LIST = re.compile(r"std::(?:vector|deque|list)\s*<(.+)>")
 _MOST_PLACES = 3
 _ISOLATED = "Give it to the SubTree, or set it in this tree, which sees no other entries."
 
@@ -250,6 +251,8 @@ def _readers(entries: Mapping[str, TreeEntries], flow: EntryFlow, tree: str, key
 def conflicting_types(entries: Mapping[str, TreeEntries]) -> Iterator[Diagnostic]:
     """Report BT132 for ports whose entry has another type since an earlier port, as BehaviorTree.CPP 4 refuses them.
 
+    BT246 where it converts the text that an output sets.
+
     Entries that another tree may see are left out, as they may have their type from there; so is version 3.
     """
     outside: dict[str, set[str]] = {}
@@ -268,17 +271,25 @@ def conflicting_types(entries: Mapping[str, TreeEntries]) -> Iterator[Diagnostic
             if use.key in unsure or port_content(use.node.id, use.port) == SCRIPT:
                 continue
             before = first.setdefault(use.key, use)
-            if _differ(before.type, use.type):
+            notes = ((attribute_value(before.node, before.port), f"here '{use.key}' gets its type"),)
+            place = attribute_value(use.node, use.port)
+            if before.type == _TEXT and not before.reads and use.type in _SCALARS:
+                yield diagnostic("BT246", place, notes, None, key=use.key, id=use.node.id, port=use.port, type=use.type)
+            elif _differ(before.type, use.type):
                 reason = f"'{use.key}' is of type {before.type}, and its port {use.port} is of type {use.type}"
-                notes = ((attribute_value(before.node, before.port), f"here '{use.key}' gets its type"),)
-                yield diagnostic(
-                    "BT132", attribute_value(use.node, use.port), notes, None, id=use.node.id, reason=reason
-                )
+                yield diagnostic("BT132", place, notes, None, id=use.node.id, reason=reason)
+
+
+def _content(type: str) -> str:
+    """Return the type of what is in a list, "-" if the type is none."""
+    return match[1].strip() if (match := _LIST.fullmatch(type)) else "-"
 
 
 def _differ(first: str, later: str) -> bool:
     """Return whether two types surely differ, the first of which isn't a text, from which everything can be read."""
     first, later = _SAME.get(first, first), _SAME.get(later, later)
+    if _content(first) == later or _content(later) == first:
+        return True
     if first == later or not (first in _SCALARS or _MESSAGE.fullmatch(first)):
         return False
     return later in _SCALARS or (first in _SCALARS and (later == _TEXT or _MESSAGE.fullmatch(later) is not None))

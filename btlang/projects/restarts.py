@@ -14,7 +14,8 @@ from btlang.tree.node import Node
 def restarted_actions(nodes: Iterable[Node], sort_of: Callable[[Node], str]) -> Iterator[Diagnostic]:
     """Report BT243 for actions that succeed and start again, because a later child of a ReactiveSequence may run on.
 
-    `sort_of` says of a leaf whether it is an "Action" that takes time, a "Condition", or "" for what isn't known.
+    `sort_of` says of a leaf whether it is an "Action" that isn't meant for each tick, a "Condition", or "" for what
+    isn't known.
     """
     for node in nodes:
         kind = CATALOGUE.get(node.id)
