@@ -33,7 +33,7 @@ from btlang.projects.ports import (
     subtree_problems,
     wrong_children,
 )
-from btlang.projects.restarts import double_quotes, restarted_actions
+from btlang.projects.restarts import double_quotes, may_be_repeated, restarted_actions
 from btlang.projects.unused import (
     count_times,
     keys_read,
@@ -139,7 +139,7 @@ class _Check:
 
     def _sort(self, node: Node) -> str:
         """Return whether a leaf is an "Action" that isn't meant to be done at each tick, a "Condition", or "" if that
-        isn't known: actions of others that have outputs may compute them anew, and some publish something at each tick.
+        isn't known: actions of others that have outputs may compute them anew, and what sets a value may set it again.
         """
         kind, entry = CATALOGUE.get(node.id), self._vocabulary.entries.get(node.id, (None,))[0]
         if kind is not None:  # scripts and the like are meant to run at each tick
@@ -151,8 +151,9 @@ class _Check:
             return ""
         if model.kind == "Condition":
             return "Condition"
-        outputs = any(port.direction != "input" for port in model.ports)
-        return "Action" if model.kind == "Action" and not (outputs or node.id.startswith("Pub")) else ""
+        if model.kind != "Action" or any(port.direction != "input" for port in model.ports):
+            return ""
+        return "" if may_be_repeated(node.id, self._sources.is_instant) else "Action"
 
     def _ids_from_elsewhere(self, vocabulary: Lexicon) -> set[str]:
         """Return the ids of leaves that aren't the vocabulary's: their models differ, or their files have others,

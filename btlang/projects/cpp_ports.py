@@ -42,6 +42,7 @@ _REGISTERED = (
 )
 _KINDS = {"Condition": "Condition", "Action": "Action", "Decorator": "Decorator", "Control": "Control"}
 """Of nodes, by a word in the name of the class of the library from which theirs is made."""
+_INSTANT = "SyncActionNode"
 _REGISTERING = "registerScriptingEnum"
 _ENUM = re.compile(r"registerScriptingEnum\s*\(\s*\"(\w+)\"")
 _ENUMS = re.compile(r"registerScriptingEnums\b|registerScriptingEnum\s*\(\s*[^\s\"]")
@@ -84,6 +85,7 @@ class CppSources:
     def __init__(self, folders: Sequence[str] = ()) -> None:
         self._folders = folders
         self._registering_enums: list[str] = []
+        self._instant: set[str] = set()
 
     @cached_property
     def enums(self) -> tuple[frozenset[str], bool]:
@@ -96,6 +98,10 @@ class CppSources:
             names.update(match[1] for match in _ENUM.finditer(text))
             is_complete = is_complete and _ENUMS.search(text) is None
         return frozenset(names), is_complete
+
+    def is_instant(self, node_id: str) -> bool:
+        """Return whether the class of a node says that it ends at once."""
+        return node_id in self.models and node_id in self._instant
 
     @cached_property
     def models(self) -> Mapping[str, tuple[NodeModel, Span]]:
@@ -128,6 +134,8 @@ class CppSources:
             kind = next((kind for word, kind in _KINDS.items() if line and word in line[-1].base), "")
             if not line:  # a function
                 kind = "Condition" if "SimpleCondition" in place.text else "Action"
+            if line and line[-1].base == _INSTANT:
+                self._instant.add(node_id)
             models[node_id] = NodeModel(kind, node_id, tuple(_ports(line))), line[0].place if line else place
         return models
 
@@ -157,7 +165,11 @@ def _line(name: str, classes: Mapping[str, _Class]) -> list[_Class]:
 
 def _ports(line: Sequence[_Class]) -> Iterator[PortModel]:
     """Yield the ports of a class and its bases, without those that a nearer class has."""
-    spared = {port for each in line for port in each.spared} - {port for each in line for port in each.needed}
+    needed = {port for each in line for port in each.needed}
+    spared = {port for each in line for port in each.spared} - needed
+    if spared or needed:  # a port that isn't read is one that nobody needs
+        ports = (port for each in line for port in each.ports.values())
+        spared.update(port.name for port in ports if port.direction != "output" and port.name not in needed)
     ports = {port.name: port for each in reversed(line) for port in each.ports.values()}
     for port in ports.values():
         yield port.replace(default="") if port.default is None and port.name in spared else port

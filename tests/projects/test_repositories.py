@@ -204,19 +204,28 @@ def test_types_of_an_entry(
 
 
 @pytest.mark.parametrize(
-    ("model", "warns"),
+    ("action", "model", "warns"),
     [
-        ('<Action ID="First"/>', True),
-        ('<Condition ID="First"/>', False),
-        ('<Action ID="First"><output_port name="pose"/></Action>', False),
-        ("", False),
+        ("Grip", '<Action ID="Grip"/>', True),
+        ("Grip", '<Condition ID="Grip"/>', False),
+        ("Grip", '<Action ID="Grip"><output_port name="pose"/></Action>', False),
+        ("Grip", "", False),
+        ("CheckGrip", '<Action ID="CheckGrip"/>', False),
+        ("PublishGrip", '<Action ID="PublishGrip"/>', False),
+        ("SetGrip", '<Action ID="SetGrip"/>', True),
+        ("SetFlag", "", False),
+        ("SetArm", "", True),
     ],
 )
 def test_an_action_of_others_that_starts_again(
-    model: str, warns: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    action: str, model: str, warns: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Actions with outputs may be there to compute them anew."""
+    """Actions with outputs may be there to compute them anew, and what sets a value at once may set it again."""
     models = f'{model}<Action ID="Then"/>'
-    tree = '<ReactiveSequence><First/><SubTree ID="Rest"/></ReactiveSequence>'
+    port = 'return {BT::InputPort<bool>("on")}; } };'
+    code = "class %s : public BT::%s { static BT::PortsList providedPorts() { " + port
+    classes = (code % each for each in (("SetFlag", "SyncActionNode"), ("SetArm", "StatefulActionNode")))
+    (tmp_path / "nodes.cpp").write_text("\n".join(classes), "utf-8")
+    tree = f'<ReactiveSequence><{action} on="true"/><SubTree ID="Rest"/></ReactiveSequence>'
     write(tmp_path, "a.xml", TREE.format("Main", tree), TREE.format("Rest", "<Then/>"), models=models)
     assert ("BT243" in {problem["code"] for problem in problems(capsys, str(tmp_path))}) == warns
