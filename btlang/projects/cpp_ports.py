@@ -168,8 +168,8 @@ def _ports(line: Sequence[_Class]) -> Iterator[PortModel]:
     needed = {port for each in line for port in each.needed}
     spared = {port for each in line for port in each.spared} - needed
     if spared or needed:  # a port that isn't read is one that nobody needs
-        ports = (port for each in line for port in each.ports.values())
-        spared.update(port.name for port in ports if port.direction != "output" and port.name not in needed)
+        listed = (port for each in line for port in each.ports.values())
+        spared.update(port.name for port in listed if port.direction != "output" and port.name not in needed)
     ports = {port.name: port for each in reversed(line) for port in each.ports.values()}
     for port in ports.values():
         yield port.replace(default="") if port.default is None and port.name in spared else port

@@ -14,9 +14,10 @@ from btlang.frontends.mission.token import NodeCall
 from btlang.text.source import Span
 from btlang.text.spelling import respellings
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, statements
-from btlang.tree.catalogue import SUBTREE
+from btlang.tree.catalogue import SEQUENCE, SUBTREE
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.node_forms import node_forms_by_start
 from btlang.vocabulary.node_words import is_port, read_id, role_end, subtree_named
 from btlang.vocabulary.trie import TrieNode
 
@@ -69,6 +70,42 @@ def read_node(
         if quoted is None:
             raise Unreadable(at, "the name of the subtree in quotes")
         ports["ID"], at = quoted
+    return _details(reader, at, node_id, ports)
+
+
+def read_form(text: Words, at: int, vocabulary: Lexicon, names: TrieNode | None = None) -> tuple[NodeCall, int] | None:
+    """A node that is said with the children below it, and where it ends: by a form such as `at most 2 times a second:`,
+    with a name before it, or, if it is a sequence, by its name alone: `"say hello":`. None for other words.
+    """
+    reader, words, name = _Reader(text, vocabulary, names), text.words, ""
+    try:
+        if words[at][0] == '"':
+            name, at = reader.text(at)
+            if words[at] == ":" and words[at + 1] in (END_OF_STATEMENT, END_OF_TEXT):
+                return NodeCall(SEQUENCE, (), name), at
+            if words[at] != ",":
+                return None
+            at += 1
+        for form in node_forms_by_start(vocabulary).get(words[at], ()):
+            end, ports = at + len(form.before), dict[str, str]()
+            if tuple(words[at:end]) != form.before:
+                continue
+            if form.value is not None:
+                ports[form.port] = form.value
+            elif form.port:
+                ports[form.port], end = reader.text(end)
+            behind = end + len(form.after)
+            if tuple(words[end:behind]) == form.after:
+                call, end = _details(reader, behind, form.id, ports)
+                if words[end] == ":" and not (name and call.name):
+                    return call.replace(name=name or call.name), end
+    except Unreadable:
+        pass
+    return None
+
+
+def _details(reader: _Reader, at: int, node_id: str, ports: dict[str, str]) -> tuple[NodeCall, int]:
+    """The node with what `called`, `with` and `giving` say of it."""
     name = ""
     called = reader.word("called", at)
     if called:
@@ -84,18 +121,15 @@ def read_details(
 
     It has no id. None where nothing of that kind follows, or it can't be read. Raises GivenTwice.
     """
-    reader, ports, name, first = _Reader(text, vocabulary, names), dict(taken), "", at
+    first = at
     try:
-        called = reader.word("called", at)
-        if called:
-            name, at = reader.text(called)
-        outputs, at = reader.ports(at, ports)
+        call, at = _details(_Reader(text, vocabulary, names), at, "", dict(taken))
     except GivenTwice:
         raise
     except Unreadable:
         return None
-    own = tuple((port, value) for port, value in ports.items() if port not in taken)
-    return (NodeCall("", own, name, tuple(outputs)), at) if at > first else None
+    own = tuple((port, value) for port, value in call.ports if port not in taken)
+    return (call.replace(ports=own), at) if at > first else None
 
 
 def outputs_at(text: Words, at: int, vocabulary: Lexicon) -> list[str]:

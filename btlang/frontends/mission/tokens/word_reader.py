@@ -10,7 +10,7 @@ from bisect import bisect_right
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.symbols.includes import ROLE as INCLUDE
 from btlang.frontends.mission.symbols.names import Names
-from btlang.frontends.mission.symbols.nodes import Unreadable, read_node, unreadable
+from btlang.frontends.mission.symbols.nodes import Unreadable, read_form, read_node, unreadable
 from btlang.frontends.mission.symbols.prefixes import SEPARATORS, Prefix, span_of
 from btlang.frontends.mission.token import (
     BEFORE_CONDITIONS,
@@ -147,6 +147,9 @@ class WordReader:
 
     def _phrase(self, at: int, last: int) -> int:
         """What begins at a word, known or unknown."""
+        form = self._form(at)
+        if form:
+            return form
         match = self._without_measure(self._requests.with_name(self._match(at), at), at)
         if match is not None and match.meaning.role in NODE_ROLES:
             if end := self._node(match, at):
@@ -456,6 +459,17 @@ class WordReader:
             self._tokens.append(Token("unknown", span.start, span.end))
             return bisect_right(self._text.starts, span.end - 1)
         self._tokens.append(read[0])
+        return read[1]
+
+    def _form(self, at: int) -> int:
+        """A node that is said with the children below it, at the start of a statement. Returns where to go on, or 0."""
+        tokens, text = self._tokens, self._text
+        if statement_start(tokens, len(tokens)) != len(tokens):
+            return 0
+        read = read_form(text, at, self._vocabulary, self._names.definitions.trie)
+        if read is None:
+            return 0
+        tokens.append(Token("node", text.starts[at], text.ends[read[1] - 1], read[0]))
         return read[1]
 
     def _node(self, head: Match, at: int) -> int:
