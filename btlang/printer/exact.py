@@ -17,7 +17,7 @@ from btlang.tree import ast
 from btlang.tree.catalogue import SEQUENCE, SUBTREE
 from btlang.vocabulary.language_tables import CHANGING
 from btlang.vocabulary.lexicon import DEFINING, Lexicon
-from btlang.vocabulary.node_forms import node_forms
+from btlang.vocabulary.node_forms import node_details, node_forms
 from btlang.vocabulary.node_words import id_of_name, is_port, said_id, subtree_named
 from btlang.vocabulary.trie import longest
 
@@ -76,11 +76,24 @@ def _details(node: ast.Exact | ast.Phrase, ports: dict[str, str], printer: Print
     vocabulary, head = printer.vocabulary, ""
     if node.name:
         head += f" {vocabulary.word('called')} {quote(node.name, vocabulary)}"
+    behind = ""
+    while ports and (said := _detail(*next(reversed(ports.items())), vocabulary)):
+        behind = said + behind
+        ports.popitem()
     gives = {key: ports.pop(key) for key in node.outputs if _KEY.fullmatch(ports.get(key, ""))}
     head += _ports("with", ports, printer)
     if [f"{{{key}}}" for key in gives] == [*gives.values()] and len(gives) == 1:
-        return f"{head} {vocabulary.word('giving')} {''.join(gives.values())}"
-    return head + _ports("giving", gives, printer)
+        return f"{head} {vocabulary.word('giving')} {''.join(gives.values())}{behind}"
+    return head + _ports("giving", gives, printer) + behind
+
+
+def _detail(port: str, text: str, vocabulary: Lexicon) -> str:
+    """Print a port that all nodes may have in words of its own, "" if it has none."""
+    for details in node_details(vocabulary).values():
+        for detail in details:
+            if detail.port == port and detail.value in (None, text):
+                return f" {detail.said}" + (f" {quote(text, vocabulary)}" if detail.value is None else "")
+    return ""
 
 
 def _head(node: ast.Exact, ports: dict[str, str], printer: Printer) -> str:

@@ -1,4 +1,6 @@
-"""Forms that say a node with the children below it: `at most 2.0 times a second:`."""
+"""Forms that say a node with the children below it: `at most 2.0 times a second:`; and what says ports of all nodes:
+`unless "x > 1"`.
+"""
 
 from __future__ import annotations
 
@@ -11,6 +13,15 @@ from btlang.text.words import split
 from btlang.vocabulary.lexicon import Lexicon
 
 _PORT = re.compile(r"\s*\{(\w+)(?:=([^{}]*))?\}")
+
+
+class NodeDetail(Record):
+    """The words that say a port of any node, and its text, None if that follows in quotes."""
+
+    port: str
+    said: str
+    words: tuple[str, ...]
+    value: str | None = None
 
 
 class NodeForm(Record):
@@ -30,6 +41,17 @@ class NodeForm(Record):
         """Return the form with this value of its port, as it is written."""
         text = self.pattern if self.value is None else _PORT.sub("", self.pattern)
         return text.replace(f"{{{self.port}}}", value)
+
+
+@lru_cache(maxsize=8)
+def node_details(vocabulary: Lexicon) -> dict[str, list[NodeDetail]]:
+    """What says ports of all nodes, by the first words."""
+    found: dict[str, list[NodeDetail]] = {}
+    for port, pattern in vocabulary.node_details.items():
+        said, _, value = pattern.rstrip("}").partition(" {=")
+        words = _words(said, vocabulary)
+        found.setdefault(words[0], []).append(NodeDetail(port, said, words, value or None))
+    return found
 
 
 @lru_cache(maxsize=8)

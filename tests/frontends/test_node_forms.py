@@ -10,7 +10,11 @@ import pytest
 import btlang
 from btlang.api import mission_of_tree
 from btlang.diagnostics.diagnostic import MissionError
+from btlang.frontends.mission.reader import read_mission
+from btlang.passes import compile_mission
+from btlang.printer.mission import english
 from btlang.robots.mission_vocabulary import world_vocabulary
+from btlang.text.source import Source
 from btlang.tree.dump import plain
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.node_forms import node_forms
@@ -32,10 +36,10 @@ def test_a_form_is_its_node_by_both_parsers_and_is_said_again(said: str) -> None
         tree = tree_of(text)
         assert tree == tree_of(text, "lark")
         assert tree.root.name == ("first part" if name else "")
-        english = btlang.parse_tree(text).to("english")
-        assert tree_of(english) == tree
+        again = btlang.parse_tree(text).to("english")
+        assert tree_of(again) == tree
         if tree.root.id not in ("Sequence", "Fallback"):  # which are said in shorter ways
-            assert english.strip() == text
+            assert again.strip() == text
 
 
 def test_the_page_lists_all_forms() -> None:
@@ -50,7 +54,7 @@ def test_the_page_lists_all_forms() -> None:
         (Node("Sequence", name="a"), '"a"'),
         (Node("Sequence", name='a "b" c'), 'step by step called "a " \'"\' "b" \'"\' " c"'),
         (Node("Sequence", name="a\nb"), 'step by step called "a" newline "b"'),
-        (Node("Sequence", ports=(("_skipIf", "x"),), name="a"), '"a", step by step with _skipIf "x"'),
+        (Node("Sequence", ports=(("_skipIf", "x"),), name="a"), '"a", step by step unless "x"'),
         (Node("RoundRobin", ports=(("wrap_around", "true"),)), 'taking turns with wrap around "true"'),
         (Node("RecoveryNode", ports=(("number_of_retries", "1"),)), "recovering once"),
         (Node("RecoveryNode", ports=(("number_of_retries", "{n}"),)), "recovering up to {n} times"),
@@ -62,12 +66,38 @@ def test_names_and_ports_are_kept(root: Node, said: str) -> None:
     """What a form or a name before it can't hold is said as before."""
     children = (Node("Wave"),) if root.id == "RateController" else (Node("Wave"), Node("Nod"))
     tree = Tree(root.replace(children=children))
-    english = mission_of_tree(tree, world_vocabulary()).to("english")
-    assert english.split(":\n")[0] == said
-    assert plain(tree_of(english)) == plain(tree)
+    text = mission_of_tree(tree, world_vocabulary()).to("english")
+    assert text.split(":\n")[0] == said
+    assert plain(tree_of(text)) == plain(tree)
 
 
 @pytest.mark.parametrize("text", ['say "hello":', "taking turns", 'wave then "a":\n  nod', '"a", wave:\n  nod'])
 def test_elsewhere_these_are_no_forms(text: str) -> None:
+    with pytest.raises(MissionError):
+        btlang.parse_tree(text)
+
+
+@pytest.mark.parametrize(
+    ("said", "ports"),
+    [
+        ('wave unless "x > 1"', {"_skipIf": "x > 1"}),
+        ('wave called "a" with speed 2 while "x < 3"', {"speed": "2", "_while": "x < 3"}),
+        ('do plan motion with width 2 giving {cup} succeeding if "a == 1" failing if "b"',
+         {"width": "2", "cup": "{cup}", "_successIf": "a == 1", "_failureIf": "b"}),
+        ('do subtree "Dock" with all values', {"ID": "Dock", "_autoremap": "true"}),
+        ('do subtree "Dock" with _autoremap "false"', {"ID": "Dock", "_autoremap": "false"}),
+        ('wave with _skipIf "x", speed 2', {"_skipIf": "x", "speed": "2"}),
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize("parser", ["shunting-yard", "lark"])
+def test_preconditions_in_words(said: str, ports: dict[str, str], parser: str) -> None:
+    read = read_mission(Source(said), world_vocabulary(), parser).mission
+    root = compile_mission(read, world_vocabulary()).root
+    assert dict(root.ports) == ports
+    assert english(read, world_vocabulary()).strip() == said
+
+
+@pytest.mark.parametrize("text", ['wave unless "x" unless "y"', "wave unless x", 'wave while "x" with _while "y"'])
+def test_preconditions_that_cannot_be_read(text: str) -> None:
     with pytest.raises(MissionError):
         btlang.parse_tree(text)

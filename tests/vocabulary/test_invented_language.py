@@ -79,7 +79,7 @@ def _language(tables: dict[str, Any]) -> dict[str, Any]:
             made[key] = {invented(word): invented(read) for word, read in value.items()}
         elif key == "node_forms":
             made[key] = {node_id: list(map(_pattern, forms)) for node_id, forms in value.items()}
-        elif key == "nodes":
+        elif key in ("nodes", "node_details"):
             made[key] = {node_id: _pattern(words) for node_id, words in value.items()}
         elif key in ("negations", "negative_subjects", "plurals", "doing", "third_person", "synonyms", "direct"):
             made[key] = {invented(word): list(map(invented, words)) for word, words in value.items()}

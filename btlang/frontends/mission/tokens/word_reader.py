@@ -49,6 +49,7 @@ from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.language_tables import CONNECTIVES, NOT_ALONE, ORDER, QUESTIONS
 from btlang.vocabulary.lexicon import NODE_ROLES
 from btlang.vocabulary.match import Match
+from btlang.vocabulary.node_forms import node_details
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import TEXT
@@ -98,6 +99,7 @@ class WordReader:
         )
         behind = ("called", "with", "giving")
         self._details = {phrase.split()[0] for role in behind for phrase in vocabulary.roles[role]}
+        self._details |= node_details(vocabulary).keys()
         self._asking = {*vocabulary.asking["asking_be"], *vocabulary.asking["asking_do"]}
         self._joint = vocabulary.word("and")
         self._is_apart = False  # the statement that is read runs at another time than the next one
