@@ -16,12 +16,12 @@ from btlang.passes.lint.allow import not_allowed
 from btlang.projects.cpp_ports import CppSources
 from btlang.projects.entries import (
     EntryFlow,
-    conflicting_types,
     entries_of,
     unset_entries,
     unset_enums,
     wrong_constants,
 )
+from btlang.projects.entry_types import conflicting_types
 from btlang.projects.ports import (
     DescribedUses,
     broken_references,

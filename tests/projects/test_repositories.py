@@ -229,3 +229,37 @@ def test_an_action_of_others_that_starts_again(
     tree = f'<ReactiveSequence><{action} on="true"/><SubTree ID="Rest"/></ReactiveSequence>'
     write(tmp_path, "a.xml", TREE.format("Main", tree), TREE.format("Rest", "<Then/>"), models=models)
     assert ("BT243" in {problem["code"] for problem in problems(capsys, str(tmp_path))}) == warns
+
+
+@pytest.mark.parametrize(
+    ("use", "takes", "code"),
+    [
+        ('<SubTree ID="Part" thing="{cup}"/>', "pose", "BT132"),
+        ('<SubTree ID="Part" thing="{cup}"/>', "count", ""),
+        ('<SubTree ID="Outer" given="{cup}"/>', "pose", "BT132"),
+        ('<SubTree ID="Shared" _autoremap="true"/>', "pose", "BT132"),
+        ('<SubTree ID="Shared" _autoremap="true"/>', "count", ""),
+        ('<SubTree ID="Shared"/>', "pose", ""),
+        ('<SubTree ID="Shared" cup="{plate}" _autoremap="true"/>', "pose", ""),
+        ('<SubTree ID="Elsewhere" thing="{cup}"/><SubTree ID="Part" thing="{cup}"/>', "pose", "BT132"),
+    ],
+)
+def test_types_through_subtrees(
+    use: str, takes: str, code: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """In BehaviorTree.CPP an entry has the type that its first port gives it, in whatever tree that is."""
+    models = (
+        '<Action ID="Count"><output_port name="count" type="int"/></Action>'
+        '<Action ID="Take"><input_port name="count" type="int" default="1"/>'
+        '<input_port name="pose" type="geometry_msgs::msg::Pose" default=""/></Action>'
+    )
+    trees = {
+        "Main": f'<Sequence><Count count="{{cup}}"/>{use}</Sequence>',
+        "Outer": '<SubTree ID="Part" thing="{given}"/>',
+        "Part": f'<Take {takes}="{{thing}}"/>',
+        "Shared": f'<Take {takes}="{{cup}}"/>',
+    }
+    found = (TREE.format(name, tree) for name, tree in trees.items())
+    write(tmp_path, "a.xml", *found, models=models, attributes='main_tree_to_execute="Main"')
+    codes = {problem["code"] for problem in problems(capsys, str(tmp_path))}
+    assert codes - {"BT126", "BT235", "BT236", "BT241"} == ({code} if code else set())
