@@ -46,6 +46,11 @@ def asks(node_id: str) -> bool:
     return len(words := id_words(node_id)) > 1 and words[0] in QUESTIONS
 
 
+def asks_or_checks(node_id: str) -> bool:
+    """Whether an id is worded as a question, or says that something is checked: `CheckDoor`."""
+    return asks(node_id) or id_words(node_id)[:1] in [[word] for word in _CHECKING]
+
+
 def phrases(node_id: str, ports: SpokenPorts, articles: Collection[str], *, is_condition: bool) -> Iterator[str]:
     """Yield patterns for a leaf, the most natural first; the further ones are for words that mean something else
     already.

@@ -145,15 +145,16 @@ class _FileCheck:
     def _problems_together(self, sources: Sequence[Source]) -> Sequence[Diagnostic]:
         from btlang.frontends.btcpp.files import XmlFiles
         from btlang.frontends.btcpp.project import read_project
-        from btlang.projects.checking import project_problems
+        from btlang.projects.checking import NEWEST, project_problems
         from btlang.projects.cpp_ports import CppSources
 
         options = self._options
-        palettes, files = XmlFiles(), XmlFiles(sources)
+        version = options.btcpp or NEWEST
+        palettes, files = XmlFiles(), XmlFiles(sources, dialect=version[0] if options.btcpp else 3)
         for path in options.models:
             palettes.add(read_source(path, options.include_root))
         for source in sources:
             files.add(source)
         vocabulary = world_vocabulary(options.keywords, options.world, options.language)
         folders = [path for path in options.file or () if os.path.isdir(path)]
-        return project_problems(read_project(files, palettes, options.main), vocabulary, CppSources(folders))
+        return project_problems(read_project(files, palettes, options.main), vocabulary, CppSources(folders), version)

@@ -142,6 +142,13 @@ def picture(*endings: str) -> Callable[[str], str]:
     return path
 
 
+def library_version(text: str) -> tuple[int, ...]:
+    """Read a version of BehaviorTree.CPP, 3 or 4, such as 4.8."""
+    if not re.fullmatch(r"[34](\.\d{1,3}){0,2}", text):
+        raise argparse.ArgumentTypeError(f"{text!r} is no version of BehaviorTree.CPP 3 or 4, such as 4.8")
+    return tuple(map(int, text.split(".")))
+
+
 def duration(text: str) -> float:
     """Read seconds, written as a number or in the words of the language."""
     try:

@@ -52,6 +52,7 @@ from btlang.cli.values import (
     at_least,
     between,
     duration,
+    library_version,
     network,
     node_name,
     picture,
@@ -188,6 +189,10 @@ _TABLE = (
             Option(
                 "--models", action="append", default=[], metavar="FILE",
                 help="XML file with models of nodes (TreeNodesModel); may be repeated",
+            ),
+            Option(
+                "--btcpp", type=library_version, metavar="VERSION",
+                help="version of BehaviorTree.CPP that trees in XML are for (default: 4.10)",
             ),
             Option("--fix", action="store_true", help="write the corrections that are certain into the files"),
             OneOf(

@@ -14,9 +14,10 @@ from btlang.printer.printer import WHOLE, Doc, Printer
 from btlang.text.source import Source
 from btlang.text.words import split
 from btlang.tree import ast
-from btlang.tree.catalogue import SUBTREE
+from btlang.tree.catalogue import SEQUENCE, SUBTREE
 from btlang.vocabulary.language_tables import CHANGING
 from btlang.vocabulary.lexicon import DEFINING, Lexicon
+from btlang.vocabulary.node_forms import node_details, node_forms
 from btlang.vocabulary.node_words import id_of_name, is_port, said_id, subtree_named
 from btlang.vocabulary.trie import longest
 
@@ -45,7 +46,22 @@ def exact_block(node: ast.Exact, printer: Printer) -> Iterator[tuple[Fragments, 
 def node_head(node: ast.Exact, printer: Printer) -> str:
     """Print the node with its name and its ports, without its children."""
     ports = dict(node.ports)
-    return _head(node, ports, printer) + _details(node, ports, printer)
+    said = _form(node, ports, printer) if node.items else ""
+    if said and is_one_piece(node.name):
+        label = quote(node.name, printer.vocabulary)
+        is_alone = node.id == SEQUENCE and not ports
+        return label if is_alone else f"{label}, {said}" + _details(node.replace(name=""), ports, printer)
+    return (said or _head(node, ports, printer)) + _details(node, ports, printer)
+
+
+def _form(node: ast.Exact, ports: dict[str, str], printer: Printer) -> str:
+    """Print the form that says a node with the children below it, "" if it has none; its port is taken out."""
+    for form in node_forms(printer.vocabulary):
+        if form.id != node.id or (form.port and form.port not in ports):
+            continue
+        if form.value is None or ports[form.port] == form.value:
+            return form.say(_value(ports.pop(form.port), printer.vocabulary) if form.port else "")
+    return ""
 
 
 def phrase(node: ast.Phrase, _parts: list[Doc], printer: Printer) -> Doc:
@@ -60,11 +76,24 @@ def _details(node: ast.Exact | ast.Phrase, ports: dict[str, str], printer: Print
     vocabulary, head = printer.vocabulary, ""
     if node.name:
         head += f" {vocabulary.word('called')} {quote(node.name, vocabulary)}"
+    behind = ""
+    while ports and (said := _detail(*next(reversed(ports.items())), vocabulary)):
+        behind = said + behind
+        ports.popitem()
     gives = {key: ports.pop(key) for key in node.outputs if _KEY.fullmatch(ports.get(key, ""))}
     head += _ports("with", ports, printer)
     if [f"{{{key}}}" for key in gives] == [*gives.values()] and len(gives) == 1:
-        return f"{head} {vocabulary.word('giving')} {''.join(gives.values())}"
-    return head + _ports("giving", gives, printer)
+        return f"{head} {vocabulary.word('giving')} {''.join(gives.values())}{behind}"
+    return head + _ports("giving", gives, printer) + behind
+
+
+def _detail(port: str, text: str, vocabulary: Lexicon) -> str:
+    """Print a port that all nodes may have in words of its own, "" if it has none."""
+    for details in node_details(vocabulary).values():
+        for detail in details:
+            if detail.port == port and detail.value in (None, text):
+                return f" {detail.said}" + (f" {quote(text, vocabulary)}" if detail.value is None else "")
+    return ""
 
 
 def _head(node: ast.Exact, ports: dict[str, str], printer: Printer) -> str:
@@ -106,11 +135,15 @@ def _ports(role: str, ports: Mapping[str, str], printer: Printer) -> str:
     vocabulary, said = printer.vocabulary, ""
     for name, text in ports.items():
         key = _key(name, vocabulary)
-        is_bare = _BARE.fullmatch(text) and text[1:-1] not in _claiming_words(vocabulary)
-        value = text if is_bare else quote(text, vocabulary)
+        value = _value(text, vocabulary)
         is_free = said and _is_free(key, value, printer)
         said += f", {key} {value}" if is_free else f" {vocabulary.word(role)} {key} {value}"
     return said
+
+
+def _value(text: str, vocabulary: Lexicon) -> str:
+    is_bare = _BARE.fullmatch(text) and text[1:-1] not in _claiming_words(vocabulary)
+    return text if is_bare else quote(text, vocabulary)
 
 
 def _is_free(key: str, value: str, printer: Printer) -> bool:

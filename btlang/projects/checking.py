@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Mapping
 
 from btlang.backends.checking import accept_anything, bind_placeholder, find_misnamed, tree_problems
-from btlang.diagnostics.diagnostic import Diagnostic, sort_diagnostics
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic, sort_diagnostics
 from btlang.engine.leaves.leaf import LeafBinding
 from btlang.frontends.btcpp.models import nav2_models
 from btlang.frontends.btcpp.project import XmlProject
@@ -16,24 +16,34 @@ from btlang.passes.lint.allow import not_allowed
 from btlang.projects.cpp_ports import CppSources
 from btlang.projects.entries import (
     EntryFlow,
-    conflicting_types,
     entries_of,
     unset_entries,
     unset_enums,
     wrong_constants,
 )
+from btlang.projects.entry_types import conflicting_types
 from btlang.projects.ports import (
     DescribedUses,
+    broken_references,
     constant_outputs,
     enum_names,
     misspelt_ports,
     port_problems,
     several_alone,
     subtree_problems,
+    wrong_children,
 )
-from btlang.projects.restarts import double_quotes, restarted_actions
-from btlang.projects.unused import keys_read, unknown_nodes, unread_subtree_ports, unread_values, unused_trees
+from btlang.projects.restarts import double_quotes, may_be_repeated, restarted_actions
+from btlang.projects.unused import (
+    count_times,
+    keys_read,
+    unknown_nodes,
+    unread_subtree_ports,
+    unread_values,
+    unused_trees,
+)
 from btlang.text.source import NOWHERE, Span
+from btlang.text.spelling import misspelt
 from btlang.tree.catalogue import BEHAVIOR_TREE_CPP, CATALOGUE, SEQUENCE, SUBTREE
 from btlang.tree.node import Node, NodeModel, PortModel, Tree
 from btlang.tree.visit import fold
@@ -42,14 +52,23 @@ from btlang.vocabulary.lexicon import Lexicon
 _OF_A_VALUE = re.compile(r"\w+ must be ")
 
 
-def project_problems(project: XmlProject, vocabulary: Lexicon, sources: CppSources) -> list[Diagnostic]:
-    """Find errors and warnings of all files, in order, without those that comments allow.
+NEWEST = (4, 10)
+_REFUSED_SINCE = {"BT238": (4, 8, 4), "BT242": (4, 9)}
+_ONE_ALONE_SINCE = (4, 7)
+
+
+def project_problems(
+    project: XmlProject, vocabulary: Lexicon, sources: CppSources, version: tuple[int, ...] = NEWEST
+) -> list[Diagnostic]:
+    """Find errors and warnings of all files, in order, without those that comments allow, and without what this version
+    of BehaviorTree.CPP doesn't refuse yet.
 
     The C++ sources are asked about nodes that models describe badly, or not at all.
     """
     found = list(project.problems)
     if project.trees:
-        found += _Check(project, vocabulary, sources).problems()
+        found += _Check(project, vocabulary, sources, version).problems()
+    found = [problem for problem in found if version >= _REFUSED_SINCE.get(problem.code, version)]
     wrong: dict[tuple[str, int], set[str]] = {}
     for problem in found:
         if problem.is_error and problem.code != "BT132":
@@ -60,7 +79,9 @@ def project_problems(project: XmlProject, vocabulary: Lexicon, sources: CppSourc
 
 
 def _follows(problem: Diagnostic, wrong: set[str]) -> bool:
-    """Return whether the engine refuses a node only because of what other errors at its place say."""
+    """Return whether a problem is only there because of what other errors at its place say."""
+    if problem.code == "BT236":
+        return "BT127" in wrong  # which of two trees is used, isn't known
     if problem.code != "BT132" or not wrong:
         return False
     return wrong != {"BT014"} or _OF_A_VALUE.match(dict(problem.arguments)["reason"]) is not None
@@ -71,11 +92,16 @@ def _place(span: Span) -> tuple[str, int]:
 
 
 class _Check:
-    def __init__(self, project: XmlProject, vocabulary: Lexicon, sources: CppSources) -> None:
+    def __init__(self, project: XmlProject, vocabulary: Lexicon, sources: CppSources, version: tuple[int, ...]) -> None:
         self._project = project
+        self._version = version
         self._sources = sources
         self._outputs_of_models: dict[int, frozenset[str]] = {}
         self._ports_of_models: dict[int, dict[str, PortModel]] = {}
+        self._places_of_models: dict[int, set[str]] = {}
+        for described in project.described.values():
+            for model, place in described:
+                self._places_of_models.setdefault(id(model), set()).add(place.source.name)
         self._nodes = [node for root in project.trees.values() for node in Tree(root).walk()]
         elsewhere = self._ids_from_elsewhere(vocabulary)
         own = {id: known for id, known in vocabulary.entries.items() if id not in elsewhere}
@@ -83,39 +109,51 @@ class _Check:
         self._words = vocabulary.entries.keys()
         ids = {node.id for node in self._nodes} - project.models.keys() - CATALOGUE.keys()
         self._nav2 = nav2_models(ids)
-        self._described = {*CATALOGUE, *project.models, *self._nav2}
+        self._described = {*CATALOGUE, *project.models, *self._nav2, *project.unread}
         if ids - self._described - self._words:
             self._described.update(sources.models)
 
     def problems(self) -> Iterator[Diagnostic]:
-        """Find the problems of the trees; only those of single nodes where trees contain themselves."""
+        """Find the problems of the trees; of those that contain themselves only what can be said of each alone."""
         yield from unknown_nodes(self._nodes, self._described, self._words, self._project.dialects)
         yield from self._wrong_ports()
         yield from unused_trees(self._project)
         yield from double_quotes(node for node in self._nodes if self._dialect(node) == 4)
+        yield from broken_references(self._nodes, {*CATALOGUE, *self._vocabulary.entries, *self._nav2})
         yield from restarted_actions(self._nodes, self._sort)
         yield from unread_values(self._nodes, self._outputs, keys_read(self._nodes, self._outputs))
-        if self._project.is_round:
-            return
         yield from unread_subtree_ports(self._nodes, self._project.trees)
         yield from self._wrong_entries()
+        if not self._finite:
+            return
         yield from self._faults()
-        compilation = Compilation(self._vocabulary, tree=self._whole(self._project.trees))
+        compilation = Compilation(self._vocabulary, tree=self._whole(self._finite))
         for one in PASSES:
             if not one.needs_text:
                 yield from one.run(compilation)
 
+    @property
+    def _finite(self) -> dict[str, Node]:
+        """The trees that don't contain themselves."""
+        return {name: root for name, root in self._project.trees.items() if name not in self._project.circular}
+
     def _sort(self, node: Node) -> str:
-        """Return whether a leaf is an "Action" that takes time, a "Condition", or "" if that isn't known, as of most
-        nodes of others: many of their actions are meant to be done at each tick.
+        """Return whether a leaf is an "Action" that isn't meant to be done at each tick, a "Condition", or "" if that
+        isn't known: actions of others that have outputs may compute them anew, and what sets a value may set it again.
         """
         kind, entry = CATALOGUE.get(node.id), self._vocabulary.entries.get(node.id, (None,))[0]
         if kind is not None:  # scripts and the like are meant to run at each tick
-            return "Condition" if not kind.takes_time and not kind.least else ""
+            return "Condition" if not (kind.takes_time or kind.least or kind.waits) else ""
         if entry is not None:
             return "Action" if entry.sort == "action" and not entry.instant else "Condition"
         model = self._model(node)
-        return "Condition" if model is not None and model.kind == "Condition" else ""
+        if model is None or node.children:
+            return ""
+        if model.kind == "Condition":
+            return "Condition"
+        if model.kind != "Action" or any(port.direction != "input" for port in model.ports):
+            return ""
+        return "" if may_be_repeated(node.id, self._sources.is_instant) else "Action"
 
     def _ids_from_elsewhere(self, vocabulary: Lexicon) -> set[str]:
         """Return the ids of leaves that aren't the vocabulary's: their models differ, or their files have others,
@@ -138,21 +176,22 @@ class _Check:
         described: dict[int, tuple[NodeModel, list[Node]]] = {}
         for node in self._nodes:
             if node.id == SUBTREE:
-                model = self._project.model(node, node.port("ID"))
-                if model is not None and model.kind == SUBTREE and self._dialect(node) == 4:
+                model = self._project.model(node)
+                if model is not None and self._dialect(node) == 4:
                     yield from subtree_problems(node, model)
             elif node.id in CATALOGUE:
-                if len(node.children) > 1 and self._dialect(node) == 4:
+                if len(node.children) > 1 and self._dialect(node) == 4 and self._version >= _ONE_ALONE_SINCE:
                     yield from several_alone(node)
             elif node.id not in self._vocabulary.entries:
                 model = self._model(node)
-                if model is not None and model.kind != SUBTREE:
+                yield from wrong_children(node, model)
+                if model is not None:
                     if self._dialect(node) == 4:
                         yield from constant_outputs(node, model)
                     described.setdefault(id(model), (model, []))[1].append(node)
         for model, nodes in described.values():
             uses = DescribedUses(model, NOWHERE, tuple(nodes))
-            if model.id not in self._project.models:
+            if id(model) not in self._places_of_models:
                 yield from misspelt_ports(uses)
             elif any(port_problems(uses)) and any(port_problems(uses := self._with_others(uses))):
                 yield from port_problems(self._with_sources(uses))
@@ -192,13 +231,24 @@ class _Check:
         return outputs
 
     def _model(self, node: Node) -> NodeModel | None:
-        return self._project.model(node) or self._known(node.id)
+        model = self._project.model(node)
+        if model is not None and node.span is not None and self._is_of_another_program(model, node.span):
+            known, _ = self._sources.models.get(node.id, (model, None))
+            return known
+        return model or self._known(node.id)
+
+    def _is_of_another_program(self, model: NodeModel, place: Span) -> bool:
+        """Return whether a model is only in a file with trees that belongs to a program without this file."""
+        places = self._places_of_models.get(id(model))
+        if places is None or place.source.name in places:
+            return False
+        return not any(self._project.may_share(place.source.name, each) for each in places)
 
     def _known(self, node_id: str) -> NodeModel | None:
         """Return what is known of a node that no model of the project describes."""
         known = self._nav2.get(node_id)
         if known is None and node_id in self._described:
-            known, _ = self._sources.models[node_id]
+            known, _ = self._sources.models.get(node_id, (None, None))
         return known
 
     def _with_others(self, uses: DescribedUses) -> DescribedUses:
@@ -217,23 +267,39 @@ class _Check:
 
     def _faults(self) -> Iterator[Diagnostic]:
         """Yield what the engine would refuse, but for trees that are elsewhere, and nodes that aren't ours."""
-        described = {id for id, model in self._project.models.items() if model.kind == SUBTREE} | self._project.unread
+        project = self._project
+        elsewhere = {id for id, model in project.models.items() if model.kind == SUBTREE}
+        elsewhere |= project.unread | project.circular
         replaced: dict[tuple[str, int], Node] = {}
+        missing: dict[str, list[Diagnostic]] = {}
         own = {name: fold(root, _children, lambda node, inner: self._stand_in(node, inner, replaced))
-               for name, root in self._project.trees.items()}  # fmt: skip
+               for name, root in self._finite.items()}  # fmt: skip
         for problem in tree_problems(self._whole(own), self._vocabulary, self._bind):
             arguments = dict(problem.arguments)
-            if (problem.code == "BT126" and arguments["name"] in described) or self._is_older(
-                problem.span, arguments.get("id", "")
-            ):
+            if problem.code == "BT126":
+                if arguments["name"] in elsewhere:
+                    continue
+                if self._may_be_elsewhere(arguments["name"], problem.span):
+                    missing.setdefault(arguments["name"], []).append(problem)
+                    continue
+            elif self._is_older(problem.span, arguments.get("id", "")):
                 continue
             node = replaced.get(_place(problem.span))
             if node is not None and problem.code == "BT132" and arguments["id"] == SEQUENCE:
                 reason = arguments["reason"].replace(SEQUENCE, node.id, 1)
                 problem = problem.replace(arguments=(("id", node.id), ("reason", reason)))
             yield problem
+        for name, found in missing.items():
+            yield diagnostic("BT244", found[0].span, name=name, times=count_times(len(found)))
         if self._vocabulary.entries:
             yield from find_misnamed(self._whole(self._project.trees), self._vocabulary)
+
+    def _may_be_elsewhere(self, name: str, span: Span) -> bool:
+        """Return whether a tree may be in a file that isn't checked: nothing is called like it, and this file includes
+        no others, so that whoever loads it decides which trees there are.
+        """
+        project = self._project
+        return len(project.dialects) > 1 and not (project.is_joined(span.source.name) or misspelt(name, project.trees))
 
     def _is_older(self, span: Span, node_id: str) -> bool:
         """Return whether a node of version 3 only has the name of one that format 4 brought."""

@@ -40,6 +40,9 @@ _REGISTERED = (
     re.compile(r"registerSimple\w+\s*(?P<class>)\(\s*\"(?P<id>[^\"]+)\""),
     re.compile(r"CreateRosNodePlugin\s*\(\s*(?P<class>[\w:]+)\s*,\s*\"(?P<id>[^\"]+)\""),
 )
+_KINDS = {"Condition": "Condition", "Action": "Action", "Decorator": "Decorator", "Control": "Control"}
+"""Of nodes, by a word in the name of the class of the library from which theirs is made."""
+_INSTANT = "SyncActionNode"
 _REGISTERING = "registerScriptingEnum"
 _ENUM = re.compile(r"registerScriptingEnum\s*\(\s*\"(\w+)\"")
 _ENUMS = re.compile(r"registerScriptingEnums\b|registerScriptingEnum\s*\(\s*[^\s\"]")
@@ -82,6 +85,7 @@ class CppSources:
     def __init__(self, folders: Sequence[str] = ()) -> None:
         self._folders = folders
         self._registering_enums: list[str] = []
+        self._instant: set[str] = set()
 
     @cached_property
     def enums(self) -> tuple[frozenset[str], bool]:
@@ -95,11 +99,15 @@ class CppSources:
             is_complete = is_complete and _ENUMS.search(text) is None
         return frozenset(names), is_complete
 
+    def is_instant(self, node_id: str) -> bool:
+        """Return whether the class of a node says that it ends at once."""
+        return node_id in self.models and node_id in self._instant
+
     @cached_property
     def models(self) -> Mapping[str, tuple[NodeModel, Span]]:
         """Return, by the ids of nodes, their ports, and where their classes are.
 
-        A port that may be left out has a default.
+        A port that may be left out has a default. The kind is "" where the sources don't say it.
         """
         classes: dict[str, _Class] = {}
         registered: dict[str, tuple[str, Span]] = {}
@@ -122,8 +130,13 @@ class CppSources:
             if found.ports:
                 registered.setdefault(name, (name, found.place))
         for node_id, (name, place) in registered.items():
-            ports = tuple(_ports(name, classes))
-            models[node_id] = NodeModel("Action", node_id, ports), classes[name].place if name in classes else place
+            line = _line(name, classes)
+            kind = next((kind for word, kind in _KINDS.items() if line and word in line[-1].base), "")
+            if not line:  # a function
+                kind = "Condition" if "SimpleCondition" in place.text else "Action"
+            if line and line[-1].base == _INSTANT:
+                self._instant.add(node_id)
+            models[node_id] = NodeModel(kind, node_id, tuple(_ports(line))), line[0].place if line else place
         return models
 
     def _sources(self) -> Iterator[Source]:
@@ -141,13 +154,22 @@ def _find(patterns: Iterable[re.Pattern[str]], text: str) -> Iterator[re.Match[s
     return (match for pattern in patterns for match in pattern.finditer(text))
 
 
-def _ports(name: str, classes: Mapping[str, _Class]) -> Iterator[PortModel]:
-    """Yield the ports of a class and its bases, without those that a nearer class has."""
+def _line(name: str, classes: Mapping[str, _Class]) -> list[_Class]:
+    """Return a class and its bases, as far as they are in the sources."""
     line: list[_Class] = []
     while name in classes and classes[name] not in line:
         line.append(classes[name])
         name = line[-1].base
-    spared = {port for each in line for port in each.spared} - {port for each in line for port in each.needed}
+    return line
+
+
+def _ports(line: Sequence[_Class]) -> Iterator[PortModel]:
+    """Yield the ports of a class and its bases, without those that a nearer class has."""
+    needed = {port for each in line for port in each.needed}
+    spared = {port for each in line for port in each.spared} - needed
+    if spared or needed:  # a port that isn't read is one that nobody needs
+        listed = (port for each in line for port in each.ports.values())
+        spared.update(port.name for port in listed if port.direction != "output" and port.name not in needed)
     ports = {port.name: port for each in reversed(line) for port in each.ports.values()}
     for port in ports.values():
         yield port.replace(default="") if port.default is None and port.name in spared else port

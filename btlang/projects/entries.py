@@ -1,4 +1,4 @@
-"""Entries of blackboards: those that nothing sets (BT241), and those that two ports give different types (BT132)."""
+"""Entries of blackboards: those that nothing sets (BT241), and constants that a tree can't read (BT233)."""
 
 from __future__ import annotations
 
@@ -23,10 +23,6 @@ if TYPE_CHECKING:
     PortsOf: TypeAlias = Callable[[Node], Mapping[str, PortModel]]
 
 _ENUM = re.compile(r"[A-Z][A-Z0-9_]+")
-_SAME = {"int32_t": "int", "unsigned": "unsigned int", "uint32_t": "unsigned int", "string": "std::string"}
-_SCALARS = ("bool", "double", "float", "int", "unsigned int", "int8_t", "int16_t", "uint8_t", "uint16_t")
-_TEXT = "std::string"
-_MESSAGE = re.compile(r"\w+::msg::\w+")
 _MOST_PLACES = 3
 _ISOLATED = "Give it to the SubTree, or set it in this tree, which sees no other entries."
 
@@ -51,13 +47,15 @@ class EntryUse(Record):
 class TreeEntries(Record):
     """The entries that a tree names, in the order in which its nodes are made, and its SubTree nodes.
 
-    `given` are those in ports of SubTree nodes: what becomes of them, their trees decide. If it `is_older`, it is of
-    version 3, where outputs may name an entry without braces: `named`.
+    `given` are those in ports of SubTree nodes: what becomes of them, their trees decide. `steps` are the uses and the
+    SubTree nodes, in this order. If it `is_older`, it is of version 3, where outputs may name an entry without braces:
+    `named`.
     """
 
     uses: tuple[EntryUse, ...]
     given: tuple[EntryUse, ...]
     subtrees: tuple[Node, ...]
+    steps: tuple[EntryUse | Node, ...]
     named: frozenset[str]
     is_older: bool
 
@@ -72,10 +70,13 @@ def entries_of(root: Node, ports_of: PortsOf, is_older: bool) -> TreeEntries:
     uses: list[EntryUse] = []
     given: list[EntryUse] = []
     subtrees: list[Node] = []
+    steps: list[EntryUse | Node] = []
     named: set[str] = set()
     for node in Tree(root).walk():
+        done = len(uses)
         if node.id == SUBTREE:
             subtrees.append(node)
+            steps.append(node)
         is_built_in = node.id in CATALOGUE
         ports: Mapping[str, PortModel] = {}
         if not is_built_in and (is_older or any("{" in text for _, text in node.ports)):
@@ -95,7 +96,8 @@ def entries_of(root: Node, ports_of: PortsOf, is_older: bool) -> TreeEntries:
                 uses.append(EntryUse(node, port, text, reads=False))
             elif is_older and not is_built_in and (port not in ports or ports[port].direction != "input"):
                 named.add(text)
-    return TreeEntries(tuple(uses), tuple(given), tuple(subtrees), frozenset(named), is_older)
+        steps += uses[done:]
+    return TreeEntries(tuple(uses), tuple(given), tuple(subtrees), tuple(steps), frozenset(named), is_older)
 
 
 def _script_uses(node: Node, port: str, code: str) -> list[EntryUse]:
@@ -245,40 +247,3 @@ def _readers(entries: Mapping[str, TreeEntries], flow: EntryFlow, tree: str, key
         done.add(place)
         yield from (use for use in entries[tree].uses if use.key == key)
         waiting += [(use.node.port("ID"), use.port) for use in entries[tree].given if use.key == key]
-
-
-def conflicting_types(entries: Mapping[str, TreeEntries]) -> Iterator[Diagnostic]:
-    """Report BT132 for ports whose entry has another type since an earlier port, as BehaviorTree.CPP 4 refuses them.
-
-    Entries that another tree may see are left out, as they may have their type from there; so is version 3.
-    """
-    outside: dict[str, set[str]] = {}
-    shared: set[str] = set()
-    for each in entries.values():
-        for node in each.subtrees:
-            outside.setdefault(node.port("ID"), set()).update(port for port, _ in node.ports)
-            if node.port(AUTOREMAP) in TRUE:
-                shared.add(node.port("ID"))
-    for name, each in entries.items():
-        if each.is_older or each.shares or name in shared:
-            continue
-        first: dict[str, EntryUse] = {}
-        unsure = outside.get(name, set()) | {use.key for use in each.given}
-        for use in each.uses:
-            if use.key in unsure or port_content(use.node.id, use.port) == SCRIPT:
-                continue
-            before = first.setdefault(use.key, use)
-            if _differ(before.type, use.type):
-                reason = f"'{use.key}' is of type {before.type}, and its port {use.port} is of type {use.type}"
-                notes = ((attribute_value(before.node, before.port), f"here '{use.key}' gets its type"),)
-                yield diagnostic(
-                    "BT132", attribute_value(use.node, use.port), notes, None, id=use.node.id, reason=reason
-                )
-
-
-def _differ(first: str, later: str) -> bool:
-    """Return whether two types surely differ, the first of which isn't a text, from which everything can be read."""
-    first, later = _SAME.get(first, first), _SAME.get(later, later)
-    if first == later or not (first in _SCALARS or _MESSAGE.fullmatch(first)):
-        return False
-    return later in _SCALARS or (first in _SCALARS and (later == _TEXT or _MESSAGE.fullmatch(later) is not None))

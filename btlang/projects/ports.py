@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Container, Iterable, Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.engine.instance import blackboard_key
+from btlang.engine.script.tokens import find_name_uses
 from btlang.frontends.btcpp.spelling import AUTOREMAP, TRUE
 from btlang.support.record import Record
 from btlang.text.source import NOWHERE, Span
 from btlang.text.spelling import is_misspelling, nearest
-from btlang.tree.catalogue import CATALOGUE, SUBTREE
+from btlang.tree.catalogue import CATALOGUE, KEY, SCRIPT, SUBTREE, port_content
 from btlang.tree.node import Node, NodeModel, PortModel
 
 _ATTRIBUTE = re.compile(r"""([^\s"'=<>/]+)\s*=\s*("[^"]*"|'[^']*')""")
@@ -54,13 +55,17 @@ _INTEGER = re.compile(r"(?:std::)?(?P<unsigned>u|unsigned )?(?:int|long|short|lo
 _ALONE = {"unsigned": (0, 2**32 - 1), "size_t": (0, 2**64 - 1), "std::size_t": (0, 2**64 - 1)}
 _BITS = {"short": 16, "long": 64, "long long": 64}
 _DECIMAL = ("double", "float")
+_TEXTS = ("", "std::string", "string")
 _NUMBER = re.compile(r"[+-]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|inf|nan)", re.IGNORECASE)
 _BOOL = frozenset(("0", "1", "true", "True", "TRUE", "false", "False", "FALSE"))
 _ENUM = re.compile(r"(?:enum\b[\w ]*)?[({\[]?\s*(\w+(?:\s*[|,;]\s*\w+)+)\s*[)}\]]?")
 
 
-def describe_type(text: str, type: str) -> str:
-    """Say what a value of the type is, where the text is none; "" where it is one, or nothing is known of the type."""
+def describe_type(text: str, type: str, listed: str = "") -> str:
+    """Say what a value of the type is, where the text is none; "" where it is one, or nothing is known of the type.
+
+    `listed` is the description of a port, which may list the texts that it takes, such as `left|right`.
+    """
     if text[:5] == "json:":
         return ""
     bounds = _bounds(type)
@@ -72,7 +77,7 @@ def describe_type(text: str, type: str) -> str:
         return "" if _NUMBER.fullmatch(text) else "a number"
     if type == "bool":
         return "" if text in _BOOL else "true or false"
-    names = enum_names(type)
+    names = enum_names(type) or (enum_names(listed) if "|" in listed and type in _TEXTS else [])
     return "" if not names or text in names or text.isdecimal() else f"one of {', '.join(names)}"
 
 
@@ -142,6 +147,53 @@ def misspelt_ports(uses: DescribedUses) -> Iterator[Diagnostic]:
             yield problem
 
 
+_KIND_TAG = re.compile(r"<(Action|Condition|Decorator|Control)\b")
+_CHILDREN = {"Action": (0, 0), "Condition": (0, 0), "Decorator": (1, 1)}
+
+
+def wrong_children(node: Node, model: NodeModel | None) -> Iterator[Diagnostic]:
+    """Report BT132 for a leaf with children and a decorator with several, as its tag or its model says what it is."""
+    tag = _KIND_TAG.match(place_of(node).text)
+    kind = tag[1] if tag is not None else model.kind if model is not None else ""
+    has, (least, most) = len(node.children), _CHILDREN.get(kind, (0, len(node.children)))
+    if least <= has <= most:
+        return
+    reason = f"it is {'an' if kind == 'Action' else 'a'} {kind}, and has {has} {'child' if has == 1 else 'children'}"
+    yield diagnostic("BT132", place_of(node), id=node.id, reason=f"{reason} instead of {least}")
+
+
+_BRACES = re.compile(r"[{}]")
+_INSIDE = re.compile(r"\$?\{(\w+)\}")
+
+
+def broken_references(nodes: Sequence[Node], known: Container[str]) -> Iterator[Diagnostic]:
+    """Report BT233 for `{key` without its other brace, and BT245 for the `{key}` of an entry inside a text.
+
+    That only for nodes that are `known`: others may fill in their texts themselves.
+    """
+    named: set[str] = set()
+    inside: list[tuple[Node, str, str]] = []
+    for node in nodes:
+        for port, text in node.ports:
+            holds, key = port_content(node.id, port), blackboard_key(port, text)
+            if holds == SCRIPT:
+                named.update(find_name_uses(text))
+            elif key is not None or holds == KEY:
+                named.add(key or text)
+            elif not _BRACES.search(text):
+                pass
+            elif len(_BRACES.findall(text)) == 1 and (text.strip()[:1] == "{" or text.strip()[-1:] == "}"):
+                wanted = "an entry such as {key}"
+                place = attribute_value(node, port)
+                yield diagnostic("BT233", place, text=text, port=port, id=node.id, wanted=wanted)
+            elif node.id in known and (match := _INSIDE.search(text)) is not None:
+                inside.append((node, port, match[1]))
+    for node, port, key in inside:
+        if key in named:
+            node_id = node.port("ID") if node.id == SUBTREE else node.id
+            yield diagnostic("BT245", attribute_value(node, port), key=key, port=port, id=node_id)
+
+
 def _is_no_port(name: str) -> bool:
     return name[:1] == "_" or name == "ID"
 
@@ -186,7 +238,7 @@ def _wrong_values(node: Node, ports: Sequence[PortModel]) -> Iterator[Diagnostic
         described = [port for port in ports if port.name == name]
         if not described or not text.strip() or "{" in text or described[0].direction == "output":
             continue
-        if all(expected := [describe_type(text.strip(), port.type) for port in described]):
+        if all(expected := [describe_type(text.strip(), port.type, port.text) for port in described]):
             yield diagnostic("BT233", attribute_value(node, name), text=text, port=name, id=node.id, wanted=expected[0])
 
 
@@ -207,8 +259,8 @@ def _more(nodes: Sequence[Node]) -> str:
 
 def suggest_name(span: Span, near: list[str]) -> tuple[Span, str] | None:
     """Return the change of a misspelt name to the one name that is near; None where that isn't certain."""
-    certain = len(near) == 1 and is_misspelling(span.text, near[0], ())
-    return (span, near[0]) if certain else None
+    certain = [name for name in near if is_misspelling(span.text, name, ())]
+    return (span, certain[0]) if len(certain) == 1 else None
 
 
 def subtree_problems(node: Node, model: NodeModel) -> Iterator[Diagnostic]:
@@ -234,9 +286,9 @@ def constant_outputs(node: Node, model: NodeModel) -> Iterator[Diagnostic]:
 
 
 def several_alone(node: Node) -> Iterator[Diagnostic]:
-    """Report BT132 for a second child of a kind of which BehaviorTree.CPP 4.10 takes only one there."""
+    """Report BT132 for a second child of a kind of which BehaviorTree.CPP takes only one there."""
     alone = [child for child in node.children if child.id in CATALOGUE and CATALOGUE[child.id].alone_in == node.id]
     if len(alone) > 1:
         notes = tuple((place_of(child), f"{child.id} is asynchronous") for child in alone)
-        reason = f"BehaviorTree.CPP 4.10 refuses more than one {alone[0].id} in it"
+        reason = f"BehaviorTree.CPP refuses more than one {alone[0].id} in it since 4.7"
         yield diagnostic("BT132", place_of(node), notes, None, id=node.id, reason=reason)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 
+from btlang.backends.wording import asks_or_checks, id_words
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.engine.script.tokens import ScriptError, Tokens
 from btlang.projects.ports import attribute_value
@@ -14,7 +15,8 @@ from btlang.tree.node import Node
 def restarted_actions(nodes: Iterable[Node], sort_of: Callable[[Node], str]) -> Iterator[Diagnostic]:
     """Report BT243 for actions that succeed and start again, because a later child of a ReactiveSequence may run on.
 
-    `sort_of` says of a leaf whether it is an "Action" that takes time, a "Condition", or "" for what isn't known.
+    `sort_of` says of a leaf whether it is an "Action" that isn't meant for each tick, a "Condition", or "" for what
+    isn't known.
     """
     for node in nodes:
         kind = CATALOGUE.get(node.id)
@@ -25,6 +27,18 @@ def restarted_actions(nodes: Iterable[Node], sort_of: Callable[[Node], str]) -> 
             if not child.children and sort_of(child) == "Action" and child.span is not None:
                 if any(each.children or sort_of(each) != "Condition" for each in later):
                     yield diagnostic("BT243", child.span, id=child.id, parent=node.id)
+
+
+_SETTING = ("set", "unset", "reset", "update", "clear")
+_PUBLISHING = ("pub", "publish")
+
+
+def may_be_repeated(node_id: str, is_instant: Callable[[str], bool]) -> bool:
+    """Return whether an action is worded as one that may be done at each tick: it asks, publishes, or sets a value at
+    once.
+    """
+    first = id_words(node_id)[0]
+    return asks_or_checks(node_id) or first in _PUBLISHING or (first in _SETTING and is_instant(node_id))
 
 
 def double_quotes(nodes: Iterable[Node]) -> Iterator[Diagnostic]:

@@ -47,12 +47,12 @@ def keys_read(nodes: Iterable[Node], outputs_of: OutputsOf) -> frozenset[str]:
 
 
 def unread_values(nodes: Iterable[Node], outputs_of: OutputsOf, read: frozenset[str]) -> Iterator[Diagnostic]:
-    """Report BT235 for the keys that only output ports name, and that scripts only assign to."""
+    """Report BT235 for the keys that only output ports name, and that scripts only assign to; `_` says so itself."""
     for node in nodes:
         outputs = outputs_of(node)
         for name, text in node.ports:
             for key in _keys_set(node.id, name, text, outputs):
-                if key not in read and key[:1] != "@" and name not in _FOR_NAVIGATOR:
+                if key not in read and key[:1] != "@" and key.strip("_") and name not in _FOR_NAVIGATOR:
                     yield diagnostic("BT235", attribute_value(node, name), key=key, port=name, id=node.id)
 
 
@@ -127,6 +127,10 @@ def unknown_nodes(
         near, words_near = misspelt(node_id, described), misspelt(node_id, words)
         # a tag with an end tag can't be changed alone
         fix = None if first.children and place.text == node_id else suggest_name(place, near)
-        times = {1: "once", 2: "twice"}.get(len(found), f"{len(found)} times")
         help = f"Similar: {', '.join(near or words_near)}" if near or words_near else ""
-        yield diagnostic("BT231", place, (), fix, id=node_id, times=times, help=help)
+        yield diagnostic("BT231", place, (), fix, id=node_id, times=count_times(len(found)), help=help)
+
+
+def count_times(number: int) -> str:
+    """Say how often something is done."""
+    return {1: "once", 2: "twice"}.get(number, f"{number} times")

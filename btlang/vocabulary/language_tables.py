@@ -119,6 +119,10 @@ WORD_LISTS = frozenset((
 ))  # fmt: skip
 
 
+_NODE_DETAIL = re.compile(r"[^\W\d][^{}]*(\{=[^{}]+\})?")
+_NODE_FORM = re.compile(r"[^\W\d][^{}]*(\{\w+(=[^{}]*)?\}[^{}]*)?")
+
+
 def _words(value: object) -> bool:
     return isinstance(value, list) and all(isinstance(item, str) and item for item in value)
 
@@ -172,6 +176,14 @@ def _is_text(value: object) -> bool:
     return isinstance(value, str) and bool(value)
 
 
+def _node_forms(value: object) -> bool:
+    return _words(value) and all(_NODE_FORM.fullmatch(each) for each in value)  # type: ignore[attr-defined]
+
+
+def _is_node_detail(value: object) -> bool:
+    return isinstance(value, str) and _NODE_DETAIL.fullmatch(value) is not None
+
+
 def _is_contracted(value: object) -> bool:
     return isinstance(value, str) and 1 <= len(value.split()) <= 2
 
@@ -199,6 +211,8 @@ TABLES: dict[str, tuple[Callable[[object], bool], str]] = {
     "pronouns": (_words, "a list of types"),
     "meanings": (_between, "one of " + ", ".join(CONNECTIVES)),
     "nodes": (_is_text, "the words of a node"),
+    "node_details": (_is_node_detail, "words, perhaps with a text that isn't said: {=text}"),
+    "node_forms": (_node_forms, "a list of words, each perhaps with one {port} or {port=text} behind a word"),
     "contractions": (_is_contracted, "a word, or two"),
     "direct": (_patterns, "a list of patterns"),
     "perfect": (_is_text, "another verb"),
@@ -283,7 +297,9 @@ _LANGUAGE: dict[str, Any] = {
     "third_person": {}, "direct": {}, "perfect": {}, "of_robot": {}, "happened": {},
     "negative_subjects": {}, "plurals": {}, "asking": {}, "plural_endings": {}, "nouns": {}, "everyone": {},
     "other_names": {},
-    "pronouns": {}, "nodes": {}, "meanings": {}, "numbers": {}, "multipliers": {}, "fractions": {}, "times": {},
+    "pronouns": {}, "nodes": {}, "node_details": {}, "node_forms": {}, "meanings": {}, "numbers": {},
+    "multipliers": {}, "fractions": {},
+    "times": {},
     "parts_of_day": {}, "clock": {},
 }  # fmt: skip
 

@@ -191,6 +191,10 @@ class Lexicon:
         """How a condition says that it has held for some time, and what it says: `has been`, `is`."""
         self.nodes: dict[str, str] = language["nodes"]
         """The words of nodes that have some, by their ids."""
+        self.node_details: dict[str, str] = language["node_details"]
+        """What says ports of all nodes: `unless`, with a text in quotes behind it, or `with all values {=true}`."""
+        self.node_forms: dict[str, list[str]] = language["node_forms"]
+        """What says a node with the children below it, by its id: `at most {hz} times a second`, `once {times=1}`."""
         self.meanings: dict[str, str] = language["meanings"]
         """Connectives that have another role between commands: `and` may mean `then`."""
         self.about: dict[str, About] = about_roles(tables, english.about if english is not None else {})

@@ -44,13 +44,13 @@ def when(condition: Node, child: Node, otherwise: Node = SKIPPED) -> Node:
 CASES = [
     (
         inverter(sequence(WAVE, fallback(NOD, TURN, WAVE), NOD)),
-        "do inverter:\n  do sequence:\n    wave\n    nod or turn left or wave\n    nod",
+        "do inverter:\n  step by step:\n    wave\n    nod or turn left or wave\n    nod",
     ),
     (fallback(sequence(WAVE, NOD), TURN), "try:\n  wave\n  nod\notherwise:\n  turn left"),
     (fallback(WAVE, sequence(NOD, TURN), WAVE), "try in order:\n  wave\n  nod then turn left\n  wave"),
     (fallback(WAVE, parallel(NOD, TURN)), "try in order:\n  wave\n  nod and turn left"),
     (parallel(TURN, fallback(NOD, WAVE)), "at the same time:\n  turn left\n  nod or wave"),
-    (sequence(WAVE, sequence(NOD, fallback(TURN, WAVE))), "wave\ndo sequence:\n  nod\n  turn left or wave"),
+    (sequence(WAVE, sequence(NOD, fallback(TURN, WAVE))), "wave\nstep by step:\n  nod\n  turn left or wave"),
     (when(LOW, sequence(WAVE, NOD), TURN), "if battery is low:\n  wave\n  nod\notherwise:\n  turn left"),
     (when(LOW, when(LOW, WAVE, NOD)), "if battery is low, (if battery is low, wave otherwise nod)"),
     (when(fallback(sequence(LOW, LOW), LOW), WAVE),
@@ -58,7 +58,7 @@ CASES = [
     (inverter(sequence(WAVE, parallel(NOD, TURN))), "do inverter:\n  wave then (nod and turn left)"),
     (inverter(sequence(WAVE, times(NOD))), "do inverter:\n  wave then (nod 3 times)"),
     (inverter(sequence(times(WAVE), NOD)), "do inverter:\n  wave 3 times then nod"),
-    # `within` has no block, and a sequence that can be skipped is no `do sequence:` below `try in order:`
+    # `within` has no block, and a sequence that can be skipped is no `step by step:` below `try in order:`
     (within(sequence(WAVE, fallback(NOD, TURN))), "(wave then (nod or turn left)) within 9 s"),
     (fallback(WAVE, NOD, sequence(when(LOW, WAVE), fallback(NOD, TURN))),
      "try in order:\n  wave\n  nod\n  (if battery is low, wave) then (nod or turn left)"),

@@ -9,6 +9,7 @@ import warnings
 from importlib.util import find_spec
 from pathlib import Path
 from shutil import which
+from typing import Any
 
 import pydot
 import pytest
@@ -314,9 +315,39 @@ def test_a_port_that_is_missing_is_no_number_out_of_range() -> None:
     assert told(f'<root BTCPP_format="4">{tree}</root>') == [("BT132", 2, False), ("BT130", 2, True)]
 
 
-def test_py_trees_tells_of_nodes_with_children_that_are_not_there() -> None:
-    tree = btlang.parse_tree('do "PathLongerOnApproach" with path "x":\n  wave')
-    with pytest.raises(MissionError, match="BT131: There's no node 'PathLongerOnApproach' that takes children"):
+def test_py_trees_has_classes_for_nodes_with_children_that_are_not_there() -> None:
+    """They stand for nodes of other programs: what these do, whoever uses the module writes."""
+    tree = btlang.parse_tree(
+        'do "WithLamp" called "light" with brightness 0.5:\n  wave\n'
+        'do "For-Each":\n  nod\n  wave\ndo "For Each":\n  nod\n  nod\ndo "WithLamp":\n  do "WithLamp":\n    nod\n'
+        'do "Sequence2":\n  nod\ndo "class":\n  nod\ndo "PrintingLeaf":\n  nod\ndo "3D":\n  nod\n  nod'
+    )
+    names: dict[str, Any] = {"__name__": "tree"}
+    exec(tree.to("py_trees"), names)
+    root = names["create_root"]()
+    found = [(type(node).__name__, node.name) for node in root.iterate() if hasattr(node, "ports")]
+    assert sorted(found) == [
+        ("For_Each", "For-Each"), ("For_Each_", "For Each"), ("Node3D", "3D"), ("PrintingLeaf_", "PrintingLeaf"),
+        ("Sequence2", "Sequence2"), ("WithLamp", "WithLamp"), ("WithLamp", "WithLamp"), ("WithLamp", "light"),
+        ("class_", "class"),
+    ]  # fmt: skip
+    [light] = [node for node in root.iterate() if node.name == "light"]
+    assert light.ports == {"brightness": "0.5"}
+    root.tick_once()
+    assert root.status.value == "SUCCESS"
+
+
+def test_live_trees_of_py_trees_need_all_nodes() -> None:
+    from btlang.backends.py_trees.build import to_py_trees
+
+    tree = btlang.parse_tree('do "WithLamp":\n  wave')
+    with pytest.raises(MissionError, match="BT131: There's no node 'WithLamp' that takes children"):
+        to_py_trees(tree.tree, tree.vocabulary)
+
+
+def test_py_trees_knows_no_skipped_child_of_a_node_that_is_not_there() -> None:
+    tree = btlang.parse_tree('do "WithLamp":\n  do always success with _skipIf "true"')
+    with pytest.raises(MissionError, match="BT134"):
         tree.to("py_trees")
 
 

@@ -134,7 +134,7 @@ def test_only_one_asynchronous_sequence_in_a_reactive_one(tmp_path: Path, capsys
     part = '<AsyncSequence><Log text="x"/></AsyncSequence>'
     trees = f"<ReactiveSequence>{part * 2}</ReactiveSequence><ReactiveSequence>{part}</ReactiveSequence>{part}{part}"
     [message] = found(tmp_path, capsys, trees, code="BT132")
-    assert "BehaviorTree.CPP 4.10 refuses more than one AsyncSequence in it" in message
+    assert "BehaviorTree.CPP refuses more than one AsyncSequence in it since 4.7" in message
 
 
 SCRIPTS = '<Script code="color := RED; other := GREN; third := BLUE"/><Log text="{color}{other}{third}"/>'

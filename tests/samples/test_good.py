@@ -84,7 +84,7 @@ ROWS = {
     "Values of the mission": "values_of_the_mission", "Values from outside": "given", "for each": "for_each",
     # nodes.md
     "A node by its id": "nodes", "Ports and names behind phrases": "given", "Nodes with children": "nodes",
-    "Subtrees": "nodes",
+    "Names and forms of nodes with children": "node_forms", "Subtrees": "nodes",
 }  # fmt: skip
 """The headings of the language reference, each with the sample of what stands below it."""
 

@@ -30,7 +30,8 @@ from btlang.vocabulary.value_type import Unit, ValueType
 
 GOOD = Path(__file__).parents[1] / "samples" / "good"
 # What a mission includes is in English; ids and ports of nodes, and the attribute `name`, are so in every language.
-SAMPLES = sorted(path for path in GOOD.glob("*.txt") if path.stem not in ("includes", "nodes", "called_name", "given"))
+_IN_ENGLISH = ("includes", "nodes", "node_forms", "called_name", "given")
+SAMPLES = sorted(path for path in GOOD.glob("*.txt") if path.stem not in _IN_ENGLISH)
 _TYPES = re.compile(r"(?<![a-z])(cynpr|crefba|bowrpg|grkg|pbhag)(?![a-z])")
 
 
@@ -41,7 +42,7 @@ def invented(text: str) -> str:
 
 def _pattern(text: str) -> str:
     """The names of slots stay."""
-    return re.sub(r"\{\w+\}|[^{]+", lambda part: part[0] if part[0][0] == "{" else invented(part[0]), text)
+    return re.sub(r"\{\w+(?:=[^}]*)?\}|[^{]+", lambda part: part[0] if part[0][0] == "{" else invented(part[0]), text)
 
 
 def _entry(entry: Entry) -> Entry:
@@ -76,7 +77,9 @@ def _language(tables: dict[str, Any]) -> dict[str, Any]:
             made[key] = {invented(ending): invented(other) for ending, other in value.items()}
         elif key == "contractions":
             made[key] = {invented(word): invented(read) for word, read in value.items()}
-        elif key == "nodes":
+        elif key == "node_forms":
+            made[key] = {node_id: list(map(_pattern, forms)) for node_id, forms in value.items()}
+        elif key in ("nodes", "node_details"):
             made[key] = {node_id: _pattern(words) for node_id, words in value.items()}
         elif key in ("negations", "negative_subjects", "plurals", "doing", "third_person", "synonyms", "direct"):
             made[key] = {invented(word): list(map(invented, words)) for word, words in value.items()}

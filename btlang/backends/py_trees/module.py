@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import ast
+import keyword
 import pkgutil
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from btlang.backends.py_trees.plan import Part, Plan, Variable, plan_of
 from btlang.backends.python_module import SourceLines, Statements, format_call, format_literal
@@ -78,6 +79,24 @@ class PrintingZones:
     def keep_in(self, *names: str) -> PrintingRestriction:
         return PrintingRestriction(f"stay in {', '.join(names)}")
 '''
+_DECORATOR = '''
+
+class {name}(decorators.PassThrough):
+    """Stands for {id}, a node of another program: has the status of its child until you write what it does."""
+
+    def __init__(self, name: str, child: behaviour.Behaviour, ports: dict[str, str]) -> None:
+        super().__init__(name, child)
+        self.ports = ports
+'''
+_COMPOSITE = '''
+
+class {name}(composites.Sequence):
+    """Stands for {id}, a node of another program: a sequence until you write what it does."""
+
+    def __init__(self, name: str, children: list[behaviour.Behaviour], ports: dict[str, str]) -> None:
+        super().__init__(name, memory=True, children=children)
+        self.ports = ports
+'''
 _CREATE = '''
 
 def create_root(
@@ -103,12 +122,14 @@ _INDENT = "    "
 
 def to_module(tree: Tree, vocabulary: Lexicon) -> str:
     """Return the text of the module; errors as for `plan_of`. It has the statuses that to_py_trees has (build.py)."""
-    plan = plan_of(tree, vocabulary)
+    plan = plan_of(tree, vocabulary, with_parents=True)
+    parents = _parents(plan)
     with_values = "engine_leaf" in plan.uses
-    body = "\n".join([_INDENT + line for line in _body(plan, with_values)])
+    body = "\n".join([_INDENT + line for line in _body(plan, with_values, parents)])
     with_zones = not plan.uses.isdisjoint(("KeepOut", "KeepIn"))
     create = _CREATE.format(zones=f"{_INDENT}zones: RestrictableZones = PrintingZones(),\n" if with_zones else "")
-    made = _LEAF + (_ZONES if with_zones else "") + create + body + "\n" + _FOOT
+    stands_for = "".join(map(_class_of, parents.items()))
+    made = _LEAF + stands_for + (_ZONES if with_zones else "") + create + body + "\n" + _FOOT
     rest = (_VALUES if with_values else "") + _definitions(plan.uses) + made
     needs = "py_trees, and btlang for the values of the mission" if with_values else "only py_trees"
     imports = []
@@ -121,7 +142,35 @@ def to_module(tree: Tree, vocabulary: Lexicon) -> str:
     return _HEAD.format(needs=needs, imports="\n".join(imports), zones=zones) + rest
 
 
-def _body(plan: Plan, with_values: bool) -> list[str]:
+def _parents(plan: Plan) -> dict[tuple[str, bool], str]:
+    """Return the names of the classes for unknown nodes with children, by the id and whether they have several."""
+    found: dict[tuple[str, bool], str] = {}
+    taken = {*keyword.kwlist, *(name for names in _IMPORTS.values() for name in names)}
+    own = ((pkgutil.get_data(__package__, f"{module}.py") or b"").decode() for module in _MODULES)
+    for text in (*own, _LEAF, _ZONES, _CREATE, _VALUES):
+        taken.update(re.findall(r"[^\W\d]\w*", text))
+    for part in _parts(plan.root):
+        if part.make == "parent":
+            key = _parent_key(part)
+            name = re.sub(r"\W", "_", key[0], flags=re.ASCII)
+            name = name if name[:1].isalpha() else f"Node{name}"
+            while key not in found and name in taken:
+                name += "_"
+            taken.add(found.setdefault(key, name))
+    return found
+
+
+def _parent_key(part: Part) -> tuple[str, bool]:
+    return dict(part.arguments)["id"], len(part.children) > 1
+
+
+def _class_of(parent: tuple[tuple[str, bool], str]) -> str:
+    (node_id, has_several), name = parent
+    shown = re.sub(r"[^\w .-]", "_", node_id)  # no quotes or backslashes in a docstring
+    return (_COMPOSITE if has_several else _DECORATOR).format(name=name, id=shown)
+
+
+def _body(plan: Plan, with_values: bool, parents: Mapping[tuple[str, bool], str]) -> list[str]:
     """Return the lines of `create_root`."""
     lines = []
     if any(argument == Variable("interrupts") for part in _parts(plan.root) for _, argument in part.arguments) or (
@@ -134,13 +183,17 @@ def _body(plan: Plan, with_values: bool) -> list[str]:
     statements = Statements()
 
     def combine(part: Part, children: list[SourceLines]) -> SourceLines:
-        return statements.named_if_deep(_call(part, children))
+        return statements.named_if_deep(_call(part, children, parents))
 
     root = fold(plan.root, lambda part: part.children, combine)
     return [*lines, *statements.lines, f"return {root.lines[0]}", *root.lines[1:]]
 
 
-def _call(part: Part, children: list[SourceLines]) -> SourceLines:
+def _call(part: Part, children: list[SourceLines], parents: Mapping[tuple[str, bool], str]) -> SourceLines:
+    if part.make == "parent":
+        ports = _literal(dict(part.arguments)["ports"])
+        below = format_call("", children, "[]") if len(children) > 1 else children[0]
+        return format_call(parents[_parent_key(part)], [format_literal(part.name), below, ports])
     if part.make == "leaf":
         values = dict(part.arguments)
         made = format_call("leaf", [format_literal(part.name), format_literal(values["id"]), _literal(values["ports"])])
@@ -168,7 +221,7 @@ def _parts(root: Part) -> Iterable[Part]:
     while waiting:
         part = waiting.pop()
         yield part
-        waiting += part.children
+        waiting += reversed(part.children)
 
 
 def _definitions(used: Iterable[str]) -> str:

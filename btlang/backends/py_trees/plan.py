@@ -37,8 +37,9 @@ class Variable(Record):
 class Part(Record):
     """A call of `make` with a name, the parts below it, and further arguments.
 
-    `make` is a class of node.py and the modules beside it, "composites.Sequence" or another of py_trees, "leaf", or
-    "engine_leaf". `starts` marks an action that stops others before it starts (see `interrupting` in node.py).
+    `make` is a class of node.py and the modules beside it, "composites.Sequence" or another of py_trees, "leaf",
+    "parent" for a node of another program with children, or "engine_leaf". `starts` marks an action that stops others
+    before it starts (see `interrupting` in node.py).
     """
 
     make: str
@@ -68,12 +69,17 @@ class _Inexpressible(Exception):
     """An error that says why py_trees can't express a node."""
 
 
-def plan_of(tree: Tree, vocabulary: Lexicon, is_action: Callable[[Node], bool] | None = None) -> Plan:
+def plan_of(
+    tree: Tree, vocabulary: Lexicon, is_action: Callable[[Node], bool] | None = None, *, with_parents: bool = False
+) -> Plan:
     """Plan a tree, each use of a subtree for itself. `is_action` says which leaves take more than one tick.
+
+    With `with_parents`, unknown nodes with children are parts "parent".
 
     Raises MissionError with all errors of the tree (BT126, BT131, BT132), or all that py_trees can't express (BT134).
     """
     problems = tree_problems(tree, vocabulary, lambda id: LeafBinding(accept_anything))
+    problems = [problem for problem in problems if not (with_parents and problem.code == "BT131")]
     if problems:
         raise MissionError(problems)
     instances = expand(tree, Blackboard(), EngineState(lambda id: None, Clock(), {}, {}, None))
@@ -157,7 +163,11 @@ class _Planner:
             return self._leaf(instance)
         skips = [self._skips[i] for i in below]
         kind = CATALOGUE.get(node.id)
-        self._skips[index] = _SKIPPED[kind.skipped if kind is not None else "any"](skips)
+        if kind is None:
+            if any(skips):
+                raise _Inexpressible("a child of it can be skipped, and only btlang's nodes know that")
+            return Part("parent", self._name(node), children, (("id", node.id), ("ports", dict(node.ports))))
+        self._skips[index] = _SKIPPED[kind.skipped](skips)
         if node.id == "RunOnce":
             self._skips[index] = skips[0] or _truth(node, "then_skip")
         native = not self._suspended[index] and not any(skips) and (node.id != "RunOnce" or not self._skips[index])

@@ -33,7 +33,8 @@ SPOKEN_NAME = "_name"
 class TreeHead(Record):
     """A BehaviorTree before its nodes are read.
 
-    Its name, its ID in the file ("" where it has none), its element, the first element behind it.
+    Its name, its ID in the file ("" where it has none), its element, the first element behind it. Unless it `is_sound`,
+    its nodes aren't read.
     """
 
     name: str
@@ -41,6 +42,7 @@ class TreeHead(Record):
     index: int
     end: int
     span: Span
+    is_sound: bool = True
 
     @property
     def id(self) -> str:
@@ -62,8 +64,6 @@ class XmlFile:
         self.notes = Notes(document)
         self.problems: list[Diagnostic] = []
         self.warnings: list[Diagnostic] = []
-        self.is_sound = True
-        """Whether its trees can be read, as far as that is known before."""
         self.heads: list[TreeHead] = []
         self.includes: list[tuple[dict[str, str], Span]] = []
         self.models: dict[str, NodeModel] = {}
@@ -147,12 +147,12 @@ class XmlFile:
         unnamed = sum(not head.written for head in self.heads)
         name = attributes.get(SPOKEN_NAME, "") or written or f"BehaviorTree_{unnamed}"
         span = self.document.span(index)
-        self.heads.append(TreeHead(name, written, index, end, span))
         count = self.document.depths[index:end].count(2)
         if count != 1:
             problem = f"contains {count} nodes instead of one" if count else "contains no node"
             advice = "Put them into one, such as <Sequence>." if count else "Put one into it, such as <Sequence>."
             self._wrong("BT122", span, what=span.text, problem=problem, advice=advice)
+        self.heads.append(TreeHead(name, written, index, end, span, count == 1))
 
     def _find_texts(self) -> None:
         """Texts without effect: those of models are descriptions."""
@@ -183,12 +183,12 @@ class XmlFile:
     def read_trees(self, names: dict[str, str], kinds: dict[str, str], defaults: dict[str, Pairs]) -> None:
         """Reads the nodes.
 
-        `names` are the trees of all files by the ID that they have there, `defaults` those of their ports; `kinds` gets
-        those that tags declare.
+        `names` are the trees of all files by the ID that they have there, `defaults` those of the ports of each tree by
+        its name; `kinds` gets those that tags declare.
         """
         document = self.document
         reader = NodeReader(document, self.dialect, names, kinds, defaults)
-        for head in self.heads:
+        for head in (head for head in self.heads if head.is_sound):
             first, end = head.index + 1, head.end
             root, tags = reader.read(first, end)
             self.trees.append((head.name, root))

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import cache
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
-from btlang.diagnostics.files import MOST_DEEP, TOO_DEEP, included_path, read_included, real_path
+from btlang.diagnostics.files import MOST_DEEP, TOO_DEEP, included_path, read_included, read_source, real_path
 from btlang.frontends.btcpp.file import TreeHead, XmlFile
 from btlang.frontends.btcpp.models import MODEL_KINDS, nav2_models, subtree_defaults
 from btlang.frontends.btcpp.scan import Document, scanned
@@ -19,6 +21,8 @@ from btlang.tree.visit import in_order_of_use
 
 _NO_NODES = CATALOGUE.keys() | TO_4.keys() | {"root", "BehaviorTree", MODEL, *MODEL_KINDS}
 """Tags that are no ids of nodes that somebody made."""
+_ID = re.compile(r"""\bID\s*=\s*["']([^"'<>\n]+)["']""")
+_PACKAGE = re.compile(r"<name>\s*([\w-]+)\s*</name>")
 _ROS_FOLDERS = "AMENT_PREFIX_PATH"  # where ROS 2 has its packages
 
 
@@ -29,9 +33,10 @@ class XmlFiles:
     """The files that were added, each before those that it includes; what is wrong with them, and what is only odd.
 
     A file that is included and is one of `sources` isn't read again. Unless it `follows_includes`, none is read.
+    `dialect` is that of files that could be of either version.
     """
 
-    def __init__(self, sources: Iterable[Source] = (), *, follows_includes: bool = True) -> None:
+    def __init__(self, sources: Iterable[Source] = (), *, follows_includes: bool = True, dialect: int = 3) -> None:
         self._sources = {real_path(source.name): source for source in sources}
         self.files: list[XmlFile] = []
         self.problems: list[Diagnostic] = []
@@ -40,12 +45,16 @@ class XmlFiles:
         self._includes: dict[str, list[str]] = {}  # by real path, that of each file, too
         self._kinds: dict[str, str] = {}  # of nodes, as models and tags declare them
         self._follows_includes = follows_includes
+        self._dialect = dialect
+        self.tree_models: dict[str, NodeModel] = {}
+        """Of each tree that has a model, by its name; once the trees are read."""
+        self._unread: set[str] = set()  # IDs in files that are no XML
 
     def add(self, source: Source) -> None:
         """Reads a file and what it includes, unless that is done."""
         real = real_path(source.name)
         if real not in self._read:
-            self._read_file(source, (real,))
+            self._read_file(source, (real,), self._dialect)
 
     @property
     def models(self) -> dict[str, NodeModel]:
@@ -60,12 +69,18 @@ class XmlFiles:
     @property
     def names(self) -> dict[str, str]:
         """The names of the trees that can be read, by the ID that other files call them; the first counts."""
-        return {head.id: head.name for file in reversed(self._sound) for head in reversed(file.heads)}
+        return {head.id: head.name for file in reversed(self.files) for head in reversed(file.heads)}
 
     @property
     def trees(self) -> dict[str, Node]:
         """The trees by name, once they are read."""
         return {name: root for file in self.files for name, root in file.trees}
+
+    @property
+    def unread(self) -> frozenset[str]:
+        """The names of trees that can't be read, and the IDs in files that are no XML, which may define them."""
+        names = (head.name for file in self.files for head in file.heads if not head.is_sound)
+        return frozenset((*self._unread, *names))
 
     @property
     def used(self) -> set[str]:
@@ -78,13 +93,29 @@ class XmlFiles:
         own_names: Callable[[XmlFile], Mapping[str, str]] = lambda file: file.names,
         own_models: Callable[[XmlFile], Mapping[str, NodeModel]] = lambda _: {},
     ) -> None:
-        """Reads the trees of all sound files; in each, an ID means the file's own trees and models before others."""
+        """Reads the trees of all files; in each, an ID means the file's own trees and models before others."""
         kinds = self._kinds = {node_id: model.kind for node_id, model in models.items() if model.kind != SUBTREE}
-        names, defaults = self.names, subtree_defaults(models.values())
-        for file in self._sound:
-            known = {**defaults, **subtree_defaults(own_models(file).values())}
-            file.read_trees({**names, **own_names(file)}, kinds, known)
+        names = self.names
+        self.tree_models = self._tree_models(models, own_names)
+        defaults = subtree_defaults(self.tree_models)
+        for file in self.files:
+            meant = {**names, **own_names(file)}
+            own = {meant.get(each.id, each.id): each for each in own_models(file).values() if each.kind == SUBTREE}
+            file.read_trees(meant, kinds, {**defaults, **subtree_defaults(own)} if own else defaults)
             self.problems += file.problems
+
+    def _tree_models(
+        self, models: Mapping[str, NodeModel], own_names: Callable[[XmlFile], Mapping[str, str]]
+    ) -> dict[str, NodeModel]:
+        """The model of each tree that has one, by its name: a model is about the tree that its file means by the ID."""
+        names, first, found = self.names, self.models, dict[str, NodeModel]()
+        for file in self.files:
+            for node_id, model in file.models.items():
+                if model.kind == SUBTREE and models.get(node_id) is first[node_id]:
+                    found.setdefault(own_names(file).get(node_id) or names.get(node_id, node_id), model)
+        others = {node_id: model for node_id, model in models.items() if model is not first.get(node_id)}
+        found.update((names.get(node_id, node_id), model) for node_id, model in others.items() if model.kind == SUBTREE)
+        return found
 
     def known_models(self) -> list[NodeModel]:
         """The models of the files, then kinds that tags declare, then what is known of the Nav2 nodes that are used;
@@ -116,32 +147,34 @@ class XmlFiles:
                     found.setdefault(node_id, (document, at))
         return {node_id: document.span(at) for node_id, (document, at) in found.items()}
 
-    def circles(self) -> list[Diagnostic]:
-        """BT124 for each tree that contains itself."""
-        heads = {head.name: head for file in self._sound for head in file.heads}
+    def circles(self) -> list[list[str]]:
+        """The names of trees that contain each other, each circle once."""
+        heads = {head.name: head for file in self.files for head in file.heads}
         uses = {
             name: [used for node in nodes if (used := node.port("ID")) in heads]
             for file in self.files for name, nodes in file.uses.items()
         }  # fmt: skip
+        return in_order_of_use(uses)[1]
+
+    def circle_problems(self) -> list[Diagnostic]:
+        """BT124 for each circle, at the first of its trees."""
+        spans = {head.name: head.span for file in self.files for head in file.heads}
         found = [(circle[0], " contains ".join(f"'{name}'" for name in (*circle, circle[0])))
-                 for circle in in_order_of_use(uses)[1]]  # fmt: skip
-        return [diagnostic("BT124", heads[name].span, name=name, circle=circle) for name, circle in found]
+                 for circle in self.circles()]  # fmt: skip
+        return [diagnostic("BT124", spans[name], name=name, circle=circle) for name, circle in found]
 
-    @property
-    def _sound(self) -> list[XmlFile]:
-        return [file for file in self.files if file.is_sound]
-
-    def _read_file(self, source: Source, within: tuple[str, ...], dialect: int = 3) -> None:
+    def _read_file(self, source: Source, within: tuple[str, ...], dialect: int) -> None:
         """Reads a file and what it includes; `within` are the files around it, its own last, `dialect` is theirs."""
         self._read.add(within[-1])
         try:
             file = XmlFile(scanned(source), dialect, within[-1])
         except MissionError as error:
             self.problems += error.diagnostics
+            self._unread.update(_ID.findall(source.text))
             return
         self.problems += file.problems
         self.warnings += file.warnings
-        file.is_sound = not file.problems
+        file.problems.clear()
         file.problems.clear()
         self.files.append(file)
         self._includes[file.path] = []
@@ -199,7 +232,8 @@ class XmlFiles:
         if not package:
             return ""
         paths = {real: real.split(os.sep) for real in self._sources}
-        found = [real for real, parts in paths.items() if parts[-len(folders) :] == folders and package in parts]
+        ends_so = (real for real, parts in paths.items() if parts[-len(folders) :] == folders)
+        found = [real for real in ends_so if package in paths[real] or _package_of(os.path.dirname(real)) == package]
         return found[0] if len(found) == 1 else ""
 
     def _not_included(self, span: Span, *, path: str, reason: str) -> None:
@@ -235,6 +269,19 @@ def repeated(heads: Iterable[TreeHead]) -> Iterator[Diagnostic]:
 def same_id(head: TreeHead, first: TreeHead) -> Diagnostic:
     """BT127: a tree has the ID of an earlier one."""
     return diagnostic("BT127", head.span, ((first.span, "the first one"),), name=head.id)
+
+
+@cache
+def _package_of(folder: str) -> str:
+    """The name of the ROS 2 package in which a folder is, "" if it is in none."""
+    manifest, above = os.path.join(folder, "package.xml"), os.path.dirname(folder)
+    if not os.path.isfile(manifest):
+        return _package_of(above) if above != folder else ""
+    try:
+        name = _PACKAGE.search(read_source(manifest).text)
+    except MissionError:
+        return ""
+    return name[1] if name is not None else ""
 
 
 def _package_folder(package: str) -> str | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
@@ -110,13 +110,13 @@ def why_no_port(name: str) -> str:
     return "" if is_xml_name(name) else "an attribute cannot have this name"
 
 
-def subtree_defaults(models: Iterable[NodeModel]) -> dict[str, Pairs]:
-    """By the ID of a tree, its ports that have a default, with it.
+def subtree_defaults(models: Mapping[str, NodeModel]) -> dict[str, Pairs]:
+    """Of each tree that has a model, the ports with a default, and that.
 
     As in BehaviorTree.CPP an empty text is none; a name such as `_autoremap` describes the node, and is no port.
     """
-    return {model.id: tuple((port.name, port.default) for port in model.ports if port.default and port.name[:1] != "_")
-            for model in models if model.kind == SUBTREE}  # fmt: skip
+    return {name: tuple((port.name, port.default) for port in model.ports if port.default and port.name[:1] != "_")
+            for name, model in models.items()}  # fmt: skip
 
 
 def nav2_models(ids: Iterable[str]) -> dict[str, NodeModel]:

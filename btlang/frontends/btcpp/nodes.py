@@ -39,7 +39,8 @@ class NodeReader:
     """Makes the nodes of one file. `problems` is what is wrong with them.
 
     `names` are the trees by the ID that they have in the file. `kinds` are the kinds of nodes by id; those that tags
-    declare are added to it. `defaults` are ports that a SubTree of format 4 has where they are not written, by that ID.
+    declare are added to it. `defaults` are ports that a SubTree of format 4 has where they are not written, by the name
+    of its tree.
     """
 
     def __init__(
@@ -161,7 +162,7 @@ class NodeReader:
     def _subtree(self, attributes: dict[str, str], is_plus: bool) -> tuple[tuple[str, str], ...]:
         name = attributes.pop("ID", None)
         if self._dialect == 4 and attributes.get(AUTOREMAP) not in TRUE:  # else ports have the values around
-            for key, text in self._defaults.get(name or "", ()):
+            for key, text in self._defaults.get(self._names.get(name or "", name or ""), ()):
                 attributes.setdefault(key, text)
         if name is not None:
             attributes = {"ID": self._names.get(name, name), **attributes}

@@ -6,6 +6,7 @@ import os
 from collections.abc import Collection, Iterable, Iterator, Mapping
 
 from btlang.diagnostics.diagnostic import Diagnostic
+from btlang.diagnostics.files import real_path
 from btlang.frontends.btcpp.file import TreeHead, XmlFile
 from btlang.frontends.btcpp.files import XmlFiles, same_id
 from btlang.frontends.btcpp.reader import MAIN, empty_file, no_tree
@@ -13,6 +14,7 @@ from btlang.frontends.btcpp.scopes import Scopes
 from btlang.frontends.btcpp.spelling import MAIN_TREE
 from btlang.support.record import Record
 from btlang.text.source import Span
+from btlang.tree.catalogue import SUBTREE
 from btlang.tree.node import Node, NodeModel
 
 TYPE_CHECKING = False
@@ -26,9 +28,10 @@ class XmlProject(Record):
     """The trees by name, their heads, the names of those that files start with, and the models by the id of a node.
 
     Where files describe a node differently, `models` has the first model, `own_models` by the name of a file the ones
-    that are nearest to it, and `described` all of them, each with its place. `dialects` is that of each file. `unread`
-    are the IDs of trees whose files have mistakes. `problems` are errors and warnings of reading; where `is_round`,
-    trees contain themselves.
+    that are nearest to it, and `described` all of them, each with its place. `tree_models` are those of trees by name.
+    `dialects` is that of each file. `unread` are names of trees and IDs of nodes that are, or may be, in what can't be
+    read. `problems` are errors and warnings of reading; `circular` are the names of trees that contain themselves;
+    `scopes` say what files, by their real paths, belong together.
     """
 
     trees: dict[str, Node]
@@ -37,16 +40,31 @@ class XmlProject(Record):
     models: dict[str, NodeModel]
     own_models: dict[str, Mapping[str, NodeModel]]
     described: dict[str, list[tuple[NodeModel, Span]]]
+    tree_models: dict[str, NodeModel]
     dialects: dict[str, int]
     unread: frozenset[str]
     problems: tuple[Diagnostic, ...]
-    is_round: bool = False
+    circular: frozenset[str]
+    scopes: Scopes
 
-    def model(self, node: Node, node_id: str = "") -> NodeModel | None:
-        """The model of a node, or of another id, that counts where the node is."""
-        node_id = node_id or node.id
+    def model(self, node: Node) -> NodeModel | None:
+        """The model of a node that counts where the node is."""
+        if node.id == SUBTREE:
+            return self.tree_models.get(node.port("ID"))
         own = self.own_models.get(node.span.source.name, {}) if node.span is not None else {}
-        return own.get(node_id) or self.models.get(node_id)
+        return own.get(node.id) or self.models.get(node.id)
+
+    def is_joined(self, file: str) -> bool:
+        """Whether a file includes another one, or is included."""
+        return self.scopes.is_joined(real_path(file))
+
+    def may_share(self, file: str, other: str) -> bool:
+        """Whether the models of the other file may be meant in a file that includes others, or is included: it is in
+        the same program, or has models alone.
+        """
+        path, place = real_path(file), real_path(other)
+        is_apart = self.scopes.is_joined(path) and self.scopes.are_apart(path, place)
+        return not is_apart or all(head.span.source.name != other for head in self.heads.values())
 
 
 def read_project(read: XmlFiles, palettes: XmlFiles, main: str = "") -> XmlProject:
@@ -56,21 +74,22 @@ def read_project(read: XmlFiles, palettes: XmlFiles, main: str = "") -> XmlProje
     (BT127) where a program has both, or where nothing decides which of them a file means. `main` is the ID of a tree
     that must be there.
     """
-    sound = [file for file in read.files if file.is_sound]
-    unread = frozenset(head.written for file in read.files if not file.is_sound for head in file.heads)
-    heads = _named(sound)
+    files = read.files
+    heads = _named(files)
+    unread = read.unread
     models = {**read.models, **palettes.models}
-    nearest = _Nearest(read, sound, palettes.models)
+    nearest = _Nearest(read, files, palettes.models)
     read.read_trees(models, nearest.names, nearest.models)
     trees = read.trees
-    circles = read.circles()
-    problems = [*read.problems, *_once(read.warnings), *palettes.problems, *circles]
-    problems += [empty_file(file) for file in sound if not (file.heads or file.describes_nodes or file.includes)]
-    mains = {file.path: own for file in sound if (own := _main_of(file, read.names | nearest.names(file))) in trees}
+    problems = [*read.problems, *_once(read.warnings), *palettes.problems, *read.circle_problems()]
+    wrong = {problem.span.source for problem in read.problems}
+    empty = (file for file in files if not (file.heads or file.describes_nodes or file.includes))
+    problems += [empty_file(file) for file in empty if file.document.source not in wrong]
+    mains = {file.path: own for file in files if (own := _main_of(file, read.names | nearest.names(file))) in trees}
     for name, first in nearest.repeated(mains, read.used).items():
         problems.append(same_id(heads[name], heads[first]))
     known = dict.fromkeys((*read.names, *trees, *unread))  # no set: they are listed
-    for file in sound:
+    for file in files:
         asked = main or file.attributes.get(MAIN, "")
         if asked and asked not in known:
             problems.append(no_tree(file.root_span, asked, known))
@@ -81,14 +100,16 @@ def read_project(read: XmlFiles, palettes: XmlFiles, main: str = "") -> XmlProje
     return XmlProject(
         trees,
         heads,
-        frozenset(mains.values()) | _starts(sound, read),
+        frozenset(mains.values()) | _starts(files, read),
         models,
-        {file.document.source.name: nearest.models(file) for file in sound},
+        {file.document.source.name: nearest.models(file) for file in files},
         described,
+        read.tree_models,
         {file.document.source.name: file.dialect for file in read.files},
         unread,
         tuple(problems),
-        bool(circles),
+        frozenset(name for circle in read.circles() for name in circle),
+        read.scopes,
     )
 
 

@@ -44,7 +44,7 @@ class _Reader:
         # the declarations of a file override those of the files that it includes
         read.read_trees(read.models)
         trees = read.trees
-        read.problems += read.circles()
+        read.problems += read.circle_problems()
         main = self._main_tree(trees, {head.name: head for head in heads})
         self._stop_where_wrong()
         written = {head.name: head.written for head in heads}

@@ -38,11 +38,15 @@ class Scopes:
         """Whether a file includes another one, or is included."""
         return bool(self._includes.get(file)) or len(self._programs_with(file)) > 1
 
+    def are_apart(self, file: str, other: str) -> bool:
+        """Whether no program has both files."""
+        return self._programs_with(file).isdisjoint(self._programs_with(other))
+
     def _distance(self, user: str, file: str) -> tuple[int, int]:
         hops = self._reached_from(user).get(file)
         if hops is not None:
             return 0, hops
-        if not self._programs_with(user).isdisjoint(self._programs_with(file)):
+        if not self.are_apart(user, file):
             return 1, 0
         return 2, _steps(os.path.dirname(user), os.path.dirname(file))
 

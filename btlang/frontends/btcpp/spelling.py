@@ -41,7 +41,7 @@ TRUE = frozenset(("1", "true", "TRUE", "True"))
 _OF_NODES = frozenset((AUTOREMAP, AUTOREMAP_3, SHARED, *PRE_CONDITIONS, *POST_CONDITIONS))
 
 IN_NO_ID = r"""\x00-\x20\x7f<>&"'/\\:*?|."""
-"""Characters that BehaviorTree.CPP 4.10 refuses in IDs (its docs/name_validation_rules.md), for a set of a pattern."""
+"""Characters that BehaviorTree.CPP refuses in IDs (its docs/name_validation_rules.md), for a set of a pattern."""
 _NAME = re.compile(r"[^\W\d][\w.\-]*")  # of the names that XML allows, those without a colon
 
 

@@ -17,7 +17,7 @@ from btlang.frontends.mission.explanations.roles import explain_role
 from btlang.frontends.mission.explanations.spelling_rule import is_respelling
 from btlang.frontends.mission.explanations.times import explain_time, without_hour
 from btlang.frontends.mission.symbols.definitions import Definitions
-from btlang.frontends.mission.symbols.nodes import misread_node
+from btlang.frontends.mission.symbols.nodes import misread_form, misread_node
 from btlang.frontends.mission.token import (
     CORRELATIVES,
     QUANTIFIERS,
@@ -269,6 +269,10 @@ def _unknown_phrase(
         rest = text.span(at + 1, meant.last).text
         whole = text.span(at, meant.last)
         return diagnostic("BT010", whole, fix=(whole, rest), kind=kind, words=whole.text, help=nearest_known([rest]))
+    form = misread_form(text, at, vocabulary) if kind == "command" else None
+    if form is not None:
+        near_form = nearest_known(form[1])
+        return diagnostic("BT010", form[0], fix=(form[0], form[1][0]), kind=kind, words=form[0].text, help=near_form)
     names = [header.name for header in definitions.headers.values()]
     written = f" {' '.join(text.words[at:end])} "
     is_lower = span.text[1:] == span.text[1:].lower()

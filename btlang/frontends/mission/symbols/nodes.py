@@ -14,14 +14,16 @@ from btlang.frontends.mission.token import NodeCall
 from btlang.text.source import Span
 from btlang.text.spelling import respellings
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, statements
-from btlang.tree.catalogue import SUBTREE
+from btlang.tree.catalogue import SEQUENCE, SUBTREE
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.node_forms import node_details, node_forms, node_forms_by_start
 from btlang.vocabulary.node_words import is_port, read_id, role_end, subtree_named
 from btlang.vocabulary.trie import TrieNode
 
 _MOST_WORDS = 12  # of the name of a port
 _IDENTIFIER = re.compile(r"(?=\w*_|\w+[A-Z])[A-Za-z_]\w*", re.ASCII)  # `maxSpeed`, `_skipIf`: no word of English
+_NUMBER = re.compile(r"\{\w+\}|\d+(?:\.\d+)?")
 _BEHIND_ID = (END_OF_TEXT, END_OF_STATEMENT, ":", ",", "(", ")")
 
 
@@ -69,6 +71,42 @@ def read_node(
         if quoted is None:
             raise Unreadable(at, "the name of the subtree in quotes")
         ports["ID"], at = quoted
+    return _details(reader, at, node_id, ports)
+
+
+def read_form(text: Words, at: int, vocabulary: Lexicon, names: TrieNode | None = None) -> tuple[NodeCall, int] | None:
+    """A node that is said with the children below it, and where it ends: by a form such as `at most 2 times a second:`,
+    with a name before it, or, if it is a sequence, by its name alone: `"say hello":`. None for other words.
+    """
+    reader, words, name = _Reader(text, vocabulary, names), text.words, ""
+    try:
+        if words[at][0] == '"':
+            name, at = reader.text(at)
+            if words[at] == ":" and words[at + 1] in (END_OF_STATEMENT, END_OF_TEXT):
+                return NodeCall(SEQUENCE, (), name), at
+            if words[at] != ",":
+                return None
+            at += 1
+        for form in node_forms_by_start(vocabulary).get(words[at], ()):
+            end, ports = at + len(form.before), dict[str, str]()
+            if tuple(words[at:end]) != form.before:
+                continue
+            if form.value is not None:
+                ports[form.port] = form.value
+            elif form.port:
+                ports[form.port], end = reader.text(end)
+            behind = end + len(form.after)
+            if tuple(words[end:behind]) == form.after:
+                call, end = _details(reader, behind, form.id, ports)
+                if words[end] == ":" and not (name and call.name):
+                    return call.replace(name=name or call.name), end
+    except Unreadable:
+        pass
+    return None
+
+
+def _details(reader: _Reader, at: int, node_id: str, ports: dict[str, str]) -> tuple[NodeCall, int]:
+    """The node with what `called`, `with` and `giving` say of it."""
     name = ""
     called = reader.word("called", at)
     if called:
@@ -84,18 +122,20 @@ def read_details(
 
     It has no id. None where nothing of that kind follows, or it can't be read. Raises GivenTwice.
     """
-    reader, ports, name, first = _Reader(text, vocabulary, names), dict(taken), "", at
+    first = at
     try:
-        called = reader.word("called", at)
-        if called:
-            name, at = reader.text(called)
-        outputs, at = reader.ports(at, ports)
+        call, at = _details(_Reader(text, vocabulary, names), at, "", dict(taken))
     except GivenTwice:
         raise
     except Unreadable:
         return None
-    own = tuple((port, value) for port, value in ports.items() if port not in taken)
-    return (NodeCall("", own, name, tuple(outputs)), at) if at > first else None
+    own = tuple((port, value) for port, value in call.ports if port not in taken)
+    return (call.replace(ports=own), at) if at > first else None
+
+
+def is_detail(text: Words, at: int, vocabulary: Lexicon) -> bool:
+    """Whether words of their own begin that say a port which all nodes may have: `unless "x > 1"`."""
+    return _Reader(text, vocabulary).detail(at) is not None
 
 
 def outputs_at(text: Words, at: int, vocabulary: Lexicon) -> list[str]:
@@ -154,6 +194,21 @@ def misread_node(text: Words, at: int, vocabulary: Lexicon) -> tuple[Span, list[
     return Span(text.source, head.start, head.end + len(with_articles)), [*slips, f'{head.text} "{written}"']
 
 
+def misread_form(text: Words, at: int, vocabulary: Lexicon) -> tuple[Span, list[str]] | None:
+    """For words behind which a `:` ends the line: the words that are like a form, and what may have been meant."""
+    words, last = text.words, at
+    while words[last] not in (END_OF_STATEMENT, END_OF_TEXT, ":"):
+        last += 1
+    if words[last] != ":" or last == at:
+        return None
+    span = text.span(at, last)
+    number = _NUMBER.search(span.text)
+    value = number[0] if number else ""
+    said = [form.say(value) for form in node_forms(vocabulary) if (form.port and form.value is None) == bool(value)]
+    near = respellings(span.text.lower(), said)
+    return (span, near) if near else None
+
+
 def _rest(words: Sequence[str], at: int) -> Iterator[str]:
     """Up to the end of the statement."""
     return takewhile(lambda word: word not in _BEHIND_ID, words[at:])
@@ -179,10 +234,19 @@ class _Reader:
         return (*words, "words") if words is not None else None
 
     def ports(self, at: int, ports: dict[str, str]) -> tuple[list[str], int]:
-        """Reads `with width 0.05, speed 2 giving {path}` into `ports`; those behind `giving`, and where it ends."""
+        """Reads `with width 0.05, speed 2 giving {path} unless "x > 1"` into `ports`; those behind `giving`, and where
+        it ends.
+        """
         outputs: list[str] = []
         begins = gives = False
         while True:
+            detail = self.detail(at)
+            if detail is not None:
+                key, value, end = detail
+                if key in ports:
+                    raise GivenTwice(at, f"another port than {key}")
+                ports[key], at, begins = value, end, False
+                continue
             with_at, giving_at = self.word("with", at), self.word("giving", at)
             following = with_at or giving_at
             if not following:
@@ -201,6 +265,16 @@ class _Reader:
                 raise GivenTwice(following, f"another port than {key}")
             ports[key] = value
             outputs += [key] if gives else []
+
+    def detail(self, at: int) -> tuple[str, str, int] | None:
+        """A port that all nodes may have and its text, said in words of their own, and where that ends."""
+        for detail in node_details(self._vocabulary).get(self._text.words[at], ()):
+            end = at + len(detail.words)
+            if tuple(self._text.words[at:end]) == detail.words:
+                found = (detail.value, end) if detail.value is not None else self.quoted(end)
+                if found is not None:
+                    return detail.port, *found
+        return None
 
     def _another(self, at: int) -> tuple[int, str, str, int] | None:
         """Where a port begins behind a comma, its name and text, and where it ends; None where something else does."""

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.explanations.times import assumed_times
-from btlang.frontends.mission.symbols.nodes import GivenTwice, read_details, unreadable
+from btlang.frontends.mission.symbols.nodes import GivenTwice, is_detail, read_details, unreadable
 from btlang.frontends.mission.token import Called, Listed, Token, arguments_of
 from btlang.frontends.mission.tokens.counted_things import COUNTED
 from btlang.frontends.mission.tokens.two_goals import two_goals
@@ -100,7 +100,8 @@ class Calls:
         said = token.value
         if not isinstance(said, Called) or said.entry.sort not in ("action", "condition"):
             return at
-        if longest(self._vocabulary.trie, self._text, at, self._context) is not None:
+        is_phrase = longest(self._vocabulary.trie, self._text, at, self._context) is not None
+        if is_phrase and not is_detail(self._text, at, self._vocabulary):
             return at  # `with 5 s in between`
         try:
             read = read_details(self._text, at, dict(said.arguments), self._vocabulary, names)

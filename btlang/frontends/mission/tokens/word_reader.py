@@ -10,7 +10,7 @@ from bisect import bisect_right
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.symbols.includes import ROLE as INCLUDE
 from btlang.frontends.mission.symbols.names import Names
-from btlang.frontends.mission.symbols.nodes import Unreadable, read_node, unreadable
+from btlang.frontends.mission.symbols.nodes import Unreadable, read_form, read_node, unreadable
 from btlang.frontends.mission.symbols.prefixes import SEPARATORS, Prefix, span_of
 from btlang.frontends.mission.token import (
     BEFORE_CONDITIONS,
@@ -49,6 +49,7 @@ from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.language_tables import CONNECTIVES, NOT_ALONE, ORDER, QUESTIONS
 from btlang.vocabulary.lexicon import NODE_ROLES
 from btlang.vocabulary.match import Match
+from btlang.vocabulary.node_forms import node_details
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import TEXT
@@ -98,6 +99,7 @@ class WordReader:
         )
         behind = ("called", "with", "giving")
         self._details = {phrase.split()[0] for role in behind for phrase in vocabulary.roles[role]}
+        self._details |= node_details(vocabulary).keys()
         self._asking = {*vocabulary.asking["asking_be"], *vocabulary.asking["asking_do"]}
         self._joint = vocabulary.word("and")
         self._is_apart = False  # the statement that is read runs at another time than the next one
@@ -147,6 +149,9 @@ class WordReader:
 
     def _phrase(self, at: int, last: int) -> int:
         """What begins at a word, known or unknown."""
+        form = self._form(at)
+        if form:
+            return form
         match = self._without_measure(self._requests.with_name(self._match(at), at), at)
         if match is not None and match.meaning.role in NODE_ROLES:
             if end := self._node(match, at):
@@ -456,6 +461,17 @@ class WordReader:
             self._tokens.append(Token("unknown", span.start, span.end))
             return bisect_right(self._text.starts, span.end - 1)
         self._tokens.append(read[0])
+        return read[1]
+
+    def _form(self, at: int) -> int:
+        """A node that is said with the children below it, at the start of a statement. Returns where to go on, or 0."""
+        tokens, text = self._tokens, self._text
+        if statement_start(tokens, len(tokens)) != len(tokens):
+            return 0
+        read = read_form(text, at, self._vocabulary, self._names.definitions.trie)
+        if read is None:
+            return 0
+        tokens.append(Token("node", text.starts[at], text.ends[read[1] - 1], read[0]))
         return read[1]
 
     def _node(self, head: Match, at: int) -> int:
