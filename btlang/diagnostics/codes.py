@@ -204,7 +204,7 @@ _ALL = (
     Code("BT159", "It isn't clear what the robot should say: '{word}' {reason}.", "Put it in quotes, for example: {example}"),
     Code("BT158", "'{words}' only says something, so nothing is done about it.", "", "note", "remark"),
     Code("BT160", "'{words}' {problem}.", "Write for example: {example}"),
-    Code("BT161", "'{words}' can't end so: a condition ends what is forbidden.", "Write for example: {example}"),
+    Code("BT161", "'{words}' can't end so: a condition or a time of day ends what is forbidden.", "Write for example: {example}"),
     Code("BT162", "'{words}' leads where the robot may not go: it keeps out of '{zone}'."),
     Code("BT163", "'{words}' turns by half a turn each time.", "For whole turns, write: {fixed}", "note", "half turns"),
     Code("BT164", "'{words}' tells something, but a mission only says what the robot does.",

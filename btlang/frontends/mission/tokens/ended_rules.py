@@ -33,7 +33,7 @@ from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.value_type import PLACE
 
 _DAYTIME, _MOMENT = "TimeOfDay", 600.0  # seconds in which a rule notices that it has become a time
-_EXAMPLE = "it is after 6 pm"
+_EXAMPLE = "6 pm"
 _HEADS = frozenset(("every", "every_day", "at", "delay"))
 _OPEN, GO = "OpenZone", "GoTo"
 _NOT_DONE = "a definition is done once, and this holds all the time"
@@ -50,8 +50,8 @@ _WHILE = frozenset(("while", "if", "unless"))
 def with_ends(tokens: list[Token], vocabulary: Lexicon, span: Callable[[int, int], Span]) -> list[Diagnostic]:
     """Make two statements of each constraint to keep out that depends on a condition: the second opens its zones.
 
-    Returns what is wrong with constraints that a duration ends (BT161), or that stand in a statement with others before a
-    condition (BT151); `span` gives the place of some characters.
+    Returns what is wrong with constraints that a duration ends (BT161), or that stand in a statement with others before
+    a condition (BT151); `span` gives the place of some characters.
     """
     opening = vocabulary.entry(_OPEN)
     problems: list[Diagnostic] = []
