@@ -151,7 +151,7 @@ class Answers(AddressedTexts):
         question = next((token for token in reversed(self._tokens) if is_question(token)), None)
         if question is None:
             return
-        asked = self._asked_person() or (self._met if self._question_before() is not None else _person_in(question))
+        asked = self._asked_person() or (self._met if self._question_before() is not None else _person_in(question.value))
         choice = choice_of(asked)
         if asked:
             self._context.latest[PERSON] = asked if choice is None else f"{{{choice.key}}}"
@@ -246,11 +246,7 @@ class Answers(AddressedTexts):
 
     def _asked_person(self) -> str:
         """Who is asked by the question that a condition may be about whose form has begun; "" if nobody alone is."""
-        asked = self._question_before()
-        if not isinstance(asked, Called):
-            return ""
-        persons = {slot.name for slot in asked.entry.slots if slot.type == PERSON}
-        return next((text for name, text in asked.arguments if name in persons), "")
+        return _person_in(self._question_before())
 
     def _question_before(self) -> Called | Listed | None:
         """The question that a condition may be about whose form has begun."""
@@ -286,9 +282,8 @@ class Answers(AddressedTexts):
         return None
 
 
-def _person_in(question: Token) -> str:
-    """Return the one person whom a question names, "" for none."""
-    value = question.value
-    if not isinstance(value, Called):
+def _person_in(question: object) -> str:
+    """Return the one person whom a question names, "" for none or several."""
+    if not isinstance(question, Called):
         return ""
-    return next((text for name, text in value.arguments if value.entry.slot(name).type == PERSON), "")
+    return next((text for name, text in question.arguments if question.entry.slot(name).type == PERSON), "")
