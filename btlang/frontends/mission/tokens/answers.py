@@ -151,7 +151,8 @@ class Answers(AddressedTexts):
         question = next((token for token in reversed(self._tokens) if is_question(token)), None)
         if question is None:
             return
-        asked = self._asked_person() or (self._met if self._question_before() is not None else _person_in(question.value))
+        met = self._met if self._question_before() is not None else _person_in(question.value)
+        asked = self._asked_person() or met
         choice = choice_of(asked)
         if asked:
             self._context.latest[PERSON] = asked if choice is None else f"{{{choice.key}}}"

@@ -29,17 +29,17 @@ class ToldWords(SentenceReader):
             works = (at for at in reversed(range(failed)) if tokens[at].kind == WORKS)
             form = next(works, 0) if tokens[failed].kind == "otherwise" else failed
             return self._failed(run_start(tokens, form, JOINTS | STATEMENT_ENDS))
-        form = next((at for at in reversed(range(len(self._tokens))) if self._tokens[at].kind in _ASKED_BY), 0)
+        form = next((at for at in reversed(range(len(tokens))) if tokens[at].kind in _ASKED_BY), 0)
         is_other = any(token.kind in _LINE_ENDS for token in tokens[form:])
         if tokens and tokens[form].kind == WORKS:
             tried = run_start(tokens, form, JOINTS | STATEMENT_ENDS)
             return self._failed(tried) if is_other else self._found(tried)
         if tokens and tokens[form].start == tokens[form].end:
             return "" if is_other else self._replied(form)
-        asked = [token for token in self._tokens[form:] if token.kind in _IN_CONDITIONS]
+        asked = [token for token in tokens[form:] if token.kind in _IN_CONDITIONS]
         if len(asked) > 1 and asked[0].kind == "not" and asked[0].start == asked[0].end:
             del asked[0]  # of `isn't`, which the words of the condition have
-        if not self._tokens or self._tokens[form].kind not in _ASKED_BY or len(asked) != 1:
+        if not tokens or tokens[form].kind not in _ASKED_BY or len(asked) != 1:
             return ""
         if is_other or not isinstance(asked[0].value, Called):
             return ""
@@ -50,7 +50,7 @@ class ToldWords(SentenceReader):
             named = [(PERSON, person) for person in [self._context.latest.get(PERSON, "")] if person]
         words: list[str] = []
         things = [value for kind, value in named if kind in (OBJECT, DOOR)]
-        done = (token for token in self._tokens[form:] if token.kind == "command")
+        done = (token for token in tokens[form:] if token.kind == "command")
         is_over = any(is_about(token, {thing}) for token in done for thing in things)
         happened = self._vocabulary.happened if is_over else {}
         for at in words_of(text, asked[0]):
