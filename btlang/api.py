@@ -250,14 +250,17 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax", "
 
             body = body_of(robot)
             check_mission(read_world(self.world, body), body, self.tree, self.vocabulary)
+        if problems := self.problems():
+            raise MissionError(problems)
+
+    def problems(self) -> list[Diagnostic]:
+        """Return what would keep the tree from running on any robot, as diagnostics; see `check`."""
         if not self.says_ids:
-            return
+            return []
         from btlang.backends.checking import find_misnamed, tree_problems
 
         named = self.vocabulary.with_places(tuple(fact.name for fact in self.facts))
-        problems = [*tree_problems(self.tree, self.vocabulary), *find_misnamed(self.tree, named)]
-        if problems:
-            raise MissionError(problems)
+        return [*tree_problems(self.tree, self.vocabulary), *find_misnamed(self.tree, named)]
 
     if TYPE_CHECKING:
 
