@@ -305,6 +305,9 @@ class Run:
             return f"<Run {self.id[:8]}, ended: {self.outcome.status.name} after {self.outcome.seconds:.1f} s>"
         return f"<Run {self.id[:8]}, {'under way' if self._under_way else 'not started'}, {self.seconds:.1f} s>"
 
+    def __str__(self) -> str:
+        return repr(self) if self.outcome is None else str(self.outcome)
+
     @property
     def nodes(self) -> Engine:
         """The nodes of the tree by their numbers, after expansion of subtrees."""

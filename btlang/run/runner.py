@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from _thread import get_ident
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from threading import Event
 
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.engine import Engine, Failure
-from btlang.engine.leaves.leaf import LeafBinding, find_raising_line
+from btlang.engine.leaves.leaf import LeafBinding, find_raising_line, locate_failure
 from btlang.engine.status import IDLE, NAMES, RUNNING
 from btlang.run.bus import Bus
 from btlang.run.controls import Controls, disable
@@ -105,6 +105,13 @@ def trace_engine(
     return engine
 
 
+def _caught(raised: Iterable[Failure], failure: Failure | None) -> tuple[str, ...]:
+    """Say which exceptions of leaves aren't the failure of the mission, each once."""
+    caught = [each for each in raised if failure is None or each.exception is not failure.exception]
+    reasons = ((each, locate_failure(each.exception)) for each in caught if each.exception is not None)
+    return tuple(dict.fromkeys(f"'{each.node.source_text}' raised an exception: {reason}" for each, reason in reasons))
+
+
 class Runner:
     """A runner that ticks an engine `rate` times a second of the mission until the tree completes.
 
@@ -185,7 +192,7 @@ class Runner:
         failure = None if stopped else self._engine.failure
         count, worst = (self._overruns.count, self._overruns.worst) if self._overruns is not None else (0, None)
         standstill = Standstill() if standstill is None else standstill
-        raised = tuple(getattr(self._engine, "raised", {}).values())
+        raised = getattr(self._engine, "raised", {}).values()
         seconds = self._clock.now - self._began if seconds is None else seconds
         return Outcome(
             status,
@@ -196,7 +203,8 @@ class Runner:
             count,
             worst,
             standstill,
-            exceptions=raised,
+            exceptions=tuple(each.exception for each in raised),
+            caught=_caught(raised, failure),
             unanswered=tuple(text for text, _ in self._unanswered()),
         )
 
