@@ -180,7 +180,8 @@ class _TestFileReader:
         """Return where a file lies that the test names. Raises MissionError where that is no folder of the user's."""
         assert named is not None
         path, real = included_path(_name(named), self._source)
-        if not self._source.roots or not any(is_below(real, root) for root in (*self._source.roots, "")):
+        roots = (*self._source.roots, "", *_tested_folder(self._source.folder))
+        if not self._source.roots or not any(is_below(real, root) for root in roots):
             raise MissionError([diagnostic("BT001", named, file=path, reason=OUTSIDE)])
         if not os.path.isfile(real):
             raise MissionError([diagnostic("BT001", named, file=path, reason="there is no such file")])
@@ -189,6 +190,12 @@ class _TestFileReader:
 
 def _name(file: Span) -> str:
     return file.text.strip("\"'“”„’‘")  # noqa: RUF001
+
+
+def _tested_folder(folder: str) -> tuple[str, ...]:
+    """Return the folder whose missions a folder called `tests` tests: the one above it."""
+    above, name = os.path.split(os.path.realpath(folder or os.curdir))
+    return (above,) if name == "tests" else ()
 
 
 def _root(source: Source) -> str | None:
