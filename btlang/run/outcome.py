@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 
 from btlang.engine.engine import Failure
+from btlang.engine.leaves.leaf import locate_failure
 from btlang.run.statuses import Status
 from btlang.support.record import Record
 from btlang.tree.node import Node
@@ -53,6 +54,13 @@ def standstill_of(robot: Any) -> Standstill:
     """Return the standstill of any robot: its `standstill`, else what its `moving` says."""
     found: Standstill | None = getattr(robot, "standstill", None)
     return Standstill(getattr(robot, "moving", None)) if found is None else found
+
+
+def describe_caught(raised: Iterable[Failure], failure: Failure | None) -> tuple[str, ...]:
+    """Say which exceptions of leaves aren't the failure of the mission, each once."""
+    caught = [each for each in raised if failure is None or each.exception is not failure.exception]
+    reasons = ((each, locate_failure(each.exception)) for each in caught if each.exception is not None)
+    return tuple(dict.fromkeys(f"'{each.node.source_text}' raised an exception: {reason}" for each, reason in reasons))
 
 
 SUSPENDED, EMERGENCY = "suspended", "emergency stop"

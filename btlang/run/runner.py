@@ -5,17 +5,17 @@ from __future__ import annotations
 import math
 from _thread import get_ident
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from threading import Event
 
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.engine import Engine, Failure
-from btlang.engine.leaves.leaf import LeafBinding, find_raising_line, locate_failure
+from btlang.engine.leaves.leaf import LeafBinding, find_raising_line
 from btlang.engine.status import IDLE, NAMES, RUNNING
 from btlang.run.bus import Bus
 from btlang.run.controls import Controls, disable
 from btlang.run.events import Ended, PeriodPassed, StatusesChanged, Troubled, Warned
-from btlang.run.outcome import EMERGENCY, SUSPENDED, Outcome, Standstill, standstill_of
+from btlang.run.outcome import EMERGENCY, SUSPENDED, Outcome, Standstill, describe_caught, standstill_of
 from btlang.run.pace import Overruns, Pace
 from btlang.run.robot_state import read_robot
 from btlang.run.statuses import Status
@@ -103,13 +103,6 @@ def trace_engine(
     )
     bus.before = engine.flush
     return engine
-
-
-def _caught(raised: Iterable[Failure], failure: Failure | None) -> tuple[str, ...]:
-    """Say which exceptions of leaves aren't the failure of the mission, each once."""
-    caught = [each for each in raised if failure is None or each.exception is not failure.exception]
-    reasons = ((each, locate_failure(each.exception)) for each in caught if each.exception is not None)
-    return tuple(dict.fromkeys(f"'{each.node.source_text}' raised an exception: {reason}" for each, reason in reasons))
 
 
 class Runner:
@@ -204,7 +197,7 @@ class Runner:
             worst,
             standstill,
             exceptions=tuple(each.exception for each in raised),
-            caught=_caught(raised, failure),
+            caught=describe_caught(raised, failure),
             unanswered=tuple(text for text, _ in self._unanswered()),
         )
 

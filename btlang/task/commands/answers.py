@@ -67,7 +67,8 @@ def act_line(act: Act, now: float) -> str:
 def _command_parts(fields: Mapping[str, Any]) -> Iterator[str]:
     """Yield the fields of a command in words, without its name and without what lets others do it."""
     for name, value in fields.items():
-        if name in ("command", *_HIDDEN) or value in (None, "", [], {}):
+        is_named = name == "text" and fields.get("name")  # the name says enough
+        if is_named or name in ("command", *_HIDDEN) or value in (None, "", [], {}):
             continue
         if isinstance(value, Mapping):
             value = " ".join(f"{key}={each}" for key, each in value.items())
