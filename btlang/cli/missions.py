@@ -56,7 +56,7 @@ def parse_mission(source: Source, options: argparse.Namespace) -> Mission:
     try:
         return parse_tree(
             source, parser=options.parser, keywords=options.keywords, world=options.world, main=options.main,
-            language=options.language,
+            language=options.language, has_robot=getattr(options, "robot", "") not in ("", *ROBOTS),
         )  # fmt: skip
     except MissionError as error:
         advice = options.report.advice or _advice_on_robot(source.name, options)
