@@ -90,7 +90,12 @@ def _act_lines(verb: Verb, width: int) -> Iterator[str]:
     column = max(map(len, verb.acts)) + 4
     for name, act in verb.acts.items():
         yield (
-            textwrap.fill(act.about, width, initial_indent=f"  {name:{column - 2}}", subsequent_indent=" " * column)
+            textwrap.fill(
+                ": ".join(act.explain(verb.name, name)),
+                width,
+                initial_indent=f"  {name:{column - 2}}",
+                subsequent_indent=" " * column,
+            )
             + "\n"
         )
 
