@@ -108,6 +108,7 @@ def test_a_word_that_is_neither_is_read_as_a_mission(capsys: pytest.CaptureFixtu
 @pytest.mark.parametrize(
     ("line", "hint"),
     [
+        (["run", "go to the moon"], 'To give a mission as text: btc run -c "go to the moon"'),
         (["run", "wave"], 'To give a mission as text: btc run -c "wave"'),
         (["tree", 'say "$5"'], """To give a mission as text: btc tree -c 'say "$5"'"""),
     ],
