@@ -200,6 +200,8 @@ def _with_verb(words: list[str]) -> list[str]:
     if first in ("-", "-c") or os.path.exists(first):
         return ["run", *words]
     near = _near_verbs(first) or [f"{verb.name} {first}" for verb in VERBS.values() if first in verb.acts]
+    if first.isidentifier() and import_module("btlang.cli.examples").path_of(first):
+        near = [f"run {first}"]
     is_alone = len(words) == 1 or words[1].startswith("-")
     mission = " ".join(words)
     _refuse_stop(" ".join(takewhile(lambda word: not word.startswith("-"), words)))
