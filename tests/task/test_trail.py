@@ -46,3 +46,8 @@ def test_the_token_of_an_interruption_is_not_shown(robot: TaskLayer, btc: Btc) -
     assert any("interrupt task 1  [Task 1 is interrupted." in line for line in said)
     assert any("resume task 1  [" in line for line in said)
     assert not any(token in line for line in said)
+
+
+def test_a_mission_that_names_its_robot_is_done_by_the_one_that_is_up(robot: TaskLayer) -> None:
+    assert submit(robot, 'robot "../other.toml"\n\ngo to the lab') == 1
+    assert "BT049" in refusal(robot, "submit", text='words "../other.toml"\n\ngo to the lab')
