@@ -47,6 +47,7 @@ def parse_tree(
     language: str = ENGLISH,
     values: Mapping[str, object] = {},
     origins: Origins | None = None,
+    has_robot: bool = False,
 ) -> Mission:
     """Compile a mission in English, or a tree: a text that begins with `<` is XML of BehaviorTree.CPP, with `{` JSON.
 
@@ -56,11 +57,12 @@ def parse_tree(
     run, if XML or JSON has several. `language` is that of the mission: "en", "es" or the folder of another one.
     `values` are what the mission may use by these names though it doesn't set them, or others of the same kind: a run
     gets them (`Session.prepare`). `origins` gets the nodes by their identities, each with the syntax that it was made
-    of. Raises MissionError with all diagnostics.
+    of. With `has_robot` a robot is chosen already: the words and the world of the one that its first lines name don't
+    count. Raises MissionError with all diagnostics.
     """
     source = source_of(text)
     with gc_paused:
-        vocabulary, chosen = mission_vocabulary(source, keywords, world_of(world), language)
+        vocabulary, chosen = mission_vocabulary(source, keywords, world_of(world), language, has_robot=has_robot)
         read = read_text(source, main, vocabulary=vocabulary, parser=parser, errors_of=errors_of, known=_known(values))
         if isinstance(read, Tree):
             return mission_of_tree(read, vocabulary, chosen)
@@ -83,8 +85,8 @@ def parse_file(
 ) -> Mission:
     """Compile the text in a file, as `parse_tree` does. It may include files in its folder and below `include_root`.
 
-    Its first lines can name its world and keyword files there: `world "museum.toml"`, `words "referee.toml"`. These run
-    Python. A given `world` wins; `keywords` are added.
+    Its first lines can name its world, robot and keyword files there: `world "museum.toml"`, `robot "guide.toml"`,
+    `words "referee.toml"`. The latter two run Python. A given `world` wins; `keywords` are added.
     """
     from btlang.diagnostics.files import read_source
 
@@ -173,6 +175,7 @@ def value_key(name: str) -> str:
 
 
 _LONGEST = 60  # characters of a mission in its repr
+_ROBOT = "needs_robot"
 
 
 class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax", "rules")):
@@ -208,6 +211,17 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax", "
 
         return Outline((("", self.tree.root), *self.tree.subtrees), self._described)
 
+    @property
+    def robot(self) -> str:
+        """Return the path of the robot file that its first lines name, "" if they name none."""
+        program = self.syntax
+        if program is None or not program.span.source.may_load:
+            return ""
+        from btlang.diagnostics.files import included_path
+
+        named = (path for role, path in program.needs if role == _ROBOT)
+        return next((included_path(path, program.span.source)[0] for path in named), "")
+
     def print(self) -> None:
         """Print the tree with its branches drawn."""
         show(self)
@@ -215,12 +229,14 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax", "
     def run(self, *, robot: str | Connect = "simulated", **options: Any) -> Outcome:
         """Run the mission to its end, or Ctrl-C, in a new session, so in a fresh world.
 
-        `robot` is the same as for btlang.Session. The other options are those of `Session.prepare`: `speed`, `rate`,
-        `time_limit`, `sinks`, `seed`. Raises MissionError and ValueError as these do.
+        `robot` is the same as for btlang.Session, by default the one that the mission names. The other options are
+        those of `Session.prepare`: `speed`, `rate`, `time_limit`, `sinks`, `seed`. Raises MissionError and ValueError
+        as these do.
         """
         from btlang.session import Session
 
-        with Session(robot, world=self.world or DEFAULT_WORLD) as session:
+        own = self.robot if robot == "simulated" else ""
+        with Session(own or robot, world=self.world or DEFAULT_WORLD) as session:
             return session.prepare(self, **options).execute()
 
     def explain(self, width: int = 100) -> str:
@@ -250,14 +266,17 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax", "
 
             body = body_of(robot)
             check_mission(read_world(self.world, body), body, self.tree, self.vocabulary)
+        if problems := self.problems():
+            raise MissionError(problems)
+
+    def problems(self) -> list[Diagnostic]:
+        """Return what would keep the tree from running on any robot, as diagnostics; see `check`."""
         if not self.says_ids:
-            return
+            return []
         from btlang.backends.checking import find_misnamed, tree_problems
 
         named = self.vocabulary.with_places(tuple(fact.name for fact in self.facts))
-        problems = [*tree_problems(self.tree, self.vocabulary), *find_misnamed(self.tree, named)]
-        if problems:
-            raise MissionError(problems)
+        return [*tree_problems(self.tree, self.vocabulary), *find_misnamed(self.tree, named)]
 
     if TYPE_CHECKING:
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from types import CoroutineType, GeneratorType
 from typing import TypeAlias
 
 from btlang.api import Mission, mission_of_tree, source_of
-from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.engine.script.values import to_stored
 from btlang.frontends.table import read_text
 from btlang.passes import compile_mission, errors_of
@@ -35,12 +35,13 @@ Value: TypeAlias = str | float | bool
 """What a port can be set to; a text `{key}` refers to the blackboard."""
 
 
-class Behavior(Record, uncompared=("span",)):
+class Behavior(Record, uncompared=("span", "numbers")):
     """A node of a tree in Python, with its children. Immutable; `mission` checks it and finds the words of its texts.
 
     A child is another behavior, a command or condition in English, the text of a mission, XML or JSON, a function
     decorated with `btlang.action` or `btlang.condition`, a btlang.Mission or a tree. `call` is the decorated function
-    of a leaf, None for others. `span` is the line of the script that made it, which messages show.
+    of a leaf, None for others. `span` is the line of the script that made it, which messages show. `numbers` are the
+    ports that were set to a number or a bool.
     """
 
     id: str
@@ -49,6 +50,7 @@ class Behavior(Record, uncompared=("span",)):
     name: str = ""
     call: Callable[..., Any] | None = None
     span: Span | None = None
+    numbers: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         count = len(self.children)
@@ -65,7 +67,7 @@ class Behavior(Record, uncompared=("span",)):
         """Compile it. Its functions are words of its texts, too; the options are those of `btlang.parse_tree`.
 
         `subtrees` are the trees that `sub_tree` nodes name. Raises MissionError for all mistakes of the first text that
-        has some, or of the tree.
+        has some, or of the tree: ports of known nodes are checked (BT132), unknown nodes only when it runs.
         """
         functions = dict.fromkeys(_functions([self, *subtrees.values()]))
         vocabulary = world_vocabulary([*keywords, *functions], world, language)
@@ -73,7 +75,13 @@ class Behavior(Record, uncompared=("span",)):
         for name, child in subtrees.items():
             assembly.define(name, assembly.node(child))
         root = assembly.node(self)
-        return mission_of_tree(Tree(root, tuple(assembly.subtrees.items())), vocabulary, world, tuple(assembly.facts))
+        tree = Tree(root, tuple(assembly.subtrees.items()))
+        mission = mission_of_tree(tree, vocabulary, world, tuple(assembly.facts))
+        misfits, found = assembly.misfits, {each.span for each in assembly.misfits}
+        misfits += [each for each in mission.problems() if each.code == _MISFIT and each.span not in found]
+        if misfits:
+            raise MissionError(misfits)
+        return mission
 
     def run(self, **options: Any) -> Outcome:
         """Compile and run it; the options are those of `btlang.Mission.run`."""
@@ -111,7 +119,7 @@ def leaf(what: str | Callable[..., object], /, *values: Value, name: str = "", *
     if isinstance(what, str):
         if values:
             raise TypeError(f"the ports of {what} are set by their names")
-        return Behavior(what, (), _ports(ports), name, span=find_calling_line())
+        return Behavior(what, (), _ports(ports), name, span=find_calling_line(), numbers=_numbers(ports))
     entry = _entry(what)
     slots = [slot.name for slot in entry.slots]
     if "name" in slots[len(values) :] and name:
@@ -121,7 +129,8 @@ def leaf(what: str | Callable[..., object], /, *values: Value, name: str = "", *
     if len(values) > len(slots) or unknown:
         wrong = f"{unknown[0]!r}" if unknown else f"{len(values)} values"
         raise TypeError(f"{entry.id} takes {', '.join(slots) or 'no values'}, not {wrong}")
-    return Behavior(entry.id, (), _ports({**given, **ports}), name, what, find_calling_line())
+    ports = {**given, **ports}
+    return Behavior(entry.id, (), _ports(ports), name, what, find_calling_line(), _numbers(ports))
 
 
 def from_py_trees(root: object, *, names: bool = True) -> Behavior:
@@ -169,11 +178,16 @@ def built(
     for script in scripts:
         if script not in (*PRE_CONDITIONS, *POST_CONDITIONS) and not kind.any_ports:
             raise TypeError(f"{node_id} has no port {script!r}")
-    return Behavior(node_id, own, _ports({**ports, **scripts}), name, span=find_calling_line())
+    given = {**ports, **scripts}
+    return Behavior(node_id, own, _ports(given), name, span=find_calling_line(), numbers=_numbers(given))
 
 
 def _ports(ports: Mapping[str, object]) -> tuple[tuple[str, str], ...]:
     return tuple((port, _text(port, value)) for port, value in ports.items() if value is not None)
+
+
+def _numbers(ports: Mapping[str, object]) -> tuple[str, ...]:
+    return tuple(port for port, value in ports.items() if isinstance(value, int | float))
 
 
 def _text(port: str, value: object) -> str:
@@ -238,7 +252,8 @@ def _functions(waiting: list[Child]) -> list[Callable[..., object]]:
     return found
 
 
-_ONLY_A_CONDITION = "BT028"
+_ONLY_A_CONDITION, _MISFIT = "BT028", "BT132"
+_IN_TEXT = {"text": "a text", "names": "the name of a {type}", "time": "a time such as '18:30'"}
 
 
 class _Assembly:
@@ -248,6 +263,7 @@ class _Assembly:
         self._vocabulary = vocabulary
         self.subtrees: dict[str, Node] = {}
         self.facts: list[Fact] = []
+        self.misfits: list[Diagnostic] = []
 
     def define(self, name: str, root: Node) -> None:
         """Define a tree by its name. Raises MissionError (BT127) for another tree with a name that is taken."""
@@ -259,6 +275,7 @@ class _Assembly:
 
     def _made(self, child: Child, children: list[Node]) -> Node:
         if isinstance(child, Behavior):
+            self.misfits += self._misfits(child) if child.numbers else ()
             return Node(child.id or self._id_of(child.call), tuple(children), child.ports, child.name, child.span)
         if isinstance(child, Node):
             return child
@@ -270,6 +287,21 @@ class _Assembly:
         if isinstance(child, Tree):
             return self._root(child)
         return Node(_entry(child).id or self._id_of(child))
+
+    def _misfits(self, child: Behavior) -> Iterator[Diagnostic]:
+        """Find ports that hold texts but were set to a number (BT132)."""
+        slots = {slot.name: slot.type for entry in self._vocabulary.entries.get(child.id, ()) for slot in entry.slots}
+        ports = CATALOGUE[child.id].ports if child.id in CATALOGUE else {}
+        for port, text in child.ports:
+            kind = self._vocabulary.types.get(slots.get(port, ""))
+            wanted = _IN_TEXT.get("" if kind is None else kind.kind, "")
+            if port in ports and (ports[port].type == "std::string" or ports[port].holds):
+                wanted = "a text"
+            if port in (*PRE_CONDITIONS, *POST_CONDITIONS):
+                wanted = "a script"
+            if port in child.numbers and wanted:
+                reason = f"{port} must be {wanted.format(type=kind and kind.name)}, not the value {text}"
+                yield diagnostic(_MISFIT, child.span or NOWHERE, id=child.id, reason=reason)
 
     def _root(self, tree: Tree) -> Node:
         for name, root in tree.subtrees:

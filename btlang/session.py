@@ -117,6 +117,7 @@ class Session:
         chosen = given or getattr(body, "world", "") or None
         self._keywords, self._chosen = [*_words_of(body), *keywords], chosen
         self._connect, self._is_used = connect, chosen is not None
+        self._takes_robot = robot == "simulated" and over is None
         self.world = read_world(chosen, body)
         self._connection: Connection = connect(self.world)
         self._is_simulated = getattr(connect, "over", "") == "simulated"
@@ -220,12 +221,15 @@ class Session:
             world = self._chosen or (DEFAULT_WORLD if self._is_used else None)
             made = getattr(import_module(module), function)(given, keywords=self._keywords, world=world)
         named = getattr(made, "world", None)
-        if named is not None and not self._is_used:
-            self._move_to(named)
+        robot = getattr(made, "robot", "") if self._takes_robot else ""
+        if (named is not None or robot) and not self._is_used:
+            self._move_to(named, robot)
         return made
 
-    def _move_to(self, world: str | Source) -> None:
-        """Begin again in the world of the first mission, as nobody has used the robot in another one yet."""
+    def _move_to(self, world: str | Source | None, robot: str) -> None:
+        """Begin again in the world and with the robot of the first mission, as nobody has used another one yet."""
+        if robot:
+            self._connect = connector(robot)
         made = read_world(world, getattr(self._connect, "body", None))
         self._connection.close()
         self.world, self._connection = made, self._connect(made)
@@ -304,6 +308,9 @@ class Run:
         if self.outcome is not None:
             return f"<Run {self.id[:8]}, ended: {self.outcome.status.name} after {self.outcome.seconds:.1f} s>"
         return f"<Run {self.id[:8]}, {'under way' if self._under_way else 'not started'}, {self.seconds:.1f} s>"
+
+    def __str__(self) -> str:
+        return repr(self) if self.outcome is None else str(self.outcome)
 
     @property
     def nodes(self) -> Engine:

@@ -101,9 +101,8 @@ def _acts(verb: Verb, parser: argparse.ArgumentParser) -> Iterator[str]:
     yield f"\n| act | what it does | example |{' options |' if has_options else ''}"
     yield f"|---|---|---|{'---|' if has_options else ''}"
     for name, act in verb.acts.items():
-        about, _, example = act.about.partition(": btc ")
-        examples = (example or f"{verb.name} {name}").split(", ")
-        shown = ", ".join(f"`btc {each.removeprefix('btc ')}`" for each in examples)
+        about, examples = act.explain(verb.name, name)
+        shown = ", ".join(f"`{each}`" for each in examples.split(", "))
         cells = [f"`{name}`", about, shown, *([] if act.options is None else [_taken(act.options, flags)])]
         yield f"| {' | '.join(map(_cell, cells))} |"
     if has_options:

@@ -15,6 +15,7 @@ import pytest
 
 from btlang import cli
 from btlang.cli import main
+from btlang.cli.verbs import VERBS
 
 REPOSITORY = Path(__file__).parent.parent
 
@@ -356,3 +357,14 @@ def test_equal_warnings_are_shown_once(btc: Screen) -> None:
     assert "  And 11 more: lines 3, 4, 5, 6, 7, 8, 9, 10, ...\n" in btc.err
     assert btc("check", "--format", "json", "-c", text) == 0
     assert btc.out.count('"BT050"') == 13
+
+
+def test_help_has_an_example_of_each_act(capsys: pytest.CaptureFixture[str]) -> None:
+    for verb in VERBS.values():
+        if verb.acts:
+            assert main(["help", verb.name]) == 0
+            shown = " ".join(capsys.readouterr().out.split())
+            for name, act in verb.acts.items():
+                about, examples = act.explain(verb.name, name)
+                assert f"{about}: {examples}" in shown
+                assert examples.startswith(f"btc {verb.name} {name}"), examples

@@ -52,6 +52,8 @@ def test_a_file_wins_over_a_mission_of_the_same_words(capsys: pytest.CaptureFixt
         ("go to the lab", "btc: there's no verb or file 'go'\nPut a mission in quotes: btc \"go to the lab\"\n"),
         ('say "hi"', "btc: there's no verb or file 'say'\nPut a mission in quotes: btc 'say \"hi\"'\n"),
         ("add wave", "btc: there's no verb or file 'add'\nDid you mean: btc task add wave\n"),
+        ("hello", "btc: there's no verb or file 'hello'\nDid you mean: btc run hello\n"),
+        ("patrol --watch", "btc: there's no verb or file 'patrol'\nDid you mean: btc run patrol --watch\n"),
         ("list", "btc: there's no verb or file 'list'\nDid you mean: btc task list\n"),
         ("gesture", "btc gesture: say what to do: play, check, picture, record\nRun 'btc help gesture' for help.\n"),
         ("fly x", "btc: there's no verb or file 'fly'\nRun 'btc help' for help.\n"),
@@ -108,6 +110,7 @@ def test_a_word_that_is_neither_is_read_as_a_mission(capsys: pytest.CaptureFixtu
 @pytest.mark.parametrize(
     ("line", "hint"),
     [
+        (["run", "go to the moon"], 'To give a mission as text: btc run -c "go to the moon"'),
         (["run", "wave"], 'To give a mission as text: btc run -c "wave"'),
         (["tree", 'say "$5"'], """To give a mission as text: btc tree -c 'say "$5"'"""),
     ],

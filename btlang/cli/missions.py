@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from btlang.api import Mission, parse_tree
-from btlang.cli.parser import quote_mission, reads_as_mission
+from btlang.cli.parser import looks_like_path, quote_mission, reads_as_mission
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.diagnostics.files import read_source
 from btlang.robots.platforms import ROBOTS
@@ -56,7 +56,7 @@ def parse_mission(source: Source, options: argparse.Namespace) -> Mission:
     try:
         return parse_tree(
             source, parser=options.parser, keywords=options.keywords, world=options.world, main=options.main,
-            language=options.language,
+            language=options.language, has_robot=getattr(options, "robot", "") not in ("", *ROBOTS),
         )  # fmt: skip
     except MissionError as error:
         advice = options.report.advice or _advice_on_robot(source.name, options)
@@ -114,11 +114,12 @@ def _example(name: str) -> str:
 
 @contextmanager
 def hint_at_text(subject: str, verb: str) -> Iterator[None]:
-    """Add to errors about a subject that isn't a file, but reads as a mission, how to give it as text."""
+    """Add to errors about a subject that isn't a file, but several words or a mission, how to give it as text."""
     try:
         yield
     except MissionError as error:
-        if os.path.exists(subject) or not reads_as_mission(subject):
+        has_mistakes = " " in subject.strip() and not looks_like_path(subject)
+        if os.path.exists(subject) or not (has_mistakes or reads_as_mission(subject)):
             raise
         advice = ("help", f"To give a mission as text: btc {verb} -c {quote_mission(subject)}")
         raise MissionError([p.replace(arguments=(*p.arguments, advice)) for p in error.diagnostics]) from None

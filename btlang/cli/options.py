@@ -63,6 +63,11 @@ class VerbAct(Record):
     words: float = 1
     also: tuple[str, ...] = ()
 
+    def explain(self, verb: str, name: str) -> tuple[str, str]:
+        """Return what it does, and its examples with commas between; without any, it is typed as it is called."""
+        about, _, examples = self.about.partition(": btc ")
+        return about, f"btc {examples or f'{verb} {name}'}"
+
 
 class Verb(Record):
     """A verb of the command line: its line in `btc help`, its options, and the handler "module:function".

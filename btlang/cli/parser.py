@@ -90,7 +90,12 @@ def _act_lines(verb: Verb, width: int) -> Iterator[str]:
     column = max(map(len, verb.acts)) + 4
     for name, act in verb.acts.items():
         yield (
-            textwrap.fill(act.about, width, initial_indent=f"  {name:{column - 2}}", subsequent_indent=" " * column)
+            textwrap.fill(
+                ": ".join(act.explain(verb.name, name)),
+                width,
+                initial_indent=f"  {name:{column - 2}}",
+                subsequent_indent=" " * column,
+            )
             + "\n"
         )
 
@@ -195,6 +200,8 @@ def _with_verb(words: list[str]) -> list[str]:
     if first in ("-", "-c") or os.path.exists(first):
         return ["run", *words]
     near = _near_verbs(first) or [f"{verb.name} {first}" for verb in VERBS.values() if first in verb.acts]
+    if first.isidentifier() and import_module("btlang.cli.examples").path_of(first):
+        near = [f"run {first}"]
     is_alone = len(words) == 1 or words[1].startswith("-")
     mission = " ".join(words)
     _refuse_stop(" ".join(takewhile(lambda word: not word.startswith("-"), words)))

@@ -18,6 +18,7 @@ from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.files import unwritable
 from btlang.pictures.files import check_picture
 from btlang.robots.ears import read_answers
+from btlang.robots.platforms import ROBOTS
 from btlang.robots.voice import voice_track
 from btlang.robots.worlds.world_file import read_world
 from btlang.run.terminal import run_mission
@@ -38,8 +39,12 @@ _SUCCESS, _FAILED = 0, 1
 
 def run(options: argparse.Namespace) -> int:
     """Run a mission as the options say; return the exit code."""
-    robot = choose_robot(options)
-    mission = mission_of(options)
+    robot, mission = choose_robot(options), mission_of(options)
+    if mission.robot and options.robot in ROBOTS:
+        if options.robot != "simulated":
+            options.over = options.robot
+        options.robot = mission.robot
+        robot = choose_robot(options)
     if options.preflight:
         ready = print_preflight(mission.tree, mission.vocabulary, read_world(mission.world, robot.body), robot)
         return _SUCCESS if ready else _FAILED

@@ -47,13 +47,13 @@ def run_act(options: argparse.Namespace) -> int:
 def _add_named_or_text(options: argparse.Namespace, command: messages.Submit | messages.AddSchedule) -> int:
     """Add the mission of the library that has this name, or else the mission that its words are."""
     with RobotClient(options.name) as client:
-        answer = client.send(command)
-        if answer.code == "BT187" and not client.send(messages.Library(command.name)).ok:
-            as_text = client.send(command.replace(text=command.name, name=""))
-            if as_text.ok or " " in command.name:
-                answer = as_text
-            if not answer.ok and answer is as_text:
+        is_named = client.send(messages.Library(command.name)).ok
+        answer = client.send(command if is_named else command.replace(text=command.name, name=""))
+        if not answer.ok and not is_named:
+            if " " in command.name:
                 _note(f"There's no mission '{one_line(command.name)}' in the library. As a mission it has mistakes:")
+            else:
+                answer = client.send(command)  # which says that there's none of this name
         return print_answer(answer, options.json)
 
 

@@ -93,6 +93,20 @@ def _limit(data: bytes) -> bytes:
     return data
 
 
+_PARTS = ("missions", "tests")
+"""How folders are called that are parts of the folder above them."""
+
+
+def is_within(real: str, source: Source, *others: str) -> bool:
+    """Return whether a real path is in a folder from which a text that the user named may load files.
+
+    These are its roots, `others`, and the folder above one that is called `missions` or `tests`.
+    """
+    above, name = os.path.split(os.path.realpath(source.folder or os.curdir))
+    parts = (above,) if name in _PARTS else ()
+    return bool(source.roots) and any(is_below(real, root) for root in (*source.roots, *others, *parts))
+
+
 def is_below(real: str, root: str) -> bool:
     """Whether a real path is a folder, or something below it."""
     return os.path.join(real, "").startswith(os.path.join(os.path.realpath(root or os.curdir), ""))

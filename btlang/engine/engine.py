@@ -87,8 +87,8 @@ class Engine:
         self._beside: set[object] = set()
         own = {"wake": self._wake, "wake_at": clock.leaf_wake_at, "progress": ignore_progress, "beside": self._beside}
         self._state = EngineState(bind, clock, {**own, **services}, enums, stopwatch, proxies)
-        self.raised: dict[int, BaseException] = {}
-        """The latest exception of each leaf that raised one other than ActionFailed, by the number of its node."""
+        self.raised: dict[int, Failure] = {}
+        """The latest failure of each leaf that raised what isn't ActionFailed, by the number of its node."""
         self._on_warning = on_warning
         self._state.on_warning = self._warn
         with gc_paused:
@@ -296,7 +296,7 @@ class Engine:
     def _warn(self, fault: Fault | NodeInstance) -> None:
         failure = self._failure(fault)
         if failure.exception is not None and not isinstance(failure.exception, ActionFailed):
-            self.raised[failure.index] = failure.exception
+            self.raised[failure.index] = failure
         if self._on_warning is not None:
             self._on_warning(failure)
 

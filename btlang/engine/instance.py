@@ -277,7 +277,7 @@ class NodeInstance:
             try:
                 constants[port] = convert(text)
             except Exception as problem:
-                raise self.error(f"{port} cannot be {text!r}: {problem}") from problem
+                raise self.error(f"{port} cannot be {text!r}: {_NEEDED.get(convert, problem)}") from problem
         if not stored:
             return constants, None
         return constants, lambda: {port: _convert(self.scope, port, key, convert) for port, key, convert in stored}
@@ -317,6 +317,9 @@ def _always(value: int) -> Callable[[], int]:
     return lambda: value
 
 
+_NEEDED: dict[Callable[[str], Any], str] = {float: "a number is needed", int: "a whole number is needed"}
+
+
 def _convert(scope: Blackboard, port: str, key: str, convert: Callable[[str], Any]) -> Any:
     value = value_of(scope, key)
     if not isinstance(value, str) and convert is not as_text and not (convert is as_whole and isinstance(value, float)):
@@ -324,7 +327,7 @@ def _convert(scope: Blackboard, port: str, key: str, convert: Callable[[str], An
     try:
         return convert(value)
     except Exception as problem:
-        raise ActionFailed(f"{port} cannot be {value!r}: {problem}") from problem
+        raise ActionFailed(f"{port} cannot be {value!r}: {_NEEDED.get(convert, problem)}") from problem
 
 
 def _whole(value: Any, port: str, least: int, most: int) -> int:

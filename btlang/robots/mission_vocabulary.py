@@ -6,6 +6,7 @@ import os
 import re
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
+from importlib import import_module
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError
 from btlang.frontends.table import XML_ENDINGS
@@ -33,29 +34,33 @@ def mission_vocabulary(
     keywords: Keywords,
     world: World,
     language: str = ENGLISH,
+    *,
+    has_robot: bool = False,
 ) -> tuple[Lexicon, World | str]:
     """Make the words of a text and its world, with the files that its first lines name.
 
-    A given `world` wins over the text's own; `keywords` are added to its own. Raises MissionError.
+    A given `world` wins over the text's own; `keywords` are added to its own. The robot that it names has words and a
+    world, too, unless one is chosen already (`has_robot`), or the text isn't of a file that the user named: that text
+    is for the robot that runs it. Raises MissionError.
     """
     keywords = _words_of(keywords)
     first = _FIRST_LINE.match(source.text)
     if first is None or _QUOTES.isdisjoint(first[1]):
         return world_vocabulary(keywords, world, language), world
-    from btlang.diagnostics.files import OUTSIDE, included_path, is_below
-    from btlang.frontends.mission.symbols.needs import WORDS, find_needs, unusable
+    from btlang.diagnostics.files import OUTSIDE, included_path, is_within
+    from btlang.frontends.mission.symbols.needs import ROBOT, WORDS, WORLD, find_needs, unusable
 
     vocabulary = load_vocabulary([word for word in keywords if not _is_xml(word)], None, language)
     files: dict[str, str] = {}
     lines: dict[str, Span] = {}
     problems: list[Diagnostic] = []
     for need in find_needs(split(source, vocabulary.orthography), vocabulary).found:
-        if need.role != WORDS and world is not None:
+        if (need.role == WORLD and world is not None) or (need.role == ROBOT and (has_robot or not source.may_load)):
             continue
         path, real = included_path(need.path, source)
         if not source.may_load:
             problems.append(unusable(need, "only a mission that you name yourself can load files"))
-        elif not any(is_below(real, root) for root in source.roots):
+        elif not is_within(real, source):
             problems.append(unusable(need, OUTSIDE))
         elif os.path.exists(real) and not os.path.isfile(real):
             problems.append(unusable(need, "it isn't a regular file"))
@@ -63,8 +68,13 @@ def mission_vocabulary(
     if problems:
         raise MissionError(problems)
     own = [path for path, role in files.items() if role == WORDS and path not in keywords]
-    chosen = next((path for path, role in files.items() if role != WORDS), world)
+    chosen: World | str = next((path for path, role in files.items() if role == WORLD), world)
     try:
+        for robot in [path for path, role in files.items() if role == ROBOT]:
+            body = import_module("btlang.robots.registry").body_of(robot)
+            brought = import_module("btlang.components.words").words_of(body)  # which most missions don't need
+            own += [word for word in brought if word not in own and word not in keywords]
+            chosen = chosen or body.world or world
         return world_vocabulary([*own, *keywords], chosen, language), chosen
     except MissionError as error:
         raise MissionError([_at_line(problem, lines) for problem in error.diagnostics]) from None

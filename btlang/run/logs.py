@@ -6,7 +6,7 @@ import json
 from collections.abc import Callable
 
 from btlang.engine.status import FAILURE, IDLE, NAMES, RUNNING, SKIPPED
-from btlang.run.events import LOGGED, Event, Overrun, StatusChanged, StatusesChanged
+from btlang.run.events import LOGGED, Event, Overrun, StatusChanged, StatusesChanged, Warned
 from btlang.support.field_types import field_type
 from btlang.text.formatting import one_line
 from btlang.text.json_text import shallow
@@ -33,7 +33,7 @@ _WORDS = {IDLE: "halted", RUNNING: "start", FAILURE: "failed", SKIPPED: "skipped
 class PlainLines:
     """A sink that writes a line at the start and at the end of each action, and what the robot says or bumps into.
 
-    A leaf that takes too long for a tick is reported the first time only.
+    A leaf that takes too long for a tick is reported the first time only, and so is the exception of one.
     `label` gives the words for a node, `is_action` whether it is an action; `write` gets lines without an end.
     """
 
@@ -44,6 +44,7 @@ class PlainLines:
         self._is_action = is_action
         self._write = write
         self._slow: set[str] = set()  # paths of leaves
+        self._warned: dict[str, str] = {}  # what was said of the leaf at a path
 
     def __call__(self, event: Event) -> None:
         if isinstance(event, StatusesChanged):
@@ -53,11 +54,14 @@ class PlainLines:
         elif isinstance(event, Overrun):
             self._overrun(event)
         elif words := event.words:
+            if isinstance(event, Warned):
+                self._warned[event.path] = event.text
             word, _, rest = words.partition(" ")
             self._line(event.t, word, rest)
 
     def _action(self, event: StatusChanged, node: Node) -> None:
-        reason = f": {event.reason}" if event.reason else ""
+        is_said = not event.reason or event.reason in self._warned.get(event.path, "")
+        reason = "" if is_said else f": {event.reason}"
         self._line(event.t, _WORDS.get(event.status, "done"), self._label(node) + reason)
 
     def _overrun(self, event: Overrun) -> None:

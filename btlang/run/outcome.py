@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 
 from btlang.engine.engine import Failure
+from btlang.engine.leaves.leaf import locate_failure
 from btlang.run.statuses import Status
 from btlang.support.record import Record
 from btlang.tree.node import Node
@@ -55,6 +56,13 @@ def standstill_of(robot: Any) -> Standstill:
     return Standstill(getattr(robot, "moving", None)) if found is None else found
 
 
+def describe_caught(raised: Iterable[Failure], failure: Failure | None) -> tuple[str, ...]:
+    """Say which exceptions of leaves aren't the failure of the mission, each once."""
+    caught = [each for each in raised if failure is None or each.exception is not failure.exception]
+    reasons = ((each, locate_failure(each.exception)) for each in caught if each.exception is not None)
+    return tuple(dict.fromkeys(f"'{each.node.source_text}' raised an exception: {reason}" for each, reason in reasons))
+
+
 SUSPENDED, EMERGENCY = "suspended", "emergency stop"
 
 
@@ -63,7 +71,7 @@ class Outcome(Record, uncompared=("why", "statuses", "exceptions")):
 
     `why()` is why it failed, as `btc run` says it, "" where it did not; `statuses()` are those of the nodes at the end,
     by their words. `exceptions` are those that leaves have raised, except ActionFailed: the latest of each leaf, also
-    where the mission went on.
+    where the mission went on; `caught` says, in a sentence each, those that didn't end it.
 
     `unanswered` says, in a sentence each, which conditions of rules were never known: these rules have done nothing.
 
@@ -84,13 +92,22 @@ class Outcome(Record, uncompared=("why", "statuses", "exceptions")):
     why: Callable[..., str] = str
     statuses: Callable[[], Mapping[str, Status]] = dict
     exceptions: tuple[BaseException, ...] = ()
+    caught: tuple[str, ...] = ()
     unanswered: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         failure = f": {self.failure.reason}" if self.failure is not None else ""
-        return f"<Outcome {self.stopped or self.status.name} after {self.seconds:.1f} s{failure}>"
+        count = len(self.caught)
+        caught = f", {count} exception{'s' * (count > 1)} caught" if count else ""
+        return f"<Outcome {self.stopped or self.status.name} after {self.seconds:.1f} s{failure}{caught}>"
 
     def __str__(self) -> str:
+        summary = self.summary
+        return "\n".join((summary, *(text for text in self.caught if text.partition(": ")[2] not in summary)))
+
+    @property
+    def summary(self) -> str:
+        """How it ended, without exceptions that were caught: a log of the run has these already."""
         return "\n".join((self._ending(), *self.unanswered))
 
     def _ending(self) -> str:

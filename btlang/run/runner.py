@@ -15,7 +15,7 @@ from btlang.engine.status import IDLE, NAMES, RUNNING
 from btlang.run.bus import Bus
 from btlang.run.controls import Controls, disable
 from btlang.run.events import Ended, PeriodPassed, StatusesChanged, Troubled, Warned
-from btlang.run.outcome import EMERGENCY, SUSPENDED, Outcome, Standstill, standstill_of
+from btlang.run.outcome import EMERGENCY, SUSPENDED, Outcome, Standstill, describe_caught, standstill_of
 from btlang.run.pace import Overruns, Pace
 from btlang.run.robot_state import read_robot
 from btlang.run.statuses import Status
@@ -185,7 +185,7 @@ class Runner:
         failure = None if stopped else self._engine.failure
         count, worst = (self._overruns.count, self._overruns.worst) if self._overruns is not None else (0, None)
         standstill = Standstill() if standstill is None else standstill
-        raised = tuple(getattr(self._engine, "raised", {}).values())
+        raised = getattr(self._engine, "raised", {}).values()
         seconds = self._clock.now - self._began if seconds is None else seconds
         return Outcome(
             status,
@@ -196,7 +196,8 @@ class Runner:
             count,
             worst,
             standstill,
-            exceptions=raised,
+            exceptions=tuple(each.exception for each in raised),
+            caught=describe_caught(raised, failure),
             unanswered=tuple(text for text, _ in self._unanswered()),
         )
 

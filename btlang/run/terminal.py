@@ -148,7 +148,7 @@ def run_mission(
     if outcome.status == FAILURE:
         show("\n".join((outcome.why(colour=has_colour(sys.stderr)), *outcome.unanswered)), stream=sys.stderr)
     elif not quiet:
-        show(str(outcome))
+        show(outcome.summary)
     lost = [error for error in run.sink_errors if isinstance(error, OSError)]
     for failed in [error for error in run.sink_errors if not isinstance(error, OSError)]:
         show(f"An event sink failed: {failed}", sys.stderr)

@@ -16,7 +16,7 @@ from collections.abc import Iterator
 from btlang.api import Mission, parse_tree
 from btlang.components.words import words_of
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
-from btlang.diagnostics.files import OUTSIDE, included_path, is_below, read_source
+from btlang.diagnostics.files import OUTSIDE, included_path, is_within, read_source
 from btlang.frontends.mission.symbols.needs import WORDS as NEEDED_WORDS
 from btlang.house_rules import read_house_rules
 from btlang.printer.layout import format_layout
@@ -126,6 +126,8 @@ class _TestFileReader:
             raise MissionError(self._problems)
         try:
             mission = self._mission(runs[0])
+            if mission.robot and not self._robot:
+                self._choose_robot(mission.robot)
             if rules := self._find_file("rules"):
                 mission = read_house_rules(self._parse(read_source(rules, _root(self._source)))).around(mission)
         except MissionError as error:  # the other lines need its words
@@ -151,12 +153,15 @@ class _TestFileReader:
             tuple(pieces.steps), tuple(pieces.texts), *pieces.limit(runs[0]), self._robot,
         )  # fmt: skip
 
+    def _choose_robot(self, file: str) -> None:
+        self._robot, self._body = file, body_of(file)
+        self._robot_words = words_of(self._body)
+
     def _mission(self, run: ScriptStatement) -> Mission:
         world = self._find_file("world") or None
         self._robot = self._find_file("robot")
         if self._robot:
-            self._body = body_of(self._robot)
-            self._robot_words = words_of(self._body)
+            self._choose_robot(self._robot)
             world = world or self._body.world or None
         self._world = world
         if run.file is not None:
@@ -170,7 +175,7 @@ class _TestFileReader:
 
     def _parse(self, source: Source) -> Mission:
         """Parse a mission in the words of the robot and the names of the world of the test. Raises MissionError."""
-        return parse_tree(source, keywords=self._robot_words, world=self._world)
+        return parse_tree(source, keywords=self._robot_words, world=self._world, has_robot=bool(self._robot))
 
     def _find_file(self, kind: str) -> str:
         """Return the path that the first statement of a kind names; "" where none does."""
@@ -180,7 +185,7 @@ class _TestFileReader:
         """Return where a file lies that the test names. Raises MissionError where that is no folder of the user's."""
         assert named is not None
         path, real = included_path(_name(named), self._source)
-        if not self._source.roots or not any(is_below(real, root) for root in (*self._source.roots, "")):
+        if not is_within(real, self._source, ""):
             raise MissionError([diagnostic("BT001", named, file=path, reason=OUTSIDE)])
         if not os.path.isfile(real):
             raise MissionError([diagnostic("BT001", named, file=path, reason="there is no such file")])

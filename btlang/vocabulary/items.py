@@ -17,6 +17,9 @@ VALUES, WORLD = "values", "the world"
 """Topics of what may stand in braces: numbers with units and lists of names, and the names of the world."""
 
 
+_SLOT = re.compile(r"\{.*?\}")
+
+
 class Item(Record):
     """One thing to list. `sort` is "command", "condition", "word" (a connective or form) or "value".
 
@@ -37,6 +40,10 @@ class Item(Record):
     def words(self) -> frozenset[str]:
         """All words of its patterns and names, in lower case, choices apart."""
         return _words(*self.ways, *self.names)
+
+    def said_words(self) -> frozenset[str]:
+        """The same without the slots of words of the language: `{count} times` is nothing about counting."""
+        return _words(*(_SLOT.sub("", way) for way in self.ways), *self.names) if self.sort == "word" else self.words()
 
     def all_words(self) -> frozenset[str]:
         """With those that explain it."""
@@ -68,8 +75,10 @@ def _command(entry: Entry, vocabulary: Lexicon) -> Item:
     ways = entry.phrases
     if entry.measures:
         ways = (f"{entry.quantity[0]} {vocabulary.comparisons['below'][0]}", *entry.quantity[1:])
-        said = (re.sub(r" \{.*?\}", "", patterns[0]) for patterns in vocabulary.comparisons.values())
+        said = (_SLOT.sub("", patterns[0]).rstrip() for patterns in vocabulary.comparisons.values())
         details.append(f"compared: {', '.join(said)} {{{entry.measures}}}")
+        name = f"{entry.quantity[0]} {vocabulary.word('remember_as')} ..."
+        details.append(f"as a value: {vocabulary.word('remember')} {name}, then {{...}} in a text")
     if entry.resources:
         details.append("needs: " + ", ".join(entry.resources))
     details.append(f"node: {entry.id}")

@@ -27,7 +27,8 @@ GOES_ON = frozenset((
 NO_PHRASES = frozenset((
     "define_strong", "define", "fact", "facing", "set_to", "by", "add_to", "subtract_from", "remember_as", "each_in",
     "called", "with", "giving", "node", "newline", "character", "main_name", "given", "here",
-    "needs_world", "needs_words", "all_names", "except", "nearest", "random", "largest", "smallest", "furthest",
+    "needs_world", "needs_words", "needs_robot", "all_names", "except", "nearest", "random", "largest",
+    "smallest", "furthest",
     "leftmost", "rightmost",
     "without_entering", "without_leaving", "may", "or_stay",
 ))  # fmt: skip
@@ -81,7 +82,8 @@ _NO_SLOT = (
     "set", "set_to", "increase", "decrease", "by", "add", "add_to", "subtract", "subtract_from",
     "remember", "remember_as", "each", "each_in", "include",
     "do", "test", "called", "with", "giving", "node", "newline", "character", "main_name", "given",
-    "needs_world", "needs_words", "all_names", "except", "nearest", "random", "largest", "smallest", "furthest",
+    "needs_world", "needs_words", "needs_robot", "all_names", "except", "nearest", "random", "largest",
+    "smallest", "furthest",
     "leftmost", "rightmost",
 )  # fmt: skip
 ROLES = {

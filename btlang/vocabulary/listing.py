@@ -87,6 +87,7 @@ def _found(known: Sequence[Item], search: str) -> list[Item]:
     wanted = search.lower().replace("/", " ").split()
     return (
         called
+        or [_only(item, wanted) for item in known if _says(item, wanted)]
         or [item for item in known if _has(item.words(), wanted)]
         or [item for item in known if _has(item.all_words(), wanted)]
     )
@@ -95,6 +96,22 @@ def _found(known: Sequence[Item], search: str) -> list[Item]:
 def _has(words: Iterable[str], wanted: Sequence[str]) -> bool:
     """Whether each wanted word is the start of one of the words."""
     return all(any(word.startswith(start) for word in words) for start in wanted)
+
+
+def _says(item: Item, wanted: Sequence[str]) -> bool:
+    """Whether it is said with all wanted words. A word of the language has so many ways that it takes whole words."""
+    if item.sort == "word":
+        return item.said_words().issuperset(wanted)
+    return _has(item.words(), wanted)
+
+
+def _only(item: Item, wanted: Sequence[str]) -> Item:
+    """Return a word of the language with its first way and those that have the wanted words, if any."""
+    if item.sort != "word":
+        return item
+    first, *others = item.ways
+    ways = tuple(way for way in others if item.replace(ways=(way,), names=()).said_words().issuperset(wanted))
+    return item.replace(ways=(first, *ways)) if ways else item
 
 
 def _said_so(known: Sequence[Item], text: str, vocabulary: Lexicon) -> list[Item]:

@@ -181,3 +181,33 @@ def test_each_public_name_is_listed_once_and_there() -> None:
     assert all(getattr(btlang, name) is not None for name in listed)
     assert set(PUBLIC["btlang.builders"]) == set(builders.__all__) == {"leaf", *map(builder_name, CATALOGUE)}
     assert repr(sequence("wave", "nod")) == "<Behavior Sequence, 2 children>"
+
+
+@pytest.mark.parametrize(
+    ("call", "reason"),
+    [
+        (lambda: leaf("GoTo", place=3), "place must be the name of a place, not the value 3"),
+        (lambda: leaf("Say", text=True), "text must be a text, not the value true"),
+        (lambda: leaf(cheer, 5), "person must be the name of a person, not the value 5"),
+        (lambda: leaf("GoTo", place="moon"), "there is no place 'moon'"),
+        (lambda: leaf(cheer, "Zed"), "there is no person 'Zed'"),
+        (lambda: leaf("GoTo", plce="lab"), "GoTo takes no port plce"),
+        (lambda: leaf("MoveForward", distance="far"), "distance cannot be 'far': a number is needed"),
+        (lambda: leaf("MoveForward", distance=True), "distance cannot be 'true': a number is needed"),
+        (lambda: leaf(weld, "slow", 1.5), r"number cannot be '1\.5': a whole number is needed"),
+        (lambda: builders.parallel("wave", "nod", success_count="x"), "success_count must be a whole number"),
+        (lambda: sequence("wave", _skipIf=1), "_skipIf must be a script, not the value 1"),
+    ],
+)
+def test_ports_that_do_not_fit_are_errors_at_the_line_of_the_script(call: Any, reason: str) -> None:
+    line = call.__code__.co_firstlineno
+    with pytest.raises(btlang.MissionError, match=reason) as raised:
+        sequence("wave", call()).mission()
+    [problem] = raised.value.diagnostics
+    assert problem.code == "BT132"
+    assert problem.span.place.startswith(f"{__file__}:{line}:")
+
+
+def test_an_unknown_node_may_be_written_for_other_programs() -> None:
+    assert '<Fly height="2"/>' in leaf("Fly", height=2).to("xml")
+    assert leaf("GoTo", place="{goal}").mission().label

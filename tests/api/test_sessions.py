@@ -161,7 +161,7 @@ def test_each_repr_is_short() -> None:
         assert repr(run) == f"<Run {run.id[:8]}, not started, 0.0 s>"
         outcome = run.execute()
         assert repr(run) == f"<Run {run.id[:8]}, ended: SUCCESS after {outcome.seconds:.1f} s>"
-    assert repr(outcome) == f"<Outcome SUCCESS after {outcome.seconds:.1f} s>"
+    assert repr(outcome) == f"<Outcome SUCCESS after {outcome.seconds:.1f} s, 1 exception caught>"
     assert [repr(error) for error in outcome.exceptions] == ["ZeroDivisionError('over a stone')"]
     with pytest.raises(btlang.MissionError) as caught:
         btlang.parse_tree("fly")

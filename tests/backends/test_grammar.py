@@ -117,7 +117,7 @@ def test_every_role_that_can_stand_in_one_line_has_a_rule() -> None:
         "following", "in_parallel", "in_order", "include", "here", "newline", "character",
         "giving",  # only words of others have outputs
         "may", "or_stay",  # what is permitted is left out
-        "needs_world", "needs_words", "politeness", "times_of_day", "never",
+        "needs_world", "needs_words", "needs_robot", "politeness", "times_of_day", "never",
         "on_way", "on_way_to", "start_at", "wait_at", "back_and_forth", "rounds_of", "pictures_of",
         "received",  # behind what somebody is given
         "arrival", "arrival_at",  # about journeys, which no rule tells from others

@@ -259,7 +259,8 @@ def test_a_rule_that_never_knew_is_told_at_the_end(
         "'tray is full' is not known: AttributeError: 'Machine' object has no attribute 'capacity'"
     )
     assert warned.count("(raised in is_full, coffee.py:") == 1
-    assert str(outcome).splitlines()[1:] == [told]
+    assert str(outcome).splitlines()[1:] == [told, *outcome.caught]
+    assert str(outcome).count("(raised in is_full, coffee.py:") == 1
     assert [event.text for event in events if isinstance(event, Warned)][-1] == told
     assert main(["run", "-c", "whenever the tray is full, print full. wave", "--robot", robot, "--speed", "max"]) == 0
     assert told in capsys.readouterr().out.splitlines()[-1]

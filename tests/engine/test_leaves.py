@@ -143,7 +143,7 @@ def test_keys_are_read_at_each_start_and_text_is_converted() -> None:
     blackboard.set("n", "many")
     assert engine.tick() == FAILURE
     assert engine.failure is not None
-    assert engine.failure.reason.startswith("x cannot be 'many': invalid literal")
+    assert engine.failure.reason.startswith("x cannot be 'many': a whole number is needed")
 
 
 def test_only_a_whole_text_in_braces_is_a_key() -> None:
@@ -272,7 +272,7 @@ class NoHalt:
         (n("A", x="1"), lambda y=0: None, "A takes no port x; it takes y"),
         (n("A"), lambda x: None, "A needs a value for x"),
         (n("A", x="1"), lambda x, /: None, "A takes no port x"),
-        (n("A", x="one"), lambda x: None, "x cannot be 'one': invalid literal"),
+        (n("A", x="one"), lambda x: None, "x cannot be 'one': a whole number is needed"),
         (n("A"), NoHalt, "NoHalt has no halt, so it isn't a leaf"),
         (n("A", n("AlwaysSuccess")), lambda: None, "A is a leaf, which takes no children"),
         (n("Sequence"), None, "Sequence has 0 children instead of 1 or more"),

@@ -133,3 +133,10 @@ def test_roaming_is_the_founding_example() -> None:
         "angle left is move forward then turn left",
         "do the twist then repeat avoid wall or move forward",
     ]
+
+
+@pytest.mark.parametrize(
+    "path", sorted(EXAMPLES.glob("*/missions/*.txt")), ids=lambda path: f"{path.parts[-3]}/{path.stem}"
+)
+def test_missions_of_projects_run_without_options(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", str(path), "--speed", "max", "--for", "20s", "--quiet"]) == 0, capsys.readouterr().err

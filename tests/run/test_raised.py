@@ -9,6 +9,7 @@ import pytest
 import btlang
 from btlang import ActionFailed, Failed, Status
 from btlang.run.events import Event, Warned
+from btlang.run.logs import PlainLines
 
 DONE: list[str] = []
 JAMMED = ZeroDivisionError("no pulse in the last second")
@@ -106,3 +107,38 @@ def test_an_action_that_raises_is_reported_once_also_where_the_mission_goes_on()
     assert (outcome.status, DONE) == (Status.SUCCESS, ["note"])
     [warning] = warnings
     assert warning.startswith("'open the gate' failed: OSError: no current (raised in open_gate, test_raised.py:")
+
+
+def test_an_exception_that_was_caught_is_on_the_outcome_and_printed_with_it_once() -> None:
+    outcome, _ = run("try open the gate up to 3 times, otherwise note")
+    [problem] = outcome.exceptions
+    assert isinstance(problem, OSError)
+    first, caught = str(outcome).splitlines()
+    assert first == "The mission succeeded in 0.1 s."
+    assert caught.startswith(
+        "'open the gate' raised an exception: OSError: no current (raised in open_gate, test_raise"
+    )
+    assert repr(outcome) == "<Outcome SUCCESS after 0.1 s, 1 exception caught>"
+
+
+@pytest.mark.parametrize("mission", ["open the gate", "whenever the gate is jammed, note; open the gate"])
+def test_the_exception_that_ended_a_mission_is_printed_once(mission: str) -> None:
+    outcome, _ = run(mission)
+    text = str(outcome)
+    assert (outcome.status, text.count("raised in open_gate, test_raised.py:")) == (Status.FAILURE, 1)
+    assert text.count("raised in jammed") == mission.count("jammed")
+
+
+def test_a_run_is_printed_as_its_outcome() -> None:
+    with btlang.Session(keywords=WORDS) as session:
+        run = session.run("try open the gate, otherwise note", speed="max")
+        assert str(run) == str(run.outcome)
+        assert "raised in open_gate" in str(run)
+
+
+def test_lines_of_a_run_say_an_exception_once(capsys: pytest.CaptureFixture[str]) -> None:
+    lines: list[str] = []
+    mission = btlang.parse_tree("try open the gate up to 3 times, otherwise note", keywords=WORDS)
+    mission.run(speed="max", sinks=[PlainLines(mission.label, mission.is_action, lines.append)])
+    assert sum("no current" in line for line in lines) == 1
+    assert sum(line.endswith("failed open the gate") for line in lines) == 3

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -170,3 +171,21 @@ def test_many_tests_of_five_minutes(folder: Path, capsys: pytest.CaptureFixture[
     )
     assert main(["test", "--quiet"]) == 0
     assert capsys.readouterr().out == f"{count} tests passed ({5 * count} min 0.0 s of mission time)\n"
+
+
+@pytest.mark.parametrize("start", ["project", "project/tests", "elsewhere", "."])
+@pytest.mark.parametrize("is_absolute", [False, True])
+def test_a_test_runs_from_any_folder(
+    tmp_path: Path, start: str, is_absolute: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    tests = tmp_path / "project" / "tests"
+    tests.mkdir(parents=True)
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "project" / "hello.txt").write_text("wave then nod")
+    (tests / "hello.test.txt").write_text('test "it waves":\n  run "../hello.txt"\n  finally the mission succeeds\n')
+    (tests / "out.test.txt").write_text('test "out":\n  run "../../other.txt"\n  finally the mission succeeds\n')
+    (tmp_path / "other.txt").write_text("wave")
+    monkeypatch.chdir(tmp_path / start)
+    for name, code in (("hello", 0), ("out", 0 if start == "." else 2)):
+        file = tests / f"{name}.test.txt"
+        assert main(["test", str(file) if is_absolute else os.path.relpath(file)]) == code, capsys.readouterr().err

@@ -94,8 +94,12 @@ def test_missions_and_worlds_lie_beside_the_test(tmp_path: Path, monkeypatch: py
     [test] = read_tests(read_source(path))
     assert test.mission.world == str(below / "../w.toml")
     monkeypatch.chdir(below)
+    [test] = read_tests(read_source(path))
+    assert test.mission.world == str(below / "../w.toml")
+    other = below.rename(tmp_path / "others")
+    monkeypatch.chdir(other)
     with pytest.raises(MissionError, match="outside the folder"):
-        read_tests(read_source(path))
+        read_tests(read_source(str(other / "m.test.txt")))
 
 
 def test_the_words_of_the_mission_are_words_of_its_test(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

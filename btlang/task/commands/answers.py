@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from datetime import date, timedelta
 from difflib import unified_diff
@@ -11,7 +13,7 @@ from btlang.diagnostics.diagnostic import MissionError
 from btlang.task.commands.checks import refusal_error
 from btlang.task.messages import Answer, Put
 from btlang.task.schedule.calendar import format_duration, format_moment
-from btlang.task.store.records import FINAL, MissionText, Revision, Schedule, Task, TaskState
+from btlang.task.store.records import FINAL, Act, MissionText, Revision, Schedule, Task, TaskState
 from btlang.task.store.task_store import TaskStore
 from btlang.text.formatting import joined, one_line
 
@@ -23,6 +25,9 @@ if TYPE_CHECKING:
 _LONGEST = 60  # characters of a mission in a list
 _MOST_LINES = 3_000  # of texts whose smallest difference is found in some seconds, whatever they are
 _HIDDEN = ("mission", "saved", "token")
+_IN_QUOTES = ("text", "name", "rule", "reason")
+_REFUSED = re.compile(r"(?:[^\n]*?: )?error (BT\d{3}): ([^\n]*)")
+_TOKEN = re.compile(r" To let it go on, use the token \w+\.")
 
 
 def task_data(task: Task, waits: str = "") -> dict[str, Any]:
@@ -40,8 +45,39 @@ def task_line(task: Mapping[str, Any]) -> str:
 
 def shorten(mission: MissionText) -> str:
     """Return the name of a mission or else its text, cut, in one line."""
-    text = one_line(mission.name or " / ".join(line.strip() for line in mission.text.splitlines() if line.strip()))
-    return text if len(text) <= _LONGEST else text[: _LONGEST - 3] + "..."
+    return _cut(mission.name or mission.text)
+
+
+def _cut(text: str, longest: int = _LONGEST) -> str:
+    text = one_line(" / ".join(line.strip() for line in text.splitlines() if line.strip()))
+    return text if len(text) <= longest else text[: longest - 3] + "..."
+
+
+def act_line(act: Act, now: float) -> str:
+    """Return an entry of the audit trail in one line: when, who, which command, and what came of it."""
+    refused = _REFUSED.match(act.outcome)
+    outcome = f"refused ({refused[1]}): {refused[2]}" if refused else _TOKEN.sub("", act.outcome)
+    what = ", ".join(_command_parts(json.loads(act.details)))
+    by = one_line(act.person) or "nobody"
+    return f"{format_moment(act.time, now)}  {by}: {act.command.replace('_', ' ')} {what}".rstrip() + (
+        f"  [{_cut(outcome, 2 * _LONGEST)}]" if outcome else ""
+    )
+
+
+def _command_parts(fields: Mapping[str, Any]) -> Iterator[str]:
+    """Yield the fields of a command in words, without its name and without what lets others do it."""
+    for name, value in fields.items():
+        is_named = name == "text" and fields.get("name")  # the name says enough
+        if is_named or name in ("command", *_HIDDEN) or value in (None, "", [], {}):
+            continue
+        if isinstance(value, Mapping):
+            value = " ".join(f"{key}={each}" for key, each in value.items())
+        elif isinstance(value, list):
+            value = " ".join(map(str, value))
+        said = _cut(str(value))
+        if name in _IN_QUOTES:
+            said = f'"{said}"'
+        yield said if name in _IN_QUOTES[:3] else f"{name} {said}"
 
 
 def describe_times(earliest: float | None, deadline: float | None, now: float) -> Iterator[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from btlang.task import messages
-from btlang.task.commands.answers import task_data, task_line, write_report
+from btlang.task.commands.answers import act_line, task_data, task_line, write_report
 from btlang.task.commands.checks import HIGHEST, choose_member, refusal_error, report_times
 from btlang.task.execution.manager import TaskManager
 from btlang.task.messages import Answer
@@ -76,9 +76,7 @@ class StoreReader:
     def trail(self, command: messages.Trail, person: str) -> Answer:
         """List the latest commands that changed something."""
         now, found = self._now(), self._store.acts(command.limit)
-        lines = [
-            f"{format_moment(each.time, now)}  {one_line(each.person)}: {one_line(each.details)}" for each in found
-        ]
+        lines = [act_line(each, now) for each in found]
         acts = [each.as_dict() for each in found]
         return Answer(True, "\n".join(lines) or "Nobody has asked for anything.", {"acts": acts})
 

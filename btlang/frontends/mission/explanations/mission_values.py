@@ -12,6 +12,7 @@ from btlang.text.source import Span
 from btlang.text.spelling import nearest
 from btlang.text.words import Words
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.pattern import forms
 
 
 def misread_head(text: Words, at: int, role: str, vocabulary: Lexicon) -> Diagnostic:
@@ -31,13 +32,27 @@ def misread_head(text: Words, at: int, role: str, vocabulary: Lexicon) -> Diagno
     return diagnostic("BT039", span, words=span.text, example=examples[role])
 
 
-def unknown_value(span: Span, key: str, known: Iterable[str]) -> Diagnostic:
-    """BT043: a name in braces that no value has."""
+def unknown_value(span: Span, key: str, known: Iterable[str], vocabulary: Lexicon) -> Diagnostic:
+    """BT043: a name in braces that no value has, maybe because a quantity has it."""
     name, names = (key.replace("_", " ").strip(), [other.replace("_", " ").strip() for other in known])
     near = nearest(name, names)
     advice = near_names(near, names) if names else "This mission has no named values yet."
+    if not near and (measured := _measured(name, vocabulary, whole=bool(names))):
+        value = measured.split()[-1] if " " in measured else "level"
+        remembered = f"{vocabulary.word('remember')} {measured} {vocabulary.word('remember_as')} {value}"
+        advice = f"'{measured}' is measured. Write before it: {remembered}. Then {{{value}}} is its value here."
     braces = re.search(r"\{(\s*" + r"[\W_]+".join(map(re.escape, key.split("_"))) + r"\s*)\}", span.text, re.IGNORECASE)
     fix = None
     if near and braces:
         fix = Span(span.source, span.start + braces.start(1), span.start + braces.end(1)), near[0]
     return diagnostic("BT043", span, fix=fix, name=name, help=advice)
+
+
+def _measured(name: str, vocabulary: Lexicon, whole: bool) -> str:
+    """Return the quantity of this name, or without `whole` the shortest one that has its words; "" for none."""
+    wanted = [word for word in name.split() if word not in vocabulary.articles]
+    patterns = (way for found in vocabulary.entries.values() for entry in found for way in entry.quantity)
+    said = [form for way in patterns for form in forms(way, vocabulary.articles)]
+    spoken = [form for form in said if all(isinstance(part, str) for part in form) and set(wanted) <= set(form)]
+    fitting = [form for form in spoken if list(form) == wanted] or ([] if whole else spoken)
+    return " ".join(map(str, min(fitting, key=lambda form: len(tuple(form)), default=())))

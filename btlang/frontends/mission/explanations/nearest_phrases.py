@@ -14,7 +14,7 @@ from btlang.vocabulary.pattern import forms, spelled
 
 _NOT_OFFERED = NOT_ALONE | {
     *NODE_ROLES, "never", "called", "with", "giving", "node", "newline", "character", "main_name", "given",
-    "needs_world", "needs_words", "set_to", "by", "add_to", "subtract_from", "remember_as", "each_in",
+    "needs_world", "needs_words", "needs_robot", "set_to", "by", "add_to", "subtract_from", "remember_as", "each_in",
     "all_names", "except", "may", "or_stay",
 }  # fmt: skip
 """Roles that say nothing alone or are for texts that programs write: what is like their words was hardly meant so."""

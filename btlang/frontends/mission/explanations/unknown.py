@@ -63,7 +63,7 @@ def explain_unknown(
     if brace is not None:
         last = next((i for i in range(brace, end) if text.words[i] == "}"), brace)
         name = " ".join(text.words[brace + 1 : last])
-        return unknown_value(text.span(brace, last + 1), name, context.known or ())
+        return unknown_value(text.span(brace, last + 1), name, context.known or (), vocabulary)
     lacking = untold(text, at, end, vocabulary) or not_two(text, at, end, vocabulary)
     lacking = lacking or unreferred(text, at, vocabulary, context) or without_hour(text, at, end, vocabulary)
     if lacking is not None:

@@ -1,4 +1,4 @@
-"""Finds what a mission says at its top that it needs: `world "museum.toml"` and `words "referee.toml"`."""
+"""Finds what a mission says at its top that it needs: `world "museum.toml"`, `robot "..."`, `words "referee.toml"`."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from btlang.text.source import Span
 from btlang.text.words import Words, statements
 from btlang.vocabulary.lexicon import Lexicon
 
-WORLD, WORDS = "needs_world", "needs_words"
+WORLD, WORDS, ROBOT = "needs_world", "needs_words", "needs_robot"
 """The roles of the words that begin such a line."""
 
 
 class Need(Record):
-    """A file that a mission needs: a world or a keyword file, by its role. `path` is as it was written."""
+    """A file that a mission needs: a world, a robot or a keyword file, by its role. `path` is as it was written."""
 
     role: str
     path: str
@@ -32,7 +32,7 @@ class Needs:
 def find_needs(text: Words, vocabulary: Lexicon) -> Needs:
     """Every statement that names a file that the mission needs. They come before all others."""
     needs = Needs()
-    phrases = [(role, phrase.split()) for role in (WORLD, WORDS) for phrase in vocabulary.roles[role]]
+    phrases = [(role, phrase.split()) for role in (WORLD, WORDS, ROBOT) for phrase in vocabulary.roles[role]]
     if {words[0] for _, words in phrases}.isdisjoint(text.distinct):
         return needs
     is_top = True
@@ -48,8 +48,9 @@ def find_needs(text: Words, vocabulary: Lexicon) -> Needs:
         needs.ends[first] = last
         if not is_top:
             needs.problems.append(unusable(need, "such a line comes before all others in a mission"))
-        elif role == WORLD and any(other.role == WORLD for other in needs.found):
-            needs.problems.append(unusable(need, "the mission has a world already"))
+        elif role != WORDS and any(other.role == role for other in needs.found):
+            what = "world" if role == WORLD else "robot"
+            needs.problems.append(unusable(need, f"the mission has a {what} already"))
         else:
             needs.found.append(need)
     return needs

@@ -395,4 +395,4 @@ class Calls:
     def _unknown_value(self, span: Span, key: str) -> None:
         from btlang.frontends.mission.explanations.mission_values import unknown_value
 
-        self.problems.append(unknown_value(span, key, self._context.known or ()))
+        self.problems.append(unknown_value(span, key, self._context.known or (), self._vocabulary))
