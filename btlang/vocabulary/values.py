@@ -115,8 +115,8 @@ class Values(Measures):
         return found is not None and found[1] == len(read)
 
     def _as_read(self, words: str) -> list[str]:
-        """The words of a name as they are read in a text, with its marks: `nurses' station`."""
-        if words.replace(" ", "").isalnum():
+        """The words of a name as they are read in a text, with its marks: `nurses' station`, `class 3b`."""
+        if words.replace(" ", "").isalpha():
             return words.lower().split()  # as nearly always
         return split(Source(words), self._orthography).words[:-2] or words.lower().split()
 

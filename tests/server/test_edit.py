@@ -74,7 +74,7 @@ def test_the_file_is_read_saved_and_shown_with_what_it_includes(edited: Any, fol
     now = opened(edited)
     assert now["text"] == MISSION
     shown = edited.ask("POST", "/api/document", {"text": MISSION}, **edited.page).data
-    assert [each["label"] for each in shown["nodes"]] == ["Sequence", "pour tea", "wave", "say tea"]
+    assert [each["label"] for each in shown["nodes"]] == ["then", "pour tea", "wave", "say tea"]
     saved = save(edited, MISSION + "nod\n", now["revision"]).data
     assert saved["ok"]
     assert (folder / "tour.txt").read_text() == MISSION + "nod\n"

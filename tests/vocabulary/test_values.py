@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import btlang
 from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.vocabulary.value_type import format_number
 
@@ -70,3 +73,15 @@ def test_value(kind: str, written: str, expected: str | None) -> None:
 @given(st.floats(-1e9, 1e9))
 def test_numbers_read_back(number: float) -> None:
     assert float(format_number(number)) == number
+
+
+def test_names_may_have_figures_before_letters(tmp_path: Path) -> None:
+    world = tmp_path / "school.toml"
+    world.write_text(
+        'start = { x = 1, y = 1 }\nplaces = [{ name = "class 3b", x = 1, y = 1 }, { name = "bay 2", x = 2, y = 1 }]',
+        encoding="utf-8",
+    )
+    for parser in ("shunting-yard", "lark"):
+        mission = btlang.parse_tree("go to class 3b, then to bay 2", world=str(world), parser=parser)
+        assert [dict(node.ports)["place"] for node in mission.tree.root.children] == ["class 3b", "bay 2"]
+        assert "class 3b" in str(mission.to("english"))

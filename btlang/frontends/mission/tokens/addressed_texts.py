@@ -57,6 +57,17 @@ class AddressedTexts(ToldWords):
             self._doubt_words(entry, value.first, end)
         return self._say_clause(value, end, command) if end else 0
 
+    def _wish(self, value: SlotValue, command: Token) -> int:
+        """`wish Bob a nice day`: "Have a nice day"."""
+        text, first = self._text, value.first
+        end = max(value.last, self._vocabulary.values.texts.end_of_clause(text, first))
+        end = self._end_before_command(first, end, is_told=False) or end
+        have = self._vocabulary.asking["wished"][0].capitalize()
+        self._set_text(command, value.name, f"{have} {text.source.text[text.begin(first) : text.ends[end - 1]]}")
+        command.end = text.ends[end - 1]
+        self._tokens.append(command)
+        return end
+
     def _say_clause(self, value: SlotValue, end: int, command: Token) -> int:
         """Say the words of a clause up to a place, at which the mission goes on."""
         text = self._text

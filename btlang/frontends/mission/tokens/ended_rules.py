@@ -70,7 +70,12 @@ def with_ends(tokens: list[Token], vocabulary: Lexicon, span: Callable[[int, int
             pass  # `avoid the hall until 6 pm, then go to the hall`
         elif constraint is not None and constraint.kind == "keep in" and until.kind in WAITING:
             _wait(tokens, at, vocabulary)
-        elif is_timed and begins and opening is not None and (clock := vocabulary.entry(_DAYTIME)) is not None:
+        elif (
+            is_timed
+            and (begins or _is_headed(tokens, at))
+            and opening is not None
+            and (clock := vocabulary.entry(_DAYTIME)) is not None
+        ):
             then = Token("condition", until.start, until.end, _comes(str(until.value), clock))
             tokens[at + 1 : at + 2] = [Token("until", until.start, until.start), then]
             _open_again(tokens, at, opening)
@@ -257,13 +262,19 @@ def _is_next(tokens: list[Token], at: int) -> bool:
 
     Or behind the head of a form: `every hour, stay in the hall for 5 min`.
     """
-    joint = run_start(tokens, at, JOINTS)
-    if 0 < joint < at and tokens[joint - 1].kind in _HEADS:
+    if _is_headed(tokens, at):
         return True
+    joint = run_start(tokens, at, JOINTS)
     before = tokens[joint - 1] if 0 < joint < at else None
     if before is None or before.kind != "command" or constraint_of(tokens[at]) is None:
         return False
     return any(token.kind == "then" for token in tokens[joint:at]) or _leads_there(before, tokens[at])
+
+
+def _is_headed(tokens: list[Token], at: int) -> bool:
+    """Whether a command stands behind the head of a form: `every hour, avoid the hall`, `at 10 pm avoid the hall`."""
+    joint = run_start(tokens, at, JOINTS)
+    return joint > 0 and tokens[joint - 1].kind in _HEADS
 
 
 def _leads_there(journey: Token, stay: Token) -> bool:
@@ -318,6 +329,7 @@ def _waits_behind(tokens: list[Token], at: int, last: int, opening: Entry) -> bo
 
 def _open_again(tokens: list[Token], at: int, opening: Entry) -> None:
     until, command = tokens[at + 1], _opened(tokens[at], opening)
+    rule = "whenever" if _is_headed(tokens, at) else "first_time"  # its condition may hold before the zone is closed
     last, behind = _condition_end(tokens, at + 2)
     if _waits_behind(tokens, at, last, opening):
         return
@@ -325,4 +337,4 @@ def _open_again(tokens: list[Token], at: int, opening: Entry) -> None:
         tokens[last:behind] = [Token("semi", tokens[last].start, tokens[last].end)]
     end = tokens[last - 1].end
     tokens[last:last] = [Token("comma", end, end), Token("command", end, end, command)]
-    tokens[at + 1 : at + 2] = [Token("semi", until.start, until.start), Token("first_time", until.start, until.end)]
+    tokens[at + 1 : at + 2] = [Token("semi", until.start, until.start), Token(rule, until.start, until.end)]

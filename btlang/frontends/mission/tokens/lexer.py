@@ -13,11 +13,17 @@ from btlang.frontends.mission.tokens.counted_things import with_counted_things
 from btlang.frontends.mission.tokens.ended_rules import with_ends
 from btlang.frontends.mission.tokens.left_out import find_unplaced
 from btlang.frontends.mission.tokens.repeated_statements import (
+    with_questions_each_time,
     with_questions_once,
     with_repeats_apart,
     with_times_first,
 )
-from btlang.frontends.mission.tokens.rules_behind import find_counted_rules, with_exceptions, with_rules_behind
+from btlang.frontends.mission.tokens.rules_behind import (
+    find_counted_rules,
+    find_ended_rounds,
+    with_exceptions,
+    with_rules_behind,
+)
 from btlang.frontends.mission.tokens.rules_inside import with_rules_inside
 from btlang.frontends.mission.tokens.settling import (
     find_brief_stays,
@@ -81,6 +87,7 @@ class Lexer:
         self.problems += with_repeats_apart(self.tokens, source)
         with_times_first(self.tokens)
         self.problems += with_questions_once(self.tokens, source)
+        with_questions_each_time(self.tokens)
         turn_branches(self.tokens)
         with_rounds(self.tokens)
         with_either_end(self.tokens)
@@ -93,6 +100,7 @@ class Lexer:
         self.problems += with_counted_things(self.tokens, source)
         with_rules_behind(self.tokens)
         self.problems += find_counted_rules(self.tokens, source)
+        self.problems += find_ended_rounds(self.tokens, self.vocabulary, source)
         self.problems += with_exceptions(self.tokens, self.vocabulary, source)
         with_rules_inside(self.tokens)
         self.problems += with_ends(self.tokens, self.vocabulary, partial(Span, source))

@@ -103,6 +103,17 @@ def with_questions_once(tokens: list[Token], source: Source) -> Iterator[Diagnos
             yield diagnostic("BT151", span, words=span.text, one=one, other=other)
 
 
+def with_questions_each_time(tokens: list[Token]) -> None:
+    """Make `every hour, ask Bob "Q" until he says yes` into `ask Bob "Q" every hour until he says yes`."""
+    for at in [at for at, token in enumerate(tokens) if token.kind == "every"]:
+        asked = run_end(tokens, at + 1, ("comma",))
+        if [token.kind for token in tokens[asked : asked + 3]] != ["command", *_UNTIL] or not _asks(tokens[asked]):
+            continue
+        answer = tokens[asked + 2].value
+        if isinstance(answer, Called) and answer.entry.id in ABOUT_ANSWERS:
+            tokens[at : asked + 1] = [tokens[asked], tokens[at]]
+
+
 def _asks(token: Token) -> bool:
     return token.kind == "command" and isinstance(token.value, Called) and token.value.entry.id == ASK
 

@@ -89,13 +89,12 @@ class Requests(Questions):
         asking = self._vocabulary.asking
         if entry.id == TELL and text.words[first - 1] in (*asking["pleading"], *asking["asking_for"]):
             return self._plead(entry, value, at, command)
-        if entry.id == TELL and value.last == match.last and self._goes_on(match.last):
+        if text.words[at] in self._vocabulary.asking["wishing"] and first in text.articles:
+            return self._wish(value, command)
+        named = self._measured(first) if first in text.articles else None
+        is_value = named is not None and self._ends(named.last)  # `tell Bob the last count`
+        if entry.id == TELL and value.last == match.last and self._goes_on(match.last) and not is_value:
             return self._tell(entry, value, command)
-        if text.words[at] in self._vocabulary.asking["wishing"] and first in text.articles and value.last > first + 1:
-            have = self._vocabulary.asking["wished"][0].capitalize()
-            wish = text.source.text[text.begin(first) : text.ends[value.last - 1]]
-            self._set_text(command, value.name, f"{have} {wish}")
-            return 0
         if first not in text.articles or value.last != first + 1:
             return 0
         is_last = value.last == match.last

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.token import (
@@ -47,6 +47,24 @@ def find_counted_rules(tokens: Sequence[Token], source: Source) -> Iterator[Diag
             yield diagnostic("BT150", span, words=span.text, reason=_EACH_TIME, example=_RULE)
 
 
+def find_ended_rounds(tokens: Sequence[Token], vocabulary: Lexicon, source: Source) -> Iterator[Diagnostic]:
+    """BT151 for `A every hour until 5 pm and B`: is B done each time, or once behind the last?"""
+    for every in range(1, len(tokens) - 1):
+        until = tokens[every + 1]
+        if tokens[every].kind != "every" or until.kind not in _ENDING or tokens[every - 1].kind not in _DONE:
+            continue
+        ended = every + 2 if until.kind == "until_time" else _behind(tokens, every + 1)
+        joint = run_end(tokens, ended, ("comma",))
+        first, last = statement_start(tokens, every), run_start(tokens, statement_end(tokens, every), STATEMENT_ENDS)
+        if joint + 1 < last and tokens[joint].kind == "and" and tokens[joint + 1].kind in _DONE:
+            parts = ((first, every), (every, ended), (joint + 1, last))
+            done, pace, further = (source.text[tokens[begin].start : tokens[end - 1].end] for begin, end in parts)
+            one = f"{pace}, {done} {vocabulary.word('and')} {further}"
+            other = f"{done} {pace}, {vocabulary.word('then')} {further}"
+            span = Span(source, tokens[first].start, tokens[last - 1].end)
+            yield diagnostic("BT151", span, words=span.text, one=one, other=other)
+
+
 def with_exceptions(tokens: list[Token], vocabulary: Lexicon, source: Source) -> Iterator[Diagnostic]:
     """Make `A every hour, but not if C` ask each time, and `whenever C, A, but not while D` a rule for both together:
     where D ends and C still holds, A is done then. `A, but not while D` alone can be read in two ways (BT151).
@@ -57,8 +75,8 @@ def with_exceptions(tokens: list[Token], vocabulary: Lexicon, source: Source) ->
         said = source.text[tokens[at].start : tokens[at].end].lower().split()
         if said[:1] == [] or said[0] not in leaving_out:
             continue
-        end, comma = _behind(tokens, at), run_start(tokens, at, ("comma",))
-        first, last = statement_start(tokens, at), run_start(tokens, statement_end(tokens, at), STATEMENT_ENDS)
+        first, last = _statement_around(tokens, at)
+        end, comma = min(_behind(tokens, at), last), run_start(tokens, at, ("comma",))
         lasts, unless = not while_words.isdisjoint(said), tokens[at:end]
         if comma <= first or len(unless) < 2:
             continue  # nothing is done before it, or nothing is asked
@@ -70,7 +88,7 @@ def with_exceptions(tokens: list[Token], vocabulary: Lexicon, source: Source) ->
         elif every == comma - 1 >= first:
             tokens[every:end] = [*unless, tokens[every]]
         elif every == first or (not lasts and all(token.kind in _PLAIN for token in tokens[first:comma])):
-            begin = run_end(tokens, first + (every == first), ("comma",))
+            begin = run_end(tokens, first + (every == first), ("comma", "colon"))
             body = _in_brackets(tokens[begin:comma])
             tokens[begin:end] = [*body, *unless]
             if every == first and begin == first + 1:
@@ -81,6 +99,24 @@ def with_exceptions(tokens: list[Token], vocabulary: Lexicon, source: Source) ->
             one = f"{vocabulary.word('unless')} {asked}, {done}"
             other = f"{done} {vocabulary.word('while')} {vocabulary.word('not')} {asked}"
             yield diagnostic("BT151", span, words=span.text, one=one, other=other)
+
+
+def _statement_around(tokens: Sequence[Token], at: int) -> tuple[int, int]:
+    """Where the statement begins and ends in which a token stands; within the brackets around it, if there are any."""
+    first, last = statement_start(tokens, at), run_start(tokens, statement_end(tokens, at), STATEMENT_ENDS)
+    begin = _unmatched(tokens, reversed(range(first, at)), "open", "close")
+    end = _unmatched(tokens, range(at, last), "close", "open")
+    return (first, last) if begin is None else (begin + 1, last if end is None else end)
+
+
+def _unmatched(tokens: Sequence[Token], places: Iterable[int], wanted: str, other: str) -> int | None:
+    """The first bracket of a kind that closes none before it on the way."""
+    depth = 0
+    for at in places:
+        depth += (tokens[at].kind == other) - (tokens[at].kind == wanted)
+        if depth < 0:
+            return at
+    return None
 
 
 def _one(condition: list[Token]) -> list[Token]:

@@ -33,6 +33,10 @@ _IN_ALL = frozenset(("count", "at_most", "up_to_times", "tries"))
 _ASKED = frozenset(("condition", "not"))
 _LOOPED = frozenset(("command", "name", "wait", "every", "count", "repeat", "open", "close", "comma", "and", "then"))
 _TWICE = "2"
+_ENDLESS = "-1"
+_ENDING = ("for", "until", "until_time")
+_ANEW = "that would be done anew once it has worked"
+_TRIED_FOR = "Write for example: try again every minute for up to 10 minutes."
 _REPAIRS = _OPERANDS | JOINTS | {"open"}
 
 
@@ -115,9 +119,11 @@ class Tries(SentenceReader):
                 return end
             return self._ask_again(match, at) if asks else self._after_repair(match, at) or self._try_that(match, at)
         first = _first_of_form(tokens, statement_start(tokens, last), last)
-        number, end = self._attempts(match)
-        if not number:
+        number, end, pace = self._attempts(match)
+        if not number or (pause is not None and pace is not None):
             return 0
+        if not asks:
+            self._doubt_ending(at, end)
         delay = self._phrase(match.last)
         if delay is not None and delay.meaning.role == "delay":
             return 0  # `try again after 5 minutes`
@@ -126,6 +132,7 @@ class Tries(SentenceReader):
             del tokens[first]
         tokens.insert(first, Token("retry", tokens[first].start, tokens[first].start))
         tokens.append(Token("count", self._text.starts[at], self._text.ends[end - 1], number))
+        pause = pause or pace
         if pause is not None:
             tokens.append(Token("every", pause.start, pause.end, pause.value))
         self._doubt(end)
@@ -141,21 +148,37 @@ class Tries(SentenceReader):
             return 0
         return self.again(match, at)
 
-    def _attempts(self, match: Match) -> tuple[str, int]:
-        """How many attempts `try again` makes in all with the number behind it, and where that ends; "" for none."""
+    def _attempts(self, match: Match) -> tuple[str, int, Token | None]:
+        """How many attempts `try again every minute, up to 5 times` makes in all, where that ends, and how often.
+
+        The number is "" where it isn't said as one.
+        """
         behind = self._behind_comma(match.last)
         behind += self._text.words[behind] in self._vocabulary.roles["but"]
-        amount = self._phrase(behind)
-        if amount is None or amount.meaning.role not in (*_IN_ALL, "once", "more"):
-            return _TWICE, match.last
+        amount, pace, last = self._phrase(behind), None, match.last
+        if amount is not None and amount.meaning.role == "every":
+            pace, last = self._calls.token(amount, behind), amount.last
+            behind = self._behind_comma(last)
+            amount = self._phrase(behind)
+        role = amount.meaning.role if amount is not None else ""
+        if amount is None or role not in (*_IN_ALL, "once", "more"):
+            return _TWICE if pace is None and role != "up_to" else _ENDLESS, last, pace
         if amount.meaning.role == "once":
-            return _TWICE, amount.last
+            return _TWICE, amount.last, pace
         number = str(self._calls.token(amount, behind).value)
         retries = self._text.words[match.last - 1] in self._vocabulary.roles["retry"]  # `retry up to 3 times`
         further = ("count", "more", *(("at_most", "up_to_times") if retries else ()))
-        if amount.meaning.role in further and number != "-1":  # `try again twice` is three times in all
+        if amount.meaning.role in further and number != _ENDLESS:  # `try again twice` is three times in all
             number = str(int(number) + 1) if number.isdecimal() else ""
-        return number, amount.last
+        return number, amount.last, pace
+
+    def _doubt_ending(self, at: int, last: int) -> None:
+        """BT152 for `try again for 10 minutes`: what has worked would be done anew until then."""
+        ending = self._phrase(last)
+        if ending is not None and ending.meaning.role in _ENDING:
+            words = self._text.span(at, self._end_of_statement(last))
+            problem = diagnostic("BT152", words, words=words.text, reason=_ANEW, advice=_TRIED_FOR)
+            self._calls.problems.append(problem)
 
     def _after_repair(self, match: Match, at: int) -> int:
         """`A. If that fails, open the door and try again`: A behind what is done in between, so often in all."""
@@ -172,19 +195,21 @@ class Tries(SentenceReader):
             form, end = last + 1, end - (count - len(tokens))
         if not form or not last or any(token.kind not in _REPAIRS for token in tokens[form + 1 : end]):
             return 0
-        number, behind = self._attempts(match)
+        number, behind, pace = self._attempts(match)
         first = _first_of_form(tokens, statement_start(tokens, last), last)
         first += tokens[first].kind in ("try", "retry")
         tried = [Token(each.kind, each.start, each.end, each.value, each.role) for each in tokens[first:last]]
         start, stop = self._text.starts[at], self._text.ends[behind - 1]
-        if not number or any(token.kind in FORMS for token in tried):
+        is_once = pace is not None and number == _TWICE
+        if not number or is_once or any(token.kind in FORMS for token in tried):
             return 0
+        self._doubt_ending(at, behind)
         tokens[end:] = [Token("then", start, start), Token("open", start, start), *tried, Token("close", stop, stop)]
         if number != _TWICE:
             repair = form + 1 + (tokens[form + 1].kind == "comma")
             tokens[repair:repair] = [Token("retry", start, start), Token("open", start, start)]
             left = str(int(number) - 1) if number.isdecimal() else number
-            tokens += [Token("close", stop, stop), Token("count", start, stop, left)]
+            tokens += [Token("close", stop, stop), Token("count", start, stop, left), *([] if pace is None else [pace])]
         return behind
 
     def stop_after(self, match: Match, at: int) -> int:
@@ -233,10 +258,10 @@ class Tries(SentenceReader):
             return 0
         delay = self._phrase(match.last)
         delay = delay if delay is not None and delay.meaning.role == "delay" else None
-        number, last = self._attempts(match.replace(last=delay.last) if delay is not None else match)
+        number, last, pace = self._attempts(match.replace(last=delay.last) if delay is not None else match)
         follows = self._phrase(last + 1) if text.words[last] in (END_OF_STATEMENT, ",") else None
         is_limited = last > (delay or match).last and number.isdecimal() and int(number) > 1
-        if not is_limited or (follows is not None and follows.meaning.role in ("otherwise", FAILS)):
+        if not is_limited or pace is not None or (follows is not None and follows.meaning.role in ("otherwise", FAILS)):
             return 0
         here, start, stop = tokens[first].start, text.starts[at], text.ends[last - 1]
         then = Token("then", start, start)
@@ -270,7 +295,11 @@ class Tries(SentenceReader):
             reason = "what is done on the later answer isn't said"
             advice = "Define the question with what is done on each answer, and do that again."
             self._calls.problems.append(diagnostic("BT152", words, words=words.text, reason=reason, advice=advice))
-        self._tokens.append(Token("command", self._text.starts[at], self._text.ends[match.last - 1], asked.value))
+        start, said = self._text.starts[at], self._tokens[statement_start(self._tokens, len(self._tokens)) :]
+        if said and said[0].kind == "if" and amount is not None and amount.meaning.role == "every":
+            pause = self._calls.token(amount, behind)  # the first answer has just been given
+            self._tokens += [Token("wait", start, start, pause.value), Token("then", start, start)]
+        self._tokens.append(Token("command", start, self._text.ends[match.last - 1], asked.value))
         last = amount.last if amount is not None and amount.meaning.role == "once" else match.last
         self._doubt(last)
         return last

@@ -25,7 +25,7 @@ from btlang.frontends.mission.tokens.word_matches import match_of, relocated, re
 from btlang.text.source import Source
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match
-from btlang.vocabulary.references import ALL, choice_of
+from btlang.vocabulary.references import ALL, choice_of, ordinal
 from btlang.vocabulary.value_type import PERSON, PLACE
 
 _SEEN, _COMMANDS = "SeesSomeone", ("command", "name")
@@ -57,8 +57,8 @@ class Visitors(SentenceReader):
         first = statement_start(tokens, len(tokens))
         joint = run_start(tokens, len(tokens) - 1, JOINTS)
         is_plain = all(token.kind in _SIMPLE for token in tokens[first:])
-        if choice is None or choice.parts or not is_plain:
-            return 0
+        if choice is None or choice.parts or ordinal(choice.how) or not is_plain:
+            return 0  # `the first person who says yes` is somebody known by then
         self._calls.note_nearest()
         nearest = self._context.latest[PERSON]
         start, end = tokens[-1].start, self._text.ends[last - 1]
