@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from btlang.frontends.mission.token import JOINTS, LINES, Called, Token, constraint_of
+from btlang.frontends.mission.token import JOINTS, LINES, STATEMENT_ENDS, Called, Token, constraint_of
 from btlang.frontends.mission.tokens.settling import STAYS, first_word
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.lexicon import Lexicon
@@ -20,6 +20,7 @@ MARKS = {",": "comma", ";": "semi", ":": "colon", "(": "open", ")": "close"}
 """The raw kinds of marks."""
 _COME = "ComeToMe"
 _STAYS_BEFORE = (",", ";", ")", END_OF_STATEMENT, END_OF_TEXT)
+_DONE = ("command", "name")
 _OPERANDS = frozenset(("command", "name", "close", "and", "comma"))
 BEGINS = frozenset(("newline", "semi", "indent", "dedent", "open", "define", "colon", "comma", "then"))
 """Behind these a statement, or an item of a list, begins."""
@@ -109,7 +110,8 @@ def without_meaning(
         is_last = text.words[match.last] in (",", ";", END_OF_TEXT, END_OF_STATEMENT) and not is_behind
         role = follows.meaning.role if follows is not None and follows.meaning.entry is None else ""
         goes_on = role in ("then", "and") or (bool(role) and not is_behind)
-        return match.last if start.kind == "but" or is_last or goes_on else 0
+        is_after = is_last and start.kind != "but" and _ends_what_is_done(tokens, text, match.last)
+        return match.last if start.kind == "but" or (is_last and not is_after) or goes_on else 0
     purpose = find(vocabulary.purpose, text.words, at) if before.kind == "command" else None
     causing = vocabulary.asking["causing"]
     if purpose is None or purpose[1] in text.articles or first_word(before, text.source) in causing:
@@ -119,6 +121,13 @@ def without_meaning(
         tokens.append(Token(kind, text.starts[at], text.ends[purpose[1] - 1]))
         return purpose[1]
     return 0
+
+
+def _ends_what_is_done(tokens: Sequence[Token], text: Words, at: int) -> bool:
+    """Whether nothing follows a word, and statements with commands come before: `go to the lab. Charge first`."""
+    is_end = all(word in (END_OF_STATEMENT, END_OF_TEXT) for word in text.words[at:])
+    last = next((at for at in reversed(range(len(tokens))) if tokens[at].kind in STATEMENT_ENDS), 0)
+    return is_end and any(token.kind in _DONE for token in tokens[:last])
 
 
 def _goes(match: Match | None) -> bool:

@@ -116,13 +116,22 @@ class UnknownWords:
         return misread_head(self._text, at, role, self._vocabulary)
 
     def _which_first(self, at: int, end: int) -> Diagnostic:
-        """BT151 for `A, B first`."""
+        """BT151 for `A, B first`, for `A. B first`, and for `if C, A. Otherwise B first`."""
         text, tokens, then = self._text, self._tokens, self._vocabulary.word("then")
-        first = statement_start(tokens, len(tokens))
-        before = text.source.text[tokens[first].start : tokens[-2].start].strip(" ,")
-        behind = text.source.text[tokens[-1].start : tokens[-1].end]
-        span = Span(text.source, tokens[-1].start, text.ends[end - 1])
-        one, other = f"{behind}, {then} {before}", f"{before}, {then} {behind}"
+        first, last, begin = statement_start(tokens, len(tokens)), len(tokens) - 2, len(tokens) - 1
+        if tokens[last].kind == "otherwise":
+            begin = last
+        elif all(token.kind != "command" for token in tokens[first:begin]):
+            first, last, begin = statement_start(tokens, first - 1), first - 1, first
+        before = text.source.text[tokens[first].start : tokens[last].start].strip(" ,.;\n")
+        done = text.source.text[tokens[begin].start : tokens[-1].end]
+        span = Span(text.source, tokens[begin].start, text.ends[end - 1])
+        if begin == last:
+            one, other = f"{done}, {then} ...", done
+        elif tokens[begin].kind == "command":
+            one, other = f"{done}, {then} {before}", f"{before}, {then} {done}"
+        else:
+            one, other = f"{done}. {then.capitalize()} {before}", f"{before}. {done}"
         return diagnostic("BT151", span, words=span.text, one=one, other=other)
 
     def _where_to(self, at: int) -> Diagnostic:
