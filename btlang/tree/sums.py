@@ -33,7 +33,7 @@ def with_sums(mission: ast.Program, vocabulary: Lexicon) -> ast.Program:
     sums = _Sums(count, number)
 
     def body(root: ast.Ast) -> ast.Ast:
-        is_asked = any(map(_asks, ast.parents_first(root)))
+        is_asked = any(map(asks_for_number, ast.parents_first(root)))
         return fold(root, ast.parts, sums.add_sum)[0] if is_asked else root
 
     def program(part: ast.Program) -> ast.Program:
@@ -140,7 +140,7 @@ def _last_count(node: ast.Ast) -> tuple[list[ast.Chain], ast.Ast | None]:
     return chains, node
 
 
-def _asks(node: ast.Ast) -> bool:
+def asks_for_number(node: ast.Ast) -> bool:
     """Whether a node asks for the number that was counted last."""
     return _is_number(node) or (isinstance(node, ast.Phrase) and node.entry.id == COMPARED)
 
@@ -177,6 +177,6 @@ def _is_asked(made: Sequence[_Made], first: int, keys: set[str]) -> bool:
         if counting:
             return False
         for node in ast.parents_first(item):
-            if _asks(node) or not keys.isdisjoint(ast.keys_of(node)):
+            if asks_for_number(node) or not keys.isdisjoint(ast.keys_of(node)):
                 return True
     return False

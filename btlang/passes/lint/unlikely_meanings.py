@@ -25,7 +25,7 @@ from btlang.text.source import Span
 from btlang.text.time_of_day import seconds_of
 from btlang.tree import ast
 from btlang.tree.answers import ABOUT_ANSWERS, ASK, asking_verbs, asks
-from btlang.tree.sums import COMPARED, COUNTING
+from btlang.tree.sums import COMPARED, COUNTING, asks_for_number
 from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import choice_of
@@ -241,16 +241,16 @@ def find_unused_answers(compilation: Compilation) -> Iterator[Diagnostic]:
 
 
 def find_uncounted(compilation: Compilation) -> Iterator[Diagnostic]:
-    """Report the first comparison of what was counted in a mission that counts nothing."""
+    """Report the first use of what was counted in a mission that counts nothing."""
     mission = compilation.mission
-    phrases = [each for body in ast.bodies(mission) for each in _phrases(compilation.syntax(body))]
-    asked = next((each for each in phrases if each.entry.id == COMPARED), None)
-    if asked is not None and not any(each.entry.id in COUNTING for each in phrases):
+    nodes = [node for body in ast.bodies(mission) for node in compilation.syntax(body)]
+    asked = next(filter(asks_for_number, nodes), None)
+    if asked is None:
+        return  # as nearly always
+    if not any(each.entry.id in COUNTING for each in _phrases(nodes)):
         yield diagnostic("BT146", asked.span, words=asked.span.text, example=_COUNTED)
-    if asked is not None:
-        nodes = (node for body in ast.bodies(mission) for node in compilation.syntax(body))
-        waits = (node for node in nodes if isinstance(node, ast.WaitUntil) and asks(node.condition, (COMPARED,)))
-        for wait in waits:
+    for wait in nodes:
+        if isinstance(wait, ast.WaitUntil) and asks(wait.condition, (COMPARED,)):
             yield diagnostic("BT139", wait.span, words=wait.span.text, example=_COUNTED_AGAIN)
 
 

@@ -128,6 +128,15 @@ class GoingOn(SentenceReader):
             return Token("then", at, at)
         return Token(WORKS, at, at) if is_new else None
 
+    def _ask_after_all(self, role: str) -> None:
+        """`look for the cup. When you find it, A. Otherwise B`: `when` asks whether it is found."""
+        tokens = self._tokens
+        first = statement_start(tokens, run_start(tokens, len(tokens), STATEMENT_ENDS))
+        if role == "otherwise" and 0 < first < len(tokens) and tokens[first].kind == "then":
+            said = _words(self._text.source.text[tokens[first].start : tokens[first].end])
+            if not set(said).isdisjoint(self._vocabulary.asking["finding"]):
+                tokens[first - 1].kind, tokens[first].kind = "stop", WORKS
+
     def going_on(self, role: str, words: Span) -> str:
         """The role of words that go on with the statement before: `if you don't find it` denies `if you find it`.
 
@@ -144,6 +153,7 @@ class GoingOn(SentenceReader):
             return role
         if role != "otherwise" and not set(self._vocabulary.asking["search"]).isdisjoint(_words(words.text)):
             role = self._about_search(role, words)
+        self._ask_after_all(role)
         kinds = self._statement(len(self._tokens))[1]
         if role == FAILS and WORKS in kinds and self._denies_what_worked(words):
             return "otherwise"

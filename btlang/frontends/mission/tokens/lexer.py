@@ -21,6 +21,8 @@ from btlang.frontends.mission.tokens.repeated_statements import (
 from btlang.frontends.mission.tokens.rules_behind import (
     find_counted_rules,
     find_ended_rounds,
+    find_two_ifs,
+    with_checks_apart,
     with_exceptions,
     with_rules_behind,
 )
@@ -100,6 +102,8 @@ class Lexer:
         self.problems += with_counted_things(self.tokens, source)
         with_rules_behind(self.tokens)
         self.problems += find_counted_rules(self.tokens, source)
+        with_checks_apart(self.tokens)
+        self.problems += find_two_ifs(self.tokens, self.vocabulary, source)
         self.problems += find_ended_rounds(self.tokens, self.vocabulary, source)
         self.problems += with_exceptions(self.tokens, self.vocabulary, source)
         with_rules_inside(self.tokens)

@@ -65,6 +65,34 @@ def find_ended_rounds(tokens: Sequence[Token], vocabulary: Lexicon, source: Sour
             yield diagnostic("BT151", span, words=span.text, one=one, other=other)
 
 
+def with_checks_apart(tokens: list[Token]) -> None:
+    """Put `check whether C` in brackets before a form: `check whether C, and if D, A` does A whatever C is."""
+    for at in reversed(range(len(tokens) - 1)):
+        if (tokens[at].kind, tokens[at + 1].kind) == ("try", "check"):
+            end = _behind(tokens, at + 1)
+            behind = run_end(tokens, end, JOINTS)
+            if behind > end and tokens[behind : behind + 1] and tokens[behind].kind in ("if", "unless"):
+                tokens[at:behind] = [*_in_brackets(tokens[at:end]), _joint("then", tokens[behind])]
+
+
+def find_two_ifs(tokens: Sequence[Token], vocabulary: Lexicon, source: Source) -> Iterator[Diagnostic]:
+    """BT151 for `A if C, B if D, otherwise E`: E if D isn't so, or if neither is."""
+    for at in [at for at, token in enumerate(tokens) if token.kind == "otherwise"]:
+        first, last = statement_start(tokens, at), run_start(tokens, statement_end(tokens, at), STATEMENT_ENDS)
+        ifs = [each for each in range(first, at) if tokens[each].kind == "if"]
+        if len(ifs) != 2 or ifs[0] == first or any(token.kind == "stop" for token in tokens[first:at]):
+            continue
+        begin = run_end(tokens, _behind(tokens, ifs[0]), JOINTS)
+        if begin >= ifs[1] or not {token.kind for token in tokens[first : ifs[0]]} <= {*_DONE, *JOINTS}:
+            continue
+        parts = ((first, _behind(tokens, ifs[0])), (begin, _behind(tokens, ifs[1])), (at, last))
+        one_if, other_if, otherwise = (source.text[tokens[a].start : tokens[b - 1].end] for a, b in parts)
+        span = Span(source, tokens[first].start, tokens[last - 1].end)
+        word = source.text[tokens[at].start : tokens[at].end]
+        one, other = f"{one_if}. {other_if}, {otherwise}", f"{one_if}, {word} {other_if}, {otherwise}"
+        yield diagnostic("BT151", span, words=span.text, one=one, other=other)
+
+
 def with_exceptions(tokens: list[Token], vocabulary: Lexicon, source: Source) -> Iterator[Diagnostic]:
     """Make `A every hour, but not if C` ask each time, and `whenever C, A, but not while D` a rule for both together:
     where D ends and C still holds, A is done then. `A, but not while D` alone can be read in two ways (BT151).
