@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_left
+from functools import cached_property
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import JOINTS, Called, OnDays, Token, constraint_of, statement_start
@@ -103,8 +104,16 @@ class ClockWords(SentenceReader):
         self._tokens.append(Token("until_time", text.starts[at], text.ends[at + 1], said.value))
         return at + 2
 
+    @cached_property
+    def _hour_words(self) -> frozenset[str]:
+        """The words with which hours begin, or that leave out days."""
+        said = (phrase for role in ("but", "except", "until_time") for phrase in self._vocabulary.roles[role])
+        return frozenset((*self._vocabulary.asking["hours"], *(phrase.split()[0] for phrase in said)))
+
     def hours(self, at: int) -> int:
         """`never enter the hall after 6 pm`, `... between 10 pm and 6 am`: while it is then."""
+        if self._text.words[at] not in self._hour_words:
+            return 0  # as nearly always
         tokens, start = self._tokens, self._text.starts[at]
         if end := self._not_then(at) or self._not_on_days(at) or self._until_then(at):
             return end

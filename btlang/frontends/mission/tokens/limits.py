@@ -98,9 +98,10 @@ class Limits(GoingOn):
 
     def _awaits(self, token: Token) -> bool:
         """Whether a command waits for somebody."""
-        value, said = token.value, self._words_of(token)
-        achieves = token.kind == "command" and isinstance(value, Called | Listed) and bool(value.entry.achieves)
-        return achieves and said[:1] == [*self._vocabulary.asking["waiting"]][:1]
+        value = token.value
+        if token.kind != "command" or not isinstance(value, Called | Listed) or not value.entry.achieves:
+            return False
+        return self._words_of(token)[:1] == [*self._vocabulary.asking["waiting"]][:1]
 
     def _make_fail(self, at: int) -> None:
         """Let a wait for the condition at a place fail when its time is over; alone it works in any case."""

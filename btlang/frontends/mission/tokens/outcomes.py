@@ -44,8 +44,7 @@ from btlang.vocabulary.value_type import OBJECT, PERSON, PLACE
 from btlang.vocabulary.word_tree import find
 
 _ASKING = frozenset(("if", "as_soon_as", "once"))
-_HOLDS, _WHERE = "Holding", ("PersonIsAt", "ObjectIsAt")
-_DONE = ("command", "name")
+_HOLDS, _WHERE, _DONE = "Holding", ("PersonIsAt", "ObjectIsAt"), ("command", "name")
 
 
 class Outcomes(Limits):
@@ -118,8 +117,10 @@ class Outcomes(Limits):
         form = len(tokens) - (3 if denied else 2)
         if form < 1 or tokens[form].kind not in _ASKING:
             return end
-        wait = asked_about(tokens, form, lambda token: self._waits(token) and self._is_settled(token, asked))
-        if wait is not None and tokens[wait + 1].kind == "until_time":
+        previous = statement_start(tokens, run_start(tokens, form, STATEMENT_ENDS))
+        near = tokens[(begin := statement_start(tokens, run_start(tokens, previous, STATEMENT_ENDS))) : form]
+        wait = asked_about(near, len(near), lambda token: self._waits(token) and self._is_settled(token, asked))
+        if wait is not None and near[wait + 1 : wait + 2] and near[wait + 1].kind == "until_time":
             self._deny_before(form)
             return end
         if denied and tokens[form].kind == "if" and tokens[form - 1].kind == "comma":
@@ -149,9 +150,10 @@ class Outcomes(Limits):
                 return self._go_on_then(form, end)
             return end
         first = self._statement(command)[0] if denied else command
-        then = next((at for at in range(wait or 0, form) if tokens[at].kind == "then"), 0)
-        if denied and wait is not None and then and tokens[then - 1].kind == "stop":
-            return self._turn(wait, then, form, end)
+        if denied and wait is not None:
+            then = next((at for at in range(begin + wait, form) if tokens[at].kind == "then"), 0)
+            if then and tokens[then - 1].kind == "stop":
+                return self._turn(begin + wait, then, form, end)
         has_found = not denied and searches(tokens[command]) and _has_it(tokens[command], asked)
         if has_found or any(_achieves(tokens[at], asked) for at in range(command, first - 1, -1)):
             said = tokens[command]

@@ -466,7 +466,7 @@ class WordReader:
     def _form(self, at: int) -> int:
         """A node that is said with the children below it, at the start of a statement. Returns where to go on, or 0."""
         tokens, text = self._tokens, self._text
-        if statement_start(tokens, len(tokens)) != len(tokens):
+        if not begins(tokens):
             return 0
         read = read_form(text, at, self._vocabulary, self._names.definitions.trie)
         if read is None:
