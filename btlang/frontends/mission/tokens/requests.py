@@ -89,7 +89,7 @@ class Requests(Questions):
         asking = self._vocabulary.asking
         if entry.id == TELL and text.words[first - 1] in (*asking["pleading"], *asking["asking_for"]):
             return self._plead(entry, value, at, command)
-        if text.words[at] in self._vocabulary.asking["wishing"] and first in text.articles:
+        if text.words[at] in self._vocabulary.asking["wishing"] and first in text.articles and not self._is_end(first):
             return self._wish(value, command)
         named = self._measured(first) if first in text.articles else None
         is_value = named is not None and self._ends(named.last)  # `tell Bob the last count`
