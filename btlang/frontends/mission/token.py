@@ -42,6 +42,8 @@ HOLDING = ("for", "held")
 WAITING = {"until": "wait_until", "for": "wait", "until_time": "wait_time"}
 """Raw kinds that say how long, each with that of a command that waits so long."""
 
+KEEP_OUT = "keep out"
+"""The constraint that closes zones."""
 RULES = ("whenever", "first_time")
 """Raw kinds that begin standing rules."""
 STATEMENT_ENDS = frozenset(("newline", "semi", "stop"))
@@ -197,6 +199,11 @@ def statement_end(tokens: Sequence[Token], at: int) -> int:
     return next((end for end in range(at, len(tokens)) if tokens[end].kind in LINES), len(tokens))
 
 
+def statement_of(tokens: Sequence[Token], at: int) -> tuple[int, int]:
+    """Where the statement begins in which a token stands, and where its last words end."""
+    return statement_start(tokens, at), run_start(tokens, statement_end(tokens, at), STATEMENT_ENDS)
+
+
 def run_start(tokens: Sequence[Token], end: int, kinds: Container[str]) -> int:
     """Where the tokens of some kinds begin that stand right before one; `end` if none does."""
     while end > 0 and tokens[end - 1].kind in kinds:
@@ -232,6 +239,12 @@ def constraint_of(token: Token) -> Constraint | None:
     if token.kind != "command" or not isinstance(value, Called | Listed) or not value.entry.constrains:
         return None
     return Constraint(value.entry.constrains, texts_of(value))
+
+
+def keeps_out(token: Token) -> bool:
+    """Whether a command closes zones."""
+    constraint = constraint_of(token)
+    return constraint is not None and constraint.kind == KEEP_OUT
 
 
 def begins_condition(tokens: Sequence[Token], at: int) -> bool:

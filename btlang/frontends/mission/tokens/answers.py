@@ -7,7 +7,7 @@ from functools import cached_property
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import BEFORE_CONDITIONS, JOINTS, Called, Listed, Token, run_start, statement_start
 from btlang.frontends.mission.tokens.addressed_texts import AddressedTexts
-from btlang.frontends.mission.tokens.sentence_reader import is_question
+from btlang.frontends.mission.tokens.sentence_reader import is_question, latest_question
 from btlang.frontends.mission.tokens.silent_words import begins
 from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of
 from btlang.tree.answers import ABOUT_ANSWERS, ANSWERED, ASK, EXAMPLE, OF_WHICH, UNANSWERED, asking_verbs
@@ -148,7 +148,7 @@ class Answers(AddressedTexts):
         """
         if not self._calls.speaks_of_people:
             return  # and a text without people isn't looked through for each of its conditions
-        question = next((token for token in reversed(self._tokens) if is_question(token)), None)
+        question = latest_question(self._tokens)
         if question is None:
             return
         met = self._met if self._question_before() is not None else _person_in(question.value)

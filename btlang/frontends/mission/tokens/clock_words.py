@@ -6,7 +6,16 @@ from bisect import bisect_left
 from functools import cached_property
 
 from btlang.diagnostics.diagnostic import diagnostic
-from btlang.frontends.mission.token import JOINTS, Called, OnDays, Token, constraint_of, statement_start
+from btlang.frontends.mission.token import (
+    JOINTS,
+    KEEP_OUT,
+    Called,
+    OnDays,
+    Token,
+    constraint_of,
+    keeps_out,
+    statement_start,
+)
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.frontends.mission.tokens.settling import STAYS
 from btlang.frontends.mission.tokens.silent_words import BEGINS
@@ -18,8 +27,7 @@ _TIME = "time_of_day"
 _WEEKDAYS = frozenset(map(str.lower, WEEKDAYS))
 _SIMPLE = frozenset(("command", "name", "wait", "nothing", *JOINTS))
 _TODAY, _DAYTIME = "TodayIs", "TimeOfDay"
-_TODAY, _DAYS = "TodayIs", "days"
-_KEEP_OUT, _LATEST = "keep out", "12:00"
+_DAYS, _LATEST = "days", "12:00"
 
 
 class ClockWords(SentenceReader):
@@ -152,7 +160,7 @@ class ClockWords(SentenceReader):
         asked = Token("condition", start, end, Called(entry, _times(match.values[0].text, last[0])))
         if tokens and tokens[-1].kind == "every":
             return self._in_each_round(asked, last[1])
-        if tokens and _keeps_out(tokens[-1]):  # `stay out of the lab from 8 pm to 10 pm`
+        if tokens and keeps_out(tokens[-1]):  # `stay out of the lab from 8 pm to 10 pm`
             tokens += [Token("while", start, start), asked]
             return last[1]
         first = statement_start(tokens, len(tokens))
@@ -193,7 +201,7 @@ class ClockWords(SentenceReader):
         """Whether something is forbidden from a word on, behind a comma."""
         behind = self._phrase(self._behind_comma(at))
         entry = behind.meaning.entry if behind is not None else None
-        keeps_out = entry is not None and entry.constrains == _KEEP_OUT
+        keeps_out = entry is not None and entry.constrains == KEEP_OUT
         return keeps_out or (behind is not None and behind.meaning.role == "never")
 
     def _within_hours(self, match: Match, asked: Token, last: tuple[str, int]) -> int:
@@ -240,12 +248,6 @@ class ClockWords(SentenceReader):
         is_behind = len(tokens) > 2 and tokens[-3].kind in ("command", "name", "close")
         if is_behind and tokens[-1].kind == "until_time" and tokens[-2].kind in ("at", "every_day"):
             tokens[-2:] = tokens[:-3:-1]
-
-
-def _keeps_out(token: Token) -> bool:
-    """Whether a command closes zones."""
-    constraint = constraint_of(token)
-    return constraint is not None and constraint.kind == _KEEP_OUT
 
 
 def _times(first: str, last: str) -> tuple[tuple[str, str], ...]:

@@ -12,6 +12,7 @@ from collections.abc import Callable
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.token import (
     JOINTS,
+    KEEP_OUT,
     LINES,
     STATEMENT_ENDS,
     WAITING,
@@ -21,6 +22,7 @@ from btlang.frontends.mission.token import (
     arguments_of,
     begins_condition,
     constraint_of,
+    keeps_out,
     run_end,
     run_start,
     statement_start,
@@ -53,7 +55,7 @@ def with_ends(tokens: list[Token], vocabulary: Lexicon, span: Callable[[int, int
     Returns what is wrong with constraints that a duration ends (BT161), or that stand in a statement with others before
     a condition (BT151); `span` gives the place of some characters.
     """
-    opening = vocabulary.entry(_OPEN)
+    opening, clock = vocabulary.entry(_OPEN), vocabulary.entry(_DAYTIME)
     problems: list[Diagnostic] = []
     _end_whole_rules(tokens, vocabulary, span)
     if opening is not None:
@@ -65,17 +67,12 @@ def with_ends(tokens: list[Token], vocabulary: Lexicon, span: Callable[[int, int
         begins = _begins(tokens, at)
         is_next = until.kind in WAITING and _is_next(tokens, at)
         constraint = constraint_of(tokens[at]) if (begins or is_next) and until.kind in _ENDING else None
-        is_timed = constraint is not None and constraint.kind == "keep out" and until.kind == "until_time"
+        is_timed = constraint is not None and constraint.kind == KEEP_OUT and until.kind == "until_time"
         if is_timed and opening is not None and _waits_behind(tokens, at, at + 2, opening):
             pass  # `avoid the hall until 6 pm, then go to the hall`
         elif constraint is not None and constraint.kind == "keep in" and until.kind in WAITING:
             _wait(tokens, at, vocabulary)
-        elif (
-            is_timed
-            and (begins or _is_headed(tokens, at))
-            and opening is not None
-            and (clock := vocabulary.entry(_DAYTIME)) is not None
-        ):
+        elif is_timed and opening is not None and clock is not None and (begins or _is_headed(tokens, at)):
             then = Token("condition", until.start, until.end, _comes(str(until.value), clock))
             tokens[at + 1 : at + 2] = [Token("until", until.start, until.start), then]
             _open_again(tokens, at, opening)
@@ -85,7 +82,7 @@ def with_ends(tokens: list[Token], vocabulary: Lexicon, span: Callable[[int, int
             problems.append(diagnostic("BT161", whole, words=whole.text, example=example))
         elif constraint is not None and opening is not None and begins_condition(tokens, at + 2):
             _open_again(tokens, at, opening)
-        elif until.kind in _WHILE and begins_condition(tokens, at + 2) and _keeps_out(tokens[at]):
+        elif until.kind in _WHILE and begins_condition(tokens, at + 2) and keeps_out(tokens[at]):
             if at > 0 and tokens[at - 1].kind == "define":
                 whole = span(tokens[at].start, tokens[_condition_end(tokens, at + 2)[0] - 1].end)
                 problems.append(diagnostic("BT152", whole, words=whole.text, reason=_NOT_DONE, advice=_IN_THE_MISSION))
@@ -112,7 +109,7 @@ def _end_whole_rules(tokens: list[Token], vocabulary: Lexicon, span: Callable[[i
     The same for `avoid the hall while C, and if D, A`.
     """
     for at, token in enumerate(tokens):
-        if not _begins(tokens, at) or not _keeps_out(token):
+        if not _begins(tokens, at) or not keeps_out(token):
             continue
         is_while = tokens[at + 1 : at + 2] and tokens[at + 1].kind in _WHILE and begins_condition(tokens, at + 2)
         last, behind = _condition_end(tokens, at + 2) if is_while else (at + 1, run_end(tokens, at + 1, JOINTS))
@@ -120,11 +117,6 @@ def _end_whole_rules(tokens: list[Token], vocabulary: Lexicon, span: Callable[[i
             said = span(tokens[at - 1].end if at else 0, token.end).text.lower().split()
             if is_while or not set(vocabulary.asking["whole"]).isdisjoint(said):
                 tokens[last:behind] = [Token("semi", tokens[last - 1].end, tokens[behind].start)]
-
-
-def _keeps_out(token: Token) -> bool:
-    constraint = constraint_of(token)
-    return constraint is not None and constraint.kind == "keep out"
 
 
 def _front(tokens: list[Token]) -> None:
@@ -142,7 +134,7 @@ def _begins(tokens: list[Token], at: int) -> bool:
 
 def _is_alone(tokens: list[Token], at: int) -> bool:
     """Whether a constraint to keep out ends its statement."""
-    return _keeps_out(tokens[at]) and (at + 1 == len(tokens) or tokens[at + 1].kind in _ENDS)
+    return keeps_out(tokens[at]) and (at + 1 == len(tokens) or tokens[at + 1].kind in _ENDS)
 
 
 def _never_opened(

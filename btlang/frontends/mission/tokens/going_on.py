@@ -128,11 +128,11 @@ class GoingOn(SentenceReader):
             return Token("then", at, at)
         return Token(WORKS, at, at) if is_new else None
 
-    def _ask_after_all(self, role: str) -> None:
+    def _ask_after_all(self) -> None:
         """`look for the cup. When you find it, A. Otherwise B`: `when` asks whether it is found."""
         tokens = self._tokens
         first = statement_start(tokens, run_start(tokens, len(tokens), STATEMENT_ENDS))
-        if role == "otherwise" and 0 < first < len(tokens) and tokens[first].kind == "then":
+        if 0 < first < len(tokens) and tokens[first].kind == "then":
             said = _words(self._text.source.text[tokens[first].start : tokens[first].end])
             if not set(said).isdisjoint(self._vocabulary.asking["finding"]):
                 tokens[first - 1].kind, tokens[first].kind = "stop", WORKS
@@ -153,7 +153,8 @@ class GoingOn(SentenceReader):
             return role
         if role != "otherwise" and not set(self._vocabulary.asking["search"]).isdisjoint(_words(words.text)):
             role = self._about_search(role, words)
-        self._ask_after_all(role)
+        if role == "otherwise":
+            self._ask_after_all()
         kinds = self._statement(len(self._tokens))[1]
         if role == FAILS and WORKS in kinds and self._denies_what_worked(words):
             return "otherwise"

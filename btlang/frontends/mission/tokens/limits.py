@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import (
     IN_CONDITIONS,
@@ -116,6 +118,18 @@ class Limits(GoingOn):
     def _waits(self, token: Token) -> bool:
         """Whether a token is what is waited for, or a command that waits for somebody."""
         return token.kind == "condition" or self._awaits(token)
+
+    def _waited(self, form: int, is_settled: Callable[[Token], bool]) -> int | None:
+        """The place of what the two statements before a form wait for, if the form asks what that settles.
+
+        No more of them: a look through all would take the longer for each line, the longer the text is.
+        """
+        tokens, first = self._tokens, form
+        for _ in range(2):
+            first = statement_start(tokens, run_start(tokens, first, STATEMENT_ENDS))
+        near = tokens[first:form]
+        at = asked_about(near, len(near), lambda token: self._waits(token) and is_settled(token))
+        return None if at is None else first + at
 
     def _may_ask_again(self, at: int, form: int, end: int) -> bool:
         """Whether a condition behind `wait up to 5 min until C` asks what is so then."""

@@ -117,10 +117,8 @@ class Outcomes(Limits):
         form = len(tokens) - (3 if denied else 2)
         if form < 1 or tokens[form].kind not in _ASKING:
             return end
-        previous = statement_start(tokens, run_start(tokens, form, STATEMENT_ENDS))
-        near = tokens[(begin := statement_start(tokens, run_start(tokens, previous, STATEMENT_ENDS))) : form]
-        wait = asked_about(near, len(near), lambda token: self._waits(token) and self._is_settled(token, asked))
-        if wait is not None and near[wait + 1 : wait + 2] and near[wait + 1].kind == "until_time":
+        wait = self._waited(form, lambda token: self._is_settled(token, asked))
+        if wait is not None and tokens[wait + 1].kind == "until_time":
             self._deny_before(form)
             return end
         if denied and tokens[form].kind == "if" and tokens[form - 1].kind == "comma":
@@ -151,9 +149,9 @@ class Outcomes(Limits):
             return end
         first = self._statement(command)[0] if denied else command
         if denied and wait is not None:
-            then = next((at for at in range(begin + wait, form) if tokens[at].kind == "then"), 0)
+            then = next((at for at in range(wait, form) if tokens[at].kind == "then"), 0)
             if then and tokens[then - 1].kind == "stop":
-                return self._turn(begin + wait, then, form, end)
+                return self._turn(wait, then, form, end)
         has_found = not denied and searches(tokens[command]) and _has_it(tokens[command], asked)
         if has_found or any(_achieves(tokens[at], asked) for at in range(command, first - 1, -1)):
             said = tokens[command]

@@ -9,7 +9,7 @@ from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import Called, Listed, Remembered, Token, statement_start
 from btlang.frontends.mission.tokens.addressed_texts import TELL
 from btlang.frontends.mission.tokens.answers import Answers
-from btlang.frontends.mission.tokens.sentence_reader import is_question
+from btlang.frontends.mission.tokens.sentence_reader import latest_question
 from btlang.frontends.mission.tokens.settling import IMPLIED
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
 from btlang.tree.answers import EXAMPLE
@@ -306,7 +306,7 @@ class Questions(Answers):
 
     def _asks_several(self) -> bool:
         """Whether the latest question went to several people: `ask each of them "Tea?", then say what they said`."""
-        asked = next((token for token in reversed(self._tokens) if is_question(token)), None)
+        asked = latest_question(self._tokens)
         if asked is None or isinstance(asked.value, Listed):
             return asked is not None
         said = {text for _, text in asked.value.arguments} if isinstance(asked.value, Called) else set()

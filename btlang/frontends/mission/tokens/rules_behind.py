@@ -9,12 +9,11 @@ from btlang.frontends.mission.token import (
     IN_CONDITIONS,
     JOINTS,
     RULES,
-    STATEMENT_ENDS,
     Token,
     run_end,
     run_start,
     statement_end,
-    statement_start,
+    statement_of,
 )
 from btlang.text.source import Source, Span
 from btlang.vocabulary.lexicon import Lexicon
@@ -31,7 +30,7 @@ _ASKED = (*RULES, "if")
 def with_rules_behind(tokens: list[Token]) -> None:
     """Put the end of such a rule behind it, and make two rules of two that `and` joins."""
     for at in reversed(range(1, len(tokens))):
-        if tokens[at].kind in RULES and tokens[at - 1].kind in _DONE and at < len(tokens):
+        if tokens[at].kind in RULES and tokens[at - 1].kind in _DONE:
             _split(tokens, at)
             _end(tokens, at)
 
@@ -41,7 +40,7 @@ def find_counted_rules(tokens: Sequence[Token], source: Source) -> Iterator[Diag
     for at in range(1, len(tokens)):
         if tokens[at].kind != "count" or tokens[at - 1].kind != "comma":
             continue
-        first, end = statement_start(tokens, at), run_start(tokens, statement_end(tokens, at), STATEMENT_ENDS)
+        first, end = statement_of(tokens, at)
         if tokens[first].kind == "whenever" and at == end - 1 and _behind(tokens, first) < at - 1:
             span = Span(source, tokens[at].start, tokens[at].end)
             yield diagnostic("BT150", span, words=span.text, reason=_EACH_TIME, example=_RULE)
@@ -49,13 +48,13 @@ def find_counted_rules(tokens: Sequence[Token], source: Source) -> Iterator[Diag
 
 def find_ended_rounds(tokens: Sequence[Token], vocabulary: Lexicon, source: Source) -> Iterator[Diagnostic]:
     """BT151 for `A every hour until 5 pm and B`: is B done each time, or once behind the last?"""
-    for every in range(1, len(tokens) - 1):
+    for every in [at for at, token in enumerate(tokens[:-1]) if token.kind == "every" and at > 0]:
         until = tokens[every + 1]
-        if tokens[every].kind != "every" or until.kind not in _ENDING or tokens[every - 1].kind not in _DONE:
+        if until.kind not in _ENDING or tokens[every - 1].kind not in _DONE:
             continue
         ended = every + 2 if until.kind == "until_time" else _behind(tokens, every + 1)
         joint = run_end(tokens, ended, ("comma",))
-        first, last = statement_start(tokens, every), run_start(tokens, statement_end(tokens, every), STATEMENT_ENDS)
+        first, last = statement_of(tokens, every)
         if joint + 1 < last and tokens[joint].kind == "and" and tokens[joint + 1].kind in _DONE:
             parts = ((first, every), (every, ended), (joint + 1, last))
             done, pace, further = (source.text[tokens[begin].start : tokens[end - 1].end] for begin, end in parts)
@@ -78,7 +77,7 @@ def with_checks_apart(tokens: list[Token]) -> None:
 def find_two_ifs(tokens: Sequence[Token], vocabulary: Lexicon, source: Source) -> Iterator[Diagnostic]:
     """BT151 for `A if C, B if D, otherwise E`: E if D isn't so, or if neither is."""
     for at in [at for at, token in enumerate(tokens) if token.kind == "otherwise"]:
-        first, last = statement_start(tokens, at), run_start(tokens, statement_end(tokens, at), STATEMENT_ENDS)
+        first, last = statement_of(tokens, at)
         ifs = [each for each in range(first, at) if tokens[each].kind == "if"]
         if len(ifs) != 2 or ifs[0] == first or any(token.kind == "stop" for token in tokens[first:at]):
             continue
@@ -131,7 +130,7 @@ def with_exceptions(tokens: list[Token], vocabulary: Lexicon, source: Source) ->
 
 def _statement_around(tokens: Sequence[Token], at: int) -> tuple[int, int]:
     """Where the statement begins and ends in which a token stands; within the brackets around it, if there are any."""
-    first, last = statement_start(tokens, at), run_start(tokens, statement_end(tokens, at), STATEMENT_ENDS)
+    first, last = statement_of(tokens, at)
     begin = _unmatched(tokens, reversed(range(first, at)), "open", "close")
     end = _unmatched(tokens, range(at, last), "close", "open")
     return (first, last) if begin is None else (begin + 1, last if end is None else end)
@@ -174,8 +173,7 @@ def _split(tokens: list[Token], rule: int) -> None:
 
 def _end(tokens: list[Token], rule: int) -> None:
     """`A whenever C, until 5 pm`, `until 5 pm, A whenever C`, `from 9 am to 5 pm, A whenever C`."""
-    first, last = statement_start(tokens, rule), _behind(tokens, rule)
-    end = run_start(tokens, statement_end(tokens, rule), STATEMENT_ENDS)
+    (first, end), last = statement_of(tokens, rule), _behind(tokens, rule)
     if tokens[last : last + 1] and tokens[last].kind == "comma" and _is_end(tokens[last + 1 : end]):
         del tokens[last]
     front = next((at for at in range(first, rule) if tokens[at].kind in _ENDING), rule)

@@ -87,6 +87,11 @@ def is_question(token: Token) -> bool:
     return isinstance(token.value, Called | Listed) and token.value.entry.id == ASK
 
 
+def latest_question(tokens: Sequence[Token]) -> Token | None:
+    """The last command that asks somebody something."""
+    return next((token for token in reversed(tokens) if is_question(token)), None)
+
+
 def is_answer(token: Token) -> bool:
     """Whether a condition asks if somebody has answered in some words."""
     return isinstance(token.value, Called) and token.value.entry.id == ANSWERED

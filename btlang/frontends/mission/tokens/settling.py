@@ -22,6 +22,7 @@ from btlang.frontends.mission.token import (
     run_end,
     run_start,
     statement_end,
+    statement_of,
     statement_start,
     texts_of,
 )
@@ -137,7 +138,7 @@ def with_rounds(tokens: list[Token]) -> None:
         behind = run_end(tokens, at + 1, JOINTS)
         if all(each.kind != "and" for each in tokens[at + 1 : behind]):
             continue
-        first, end = statement_start(tokens, at), run_start(tokens, statement_end(tokens, at), STATEMENT_ENDS)
+        first, end = statement_of(tokens, at)
         if first == at or any(each.kind not in _SIMPLE for each in tokens[first:at]):
             continue
         if any(each.kind not in _SIMPLE for each in tokens[behind:end]) and tokens[behind].kind != "if":

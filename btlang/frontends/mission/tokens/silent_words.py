@@ -110,8 +110,9 @@ def without_meaning(
         is_last = text.words[match.last] in (",", ";", END_OF_TEXT, END_OF_STATEMENT) and not is_behind
         role = follows.meaning.role if follows is not None and follows.meaning.entry is None else ""
         goes_on = role in ("then", "and") or (bool(role) and not is_behind)
-        is_after = is_last and start.kind != "but" and _ends_what_is_done(tokens, text, match.last)
-        return match.last if start.kind == "but" or (is_last and not is_after) or goes_on else 0
+        if start.kind == "but" or goes_on or (is_last and not _ends_what_is_done(tokens, text, match.last)):
+            return match.last
+        return 0
     purpose = find(vocabulary.purpose, text.words, at) if before.kind == "command" else None
     causing = vocabulary.asking["causing"]
     if purpose is None or purpose[1] in text.articles or first_word(before, text.source) in causing:

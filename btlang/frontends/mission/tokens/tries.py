@@ -16,7 +16,13 @@ from btlang.frontends.mission.token import (
     statement_start,
 )
 from btlang.frontends.mission.tokens.rules_inside import ON_WAY, asks_if_blocked
-from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, is_answer, is_question, may_fail
+from btlang.frontends.mission.tokens.sentence_reader import (
+    SentenceReader,
+    is_answer,
+    is_question,
+    latest_question,
+    may_fail,
+)
 from btlang.frontends.mission.tokens.settling import FAILS
 from btlang.frontends.mission.tokens.silent_words import begins
 from btlang.text.source import Span
@@ -163,12 +169,12 @@ class Tries(SentenceReader):
         role = amount.meaning.role if amount is not None else ""
         if amount is None or role not in (*_IN_ALL, "once", "more"):
             return _TWICE if pace is None and role != "up_to" else _ENDLESS, last, pace
-        if amount.meaning.role == "once":
+        if role == "once":
             return _TWICE, amount.last, pace
         number = str(self._calls.token(amount, behind).value)
         retries = self._text.words[match.last - 1] in self._vocabulary.roles["retry"]  # `retry up to 3 times`
         further = ("count", "more", *(("at_most", "up_to_times") if retries else ()))
-        if amount.meaning.role in further and number != _ENDLESS:  # `try again twice` is three times in all
+        if role in further and number != _ENDLESS:  # `try again twice` is three times in all
             number = str(int(number) + 1) if number.isdecimal() else ""
         return number, amount.last, pace
 
@@ -252,7 +258,7 @@ class Tries(SentenceReader):
         condition, body = tokens[first + 1 : comma], tokens[comma + 1 : end]
         if not condition or tokens[first].kind != "if" or any(token.kind not in _ASKED for token in condition):
             return 0
-        asked = next((token for token in reversed(tokens) if is_question(token)), None) if asks else None
+        asked = latest_question(tokens) if asks else None
         is_new = asks and (asked is None or any(map(is_answer, tokens[tokens.index(asked) : first])))
         if is_new or not (body or asks) or any(token.kind not in _REPAIRS for token in body):
             return 0
@@ -279,7 +285,7 @@ class Tries(SentenceReader):
 
     def _ask_again(self, match: Match, at: int) -> int:
         """`ask Bob "Tea?". If he says no, ask again`: what was asked before."""
-        asked = next((token for token in reversed(self._tokens) if is_question(token)), None)
+        asked = latest_question(self._tokens)
         behind = self._behind_comma(match.last)
         behind += self._text.words[behind] in self._vocabulary.roles["but"]
         amount = self._phrase(behind)
