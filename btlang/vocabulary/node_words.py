@@ -14,6 +14,7 @@ from btlang.vocabulary.cache import recent
 from btlang.vocabulary.language_tables import CHANGING, NOT_ALONE
 from btlang.vocabulary.lexicon import DEFINING, NODE_ROLES, Lexicon
 from btlang.vocabulary.match import Match
+from btlang.vocabulary.node_forms import node_details
 from btlang.vocabulary.pattern import Slot, forms
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import TrieNode, longest
@@ -145,13 +146,7 @@ def _ends(text: Words, at: int, vocabulary: Lexicon) -> bool:
     """Whether what ends an id begins at a word: a connective, or what is said of the node."""
     match = _phrase(text, at, vocabulary)
     joins = match is not None and match.meaning.entry is None and match.meaning.role not in (*NODE_ROLES, *NOT_ALONE)
-    return joins or role_end(text, at, BEHIND_ID, vocabulary) > 0 or text.words[at] in _detail_starts(vocabulary)
-
-
-@lru_cache(maxsize=8)
-def _detail_starts(vocabulary: Lexicon) -> frozenset[str]:
-    """The words that begin what says ports of all nodes: `unless "x > 1"`."""
-    return frozenset(said.split()[0] for said in vocabulary.node_details.values())
+    return joins or role_end(text, at, BEHIND_ID, vocabulary) > 0 or text.words[at] in node_details(vocabulary)
 
 
 _made: dict[int, tuple[TrieNode, _Phrases]] = {}  # the tries stay, so that no id is used again
