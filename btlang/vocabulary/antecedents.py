@@ -58,6 +58,17 @@ class Antecedents:
         is_definite = article is not None and text.source.text[slice(*article)].lower() == self._definite
         return is_definite and (latest[:1] == "{" or text.words[at] == self._likenesses.kind_of(PLACE, latest))
 
+    def kind_of_one(self, kind: str, text: Words, at: int, latest: str) -> str:
+        """The kind that `one` at a word has: that of the latest value of a type, where that is a name.
+
+        Of an object that the robot chose, or that was only spoken of, it is that of the noun before.
+        """
+        if latest[:1] != "{" or kind != OBJECT:
+            return "" if latest[:1] == "{" else self._likenesses.kind_of(kind, latest)
+        here, first, _ = text.earlier(at)
+        found = self._before(kind, text, at)[0]
+        return found or (self._before(kind, here, first - 1)[0] if first else "")
+
     def _before(self, kind: str, text: Words, at: int) -> tuple[str, str]:
         """The kind, and the last word, of the latest name or noun of a type before a word in its statement."""
         text, start, at = text.earlier(at)

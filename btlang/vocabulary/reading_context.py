@@ -371,13 +371,13 @@ class ReadingContext:
         return kind in self.listed or (kind == OBJECT and latest[:1] not in ("", "{") and not latest.endswith("s"))
 
     def _another(self, kind: str, text: Words, end: int) -> tuple[str, int] | None:
-        """What `one` alone is: a thing of the kind of the latest one, or the thing itself where it has no kind."""
+        """What `one` alone is: one of the kind of the latest thing, or of the noun before; else that thing itself."""
         latest, behind = self.latest.get(kind, "{"), text.words[end]
-        goes_on = behind in self.modifiers or not behind[0].isalpha() or behind in self.joiners
-        if latest[:1] == "{" or not goes_on:
+        if not (behind in self.modifiers or not behind[0].isalpha() or behind in self.joiners):
             return None
-        of = self.values.likenesses.kind_of(kind, latest)
-        return self._described(kind, "nearest", (("kind", of),)) if of else latest, end
+        if of := self.values.antecedents.kind_of_one(kind, text, end - 1, latest):
+            return self._described(kind, "nearest", (("kind", of),)), end
+        return (latest, end) if latest[:1] != "{" else None
 
     def _referred(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
         """What a pronoun stands for."""

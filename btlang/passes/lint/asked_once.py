@@ -47,6 +47,8 @@ def find_asked_once(compilation: Compilation) -> Iterator[Diagnostic]:
             if type(node) is ast.If and not node.negated and node.otherwise is None:
                 items, at = before.get(id(node), ((), 0))
                 sentence = _sentence_before(items, at)
+                if sentence and _is_awaited(node, sentence[-1]):
+                    continue
                 joins_rule = at > 0 and isinstance(items[at - 1], ast.Whenever) and "\n" not in node.span.text
                 if joins_rule or _is_statement(node, vocabulary):
                     is_first = not sentence and at + 1 < len(items)
@@ -92,6 +94,10 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
         advice = f"All rounds are over by then. To do it in each round, write: {each}"
         yield _with_reading(node, words, advice, whole, each)
         return
+    if isinstance(timed, ast.WaitTime) and not _SENTENCE_END.search(
+        node.span.source.text, timed.span.end, node.span.start
+    ):
+        return  # `at 6 pm, if C, A`
     is_timed = isinstance(timed, ast.UntilTime | ast.For | ast.WaitTime)
     phrases = [each for item in before for each in ast.parents_first(item) if isinstance(each, ast.Phrase)]
     entries = [each.entry for each in phrases]  # `turn left until bumped` has asked
@@ -117,6 +123,11 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
     ):
         advice = f"'{last}' comes first, and fails if it can't be done. What decides about it stands before it."
         yield diagnostic("BT068", node.span, words=words, advice=advice)
+
+
+def _is_awaited(node: ast.If, before: ast.Ast) -> bool:
+    """Return whether what stands before waits for the condition, by the same words: `wait 5 min. As soon as C, A`."""
+    return any(each.span == node.condition.span for each in ast.parents_first(before))
 
 
 def _is_tour(journeys: Sequence[ast.Phrase]) -> bool:

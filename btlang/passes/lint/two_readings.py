@@ -37,7 +37,7 @@ from btlang.passes.lint.other_readings import (
 from btlang.text.source import Source, Span
 from btlang.tree import ast
 from btlang.vocabulary.capabilities import MOVES
-from btlang.vocabulary.value_type import PERSON
+from btlang.vocabulary.value_type import PERSON, PLACE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -186,8 +186,10 @@ def find_rules_at_goals(compilation: Compilation) -> Iterator[Diagnostic]:
     if rule is None or not isinstance(journey, ast.Phrase) or rule.span.start < journey.span.start:
         return
     asked = rule.condition
-    is_about_people = isinstance(asked, ast.Phrase) and _is_about_people(asked.entry, vocabulary)
-    if MOVES not in journey.entry.resources or not is_about_people:
+    if MOVES not in journey.entry.resources or not isinstance(asked, ast.Phrase):
+        return
+    is_about_goal = not _places_of(asked).isdisjoint(_places_of(journey))
+    if not (is_about_goal or _is_about_people(asked.entry, vocabulary)):
         return
     doing, condition, said = rule.body.span, asked.span, rule.span.text
     is_behind = doing.start < condition.start
@@ -201,6 +203,11 @@ def find_rules_at_goals(compilation: Compilation) -> Iterator[Diagnostic]:
     other = f"{journey.span.text}, {vocabulary.word('then')} {vocabulary.word('wait_forever')}. {said}"
     problem = diagnostic("BT050", whole, taken=taken, fixed=taken, other=other)
     yield problem.replace(readings=((whole, taken), (whole, other)))
+
+
+def _places_of(phrase: ast.Phrase) -> set[str]:
+    """Return the names of places that a command or condition has."""
+    return {text for name, text in phrase.arguments if phrase.entry.slot(name).type == PLACE}
 
 
 def find_lasting_reactions(compilation: Compilation) -> Iterator[Diagnostic]:

@@ -52,10 +52,8 @@ class Answers(AddressedTexts):
         place, (name, end) = named
         if name != self._asked_person():
             return match
-        pronouns = self._vocabulary.values.pronouns.items()
-        pronoun = next((word for word, kinds in pronouns if kinds == [PERSON]), "")
         places = [*range(at, place + 1), *rest_of(text, end)]
-        found = match_of(text, places, {place - at: pronoun}, (self._vocabulary.trie,), context)
+        found = match_of(text, places, {place - at: self._pronoun}, (self._vocabulary.trie,), context)
         if found is None or found.last <= place - at:
             return match
         entry = found.meaning.entry
@@ -94,7 +92,9 @@ class Answers(AddressedTexts):
             words = text.span(at, last - (text.words[last - 1] == ","))
             problem = diagnostic("BT144", words, words=words.text, problem=OF_WHICH, example=EXAMPLE)
             self._calls.problems.append(problem)
-        is_joined = any(text.words[last] in self._vocabulary.roles[role] for role in ("or", "and"))
+        limit = self._phrase(last)
+        behind = limit.last if limit is not None and limit.meaning.role in _LIMITS else last
+        is_joined = any(text.words[behind] in self._vocabulary.roles[role] for role in ("or", "and"))
         behind = run_start(self._tokens, len(self._tokens), ("comma",))
         is_reply = is_joined if self._question(behind, right_before=True) else self._is_asked(right_before=False)
         if entry is None or not is_reply:
@@ -223,6 +223,26 @@ class Answers(AddressedTexts):
         self.said(asked, at)
         self._tokens.append(asked)
         return found[1]
+
+    def replied(self, at: int) -> int:
+        """`if he doesn't answer or says no`: he says that, too. Returns where to go on, 0 for other words."""
+        before = self._tokens[-2].value if len(self._tokens) > 1 and self._tokens[-1].kind in ("or", "and") else None
+        if not isinstance(before, Called) or before.entry.id != UNANSWERED:
+            return 0
+        places = [at, *rest_of(self._text, at)]
+        found = match_of(self._text, places, {0: self._pronoun}, (self._vocabulary.trie,), self._context)
+        if found is None or found.meaning.role != "condition" or found.meaning.entry is None:
+            return 0
+        match = relocated(found, places)
+        token = self._calls.token(match, at)
+        self.said(token, at)
+        self._tokens.append(token)
+        return match.last
+
+    @cached_property
+    def _pronoun(self) -> str:
+        """A pronoun that stands for people alone: `he`."""
+        return next((word for word, kinds in self._vocabulary.values.pronouns.items() if kinds == [PERSON]), "")
 
     def _silent(self, token: Token, words: str) -> None:
         """Makes `she says nothing` and `she doesn't say anything` the condition that nobody has answered."""

@@ -12,6 +12,7 @@ from btlang.frontends.mission.tokens.condition_names import condition_names, set
 from btlang.frontends.mission.tokens.counted_things import with_counted_things
 from btlang.frontends.mission.tokens.ended_rules import with_ends
 from btlang.frontends.mission.tokens.left_out import find_unplaced
+from btlang.frontends.mission.tokens.other_things import with_other_things
 from btlang.frontends.mission.tokens.repeated_statements import (
     with_questions_each_time,
     with_questions_once,
@@ -34,6 +35,7 @@ from btlang.frontends.mission.tokens.settling import (
     with_either_end,
     with_rounds,
     with_stays,
+    with_watched_waits,
 )
 from btlang.frontends.mission.tokens.visitors import with_meetings, with_sightings
 from btlang.frontends.mission.tokens.word_reader import WordReader
@@ -93,13 +95,15 @@ class Lexer:
         turn_branches(self.tokens)
         with_rounds(self.tokens)
         with_either_end(self.tokens)
+        with_watched_waits(self.tokens)
         with_stays(self.tokens, source, vocabulary.asking["standing_verbs"])
         self.problems += find_brief_stays(self.tokens, vocabulary, source) if explain else ()
         self.problems += find_unclear_things(self.tokens, vocabulary, self.text) if explain else ()
         self.problems += find_unplaced(self.tokens, vocabulary, source) if explain else ()
         with_meetings(self.tokens, vocabulary)
         with_sightings(self.tokens, vocabulary, source)
-        self.problems += with_counted_things(self.tokens, source)
+        self.problems += with_counted_things(self.tokens, self.vocabulary, source)
+        self.problems += with_other_things(self.tokens, vocabulary, self.text)
         with_rules_behind(self.tokens)
         self.problems += find_counted_rules(self.tokens, source)
         with_checks_apart(self.tokens)

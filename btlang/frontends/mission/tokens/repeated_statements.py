@@ -104,14 +104,23 @@ def with_questions_once(tokens: list[Token], source: Source) -> Iterator[Diagnos
 
 
 def with_questions_each_time(tokens: list[Token]) -> None:
-    """Make `every hour, ask Bob "Q" until he says yes` into `ask Bob "Q" every hour until he says yes`."""
-    for at in [at for at, token in enumerate(tokens) if token.kind == "every"]:
+    """Make `every hour, ask Bob "Q" until he says yes` into `ask Bob "Q" every hour until he says yes`.
+
+    One that was asked before is asked again only then: `ask Bob "Q". If he says no, every hour ask him again until C`.
+    """
+    for at in reversed([at for at, token in enumerate(tokens) if token.kind == "every"]):
         asked = run_end(tokens, at + 1, ("comma",))
         if [token.kind for token in tokens[asked : asked + 3]] != ["command", *_UNTIL] or not _asks(tokens[asked]):
             continue
         answer = tokens[asked + 2].value
-        if isinstance(answer, Called) and answer.entry.id in ABOUT_ANSWERS:
-            tokens[at : asked + 1] = [tokens[asked], tokens[at]]
+        if not isinstance(answer, Called) or answer.entry.id not in ABOUT_ANSWERS:
+            continue
+        every, question = tokens[at], tokens[asked]
+        before = next((token for token in reversed(tokens[:at]) if _asks(token)), None)
+        is_again = before is not None and before.value == question.value
+        pause = [Token("wait", every.start, every.end, every.value), Token("then", every.end, every.end)]
+        first = at - 2 if is_again and at > 1 and tokens[at - 2] is before else at
+        tokens[first : asked + 1] = [*(pause if is_again and first == at else ()), question, every]
 
 
 def _asks(token: Token) -> bool:

@@ -152,28 +152,41 @@ def with_rounds(tokens: list[Token]) -> None:
 
 
 def with_either_end(tokens: list[Token]) -> None:
-    """Make `A for 5 min or until C` the same as `for up to 5 min, A until C`, and `wait 5 min or until C` likewise."""
+    """Make `A for 5 min or until C` the same as `for up to 5 min, A until C`, `wait 5 min [or] until C` likewise."""
     at = 0
-    while at + 2 < len(tokens):
+    while at + 1 < len(tokens):
         at += 1
-        if tokens[at].kind != "or" or tokens[at].value is not None or tokens[at + 1].kind != "until":
+        until = at + (tokens[at].kind == "or" and tokens[at].value is None)
+        if until + 1 >= len(tokens) or tokens[until].kind != "until":
             continue
         time, start = tokens[at - 1], tokens[at].start
-        end = at + 2
+        end = until + 1
         while end < len(tokens) and tokens[end].kind in IN_CONDITIONS - {"close"}:
             end += 1
-        if time.kind in ("for", "up_to") and tokens[at - 2].kind in ("command", "name"):
+        if until > at and time.kind in ("for", "up_to") and tokens[at - 2].kind in ("command", "name"):
             said = tokens[at - 2]
             limit = Token("up_to", said.start, said.start, time.value)
             comma, opening = Token("comma", said.start, said.start), Token("open", said.start, said.start)
             closing = Token("close", tokens[end - 1].end, tokens[end - 1].end)
-            tokens[at - 2 : end] = [opening, limit, comma, said, *tokens[at + 1 : end], closing]
+            tokens[at - 2 : end] = [opening, limit, comma, said, *tokens[until:end], closing]
         elif time.kind == "wait":
             time.kind = "wait_up_to"
-            del tokens[at : at + 2]
+            del tokens[at : until + 1]
         elif time.kind == "close" and tokens[at - 2].kind == "wait":  # `wait at the door for 5 min or until C`
             tokens[at - 2].kind = "wait_up_to"
-            tokens[at - 1 : end] = [*tokens[at + 2 : end], Token("close", start, tokens[end - 1].end)]
+            tokens[at - 1 : end] = [*tokens[until + 1 : end], Token("close", start, tokens[end - 1].end)]
+
+
+def with_watched_waits(tokens: list[Token]) -> None:
+    """Let `wait 5 min. As soon as C, A` wait for C as long as that, and do A if C comes true in time."""
+    for at, form in enumerate(tokens):
+        last = run_start(tokens, at, STATEMENT_ENDS)
+        if form.kind != "as_soon_as" or not 0 < last < at or tokens[last - 1].kind != "wait":
+            continue
+        asked = tokens[at + 1 : run_end(tokens, at + 1, IN_CONDITIONS)]
+        if asked:
+            tokens[last - 1].kind, form.kind = "wait_up_to", "if"
+            tokens[last:last] = [Token(each.kind, each.start, each.end, each.value, each.role) for each in asked]
 
 
 def with_stays(tokens: list[Token], source: Source, standing: Container[str]) -> None:

@@ -45,6 +45,7 @@ from btlang.frontends.mission.tokens.tries import Tries
 from btlang.frontends.mission.tokens.unknown_words import UnknownWords
 from btlang.frontends.mission.tokens.visitors import Visitors
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
+from btlang.tree.answers import UNANSWERED
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.language_tables import CONNECTIVES, NOT_ALONE, ORDER, QUESTIONS
 from btlang.vocabulary.lexicon import NODE_ROLES
@@ -152,7 +153,8 @@ class WordReader:
         form = self._form(at)
         if form:
             return form
-        match = self._without_measure(self._requests.with_name(self._match(at), at), at)
+        match = self._requests.with_time(self._requests.with_name(self._match(at), at), at)
+        match = self._without_measure(match, at)
         if match is not None and match.meaning.role in NODE_ROLES:
             if end := self._node(match, at):
                 return end
@@ -227,7 +229,7 @@ class WordReader:
             if named is not None and (match is None or named.last >= match.last):
                 match, self._root = named, names
         if self._origin is not None and tokens[-1].kind in _JOINING:
-            if match is None or match.meaning.role in ("not", "never"):  # `or don't answer`
+            if match is None or match.meaning.role in ("not", "never", "condition"):  # `or don't answer`, `or near`
                 shared, problem = with_words_before(
                     self._origin, tokens, self._text, match, at, self._vocabulary, names, self._context
                 )
@@ -302,7 +304,7 @@ class WordReader:
         tokens, text = self._tokens, self._text
         asks = tokens[-1:] != [] and tokens[-1].kind in _ASKING
         end = (
-            (self._partial.add_condition(at) or self._requests.answered(at) if asks else 0)
+            (self._partial.add_condition(at) or self._requests.answered(at) if asks else self._requests.replied(at))
             or without_meaning(tokens, text, match, role, at, self._vocabulary, self._context)
             or self._order.no_phrase(at)
             or self._partial.performed(at)
@@ -394,6 +396,8 @@ class WordReader:
         if match.meaning.role != "negated_twice":
             shared = self._origin if self._shares else None
             self._origin = (token, *shared[1:]) if shared is not None else (token, at, match, self._root)
+        if isinstance(token.value, Called) and token.value.entry.id == UNANSWERED:
+            return self._outcomes.unanswered(match.last)
         return self._outcomes.settle(match.last) if len(tokens) > 2 else match.last
 
     def _is_said_twice(self, said: Token) -> bool:
