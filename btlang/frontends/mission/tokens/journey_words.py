@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from btlang.frontends.mission.token import JOINTS, RULES, Token, run_start, statement_start
+from btlang.frontends.mission.token import JOINTS, RULES, STATEMENT_ENDS, Token, run_start, statement_start
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.frontends.mission.tokens.settling import STAYS
 from btlang.frontends.mission.tokens.silent_words import BEGINS, begins, begins_item
@@ -14,6 +14,7 @@ from btlang.vocabulary.value_type import DOOR, PERSON, PLACE
 from btlang.vocabulary.word_tree import find
 
 COMES, _COMES_BACK, _DURATION = "WaitForPerson", "ComeBack", "duration"
+_LOOPED = frozenset(("command", "name", "wait", "every", "count", "repeat", "open", "close", "comma", "and", "then"))
 
 
 class JourneyWords(SentenceReader):
@@ -54,6 +55,35 @@ class JourneyWords(SentenceReader):
             return 0
         self._partial.append(journey, at)
         return journey.last
+
+    def stop_after(self, match: Match, at: int) -> int:
+        """`every 30 min, take a picture. Stop after 8 pictures`, `A. After three rounds, B`: so many rounds of it.
+
+        What is counted is a round, or is said in the commands.
+        """
+        tokens, text, end = self._tokens, self._text, match.last + 1
+        last = run_start(tokens, len(tokens), JOINTS | STATEMENT_ENDS | {"stop", "but"})
+        first, noun = statement_start(tokens, last), text.words[match.last]
+        looped = tokens[first:last]
+        if not looped or any(token.kind not in _LOOPED for token in looped):
+            return 0
+        said = text.source.text[looped[0].start : looped[-1].end].lower().split()
+        is_counted = noun in self._vocabulary.asking["rounds"] or not {noun, noun.removesuffix("s")}.isdisjoint(said)
+        paces = [token for token in looped if token.kind in ("every", "count")]
+        commands = [token for token in looped if token.kind not in ("every", "count", "repeat")]
+        commands = commands[commands[:1] != [] and commands[0].kind == "comma" :]
+        is_endless = len(paces) < 2 and all(token.kind == "every" or token.value == "-1" for token in paces)
+        if not (commands and is_counted and is_endless and (self._is_end(end) or text.words[end] == ",")):
+            return 0
+        here, start, stop = looped[0].start, text.starts[at], text.ends[match.last]
+        number = Token("count", start, stop, self._calls.token(match, at).value)
+        if paces and paces[0].kind == "every":
+            made = [paces[0], Token("comma", here, here), *commands, Token("comma", start, start), number]
+        else:
+            front = Token("repeat", here, here), Token("open", here, here)
+            made = [*front, *commands, Token("close", start, start), number]
+        tokens[first:] = [*made, *([] if self._is_end(end) else [Token("semi", stop, stop)])]
+        return end if self._is_end(end) else end + 1
 
     def _back(self, at: int) -> int:
         """`go to the lab and back`: to where the journey before it ended, else to where the mission began."""

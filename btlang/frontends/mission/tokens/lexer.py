@@ -42,8 +42,9 @@ from btlang.frontends.mission.tokens.word_reader import WordReader
 from btlang.text.source import Source, Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, split
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.pattern import forms
 from btlang.vocabulary.reading_context import Known, ReadingContext
-from btlang.vocabulary.value_type import OBJECT, PLACE, TEXT, WORLD, ZONE
+from btlang.vocabulary.value_type import DOOR, OBJECT, PLACE, TEXT, WORLD, ZONE
 from btlang.vocabulary.word_tree import find
 
 _MOST_ADJECTIVES = 3
@@ -75,6 +76,7 @@ class Lexer:
         _drop_still(self.text, vocabulary)
         _drop_left(self.text, vocabulary)
         _say_there(self.text, vocabulary)
+        _say_if_so(self.text, vocabulary)
         _say_kind(self.text, vocabulary)
         _drop_commas(self.text, vocabulary)
         _list_ranges(self.text, vocabulary)
@@ -222,6 +224,24 @@ def _say_there(text: Words, vocabulary: Lexicon) -> None:
         found = find(vocabulary.entering, words, at)
         if found is not None and (words[found[1]][0] in _ENDING or words[found[1]] in vocabulary.joining):
             text.replace(found[1] - 1, [words[found[1] - 1], *there])
+
+
+def _say_if_so(text: Words, vocabulary: Lexicon) -> None:
+    """Put `if it is` for `that is` behind doors, which are as the robot finds them: `close every door that is open`."""
+    words, values, asking = text.words, vocabulary.values, vocabulary.asking
+    if text.distinct.isdisjoint(vocabulary.relatives):
+        return  # as nearly always
+    it = next((word for word, kinds in values.pronouns.items() if DOOR in kinds), "")
+    entries = (vocabulary.entry(id) for id in ("DoorOpen", "DoorClosed"))
+    states = {form[-1] for entry in entries if entry is not None for each in entry.phrases for form in forms(each)}
+    for at in reversed([at for at in range(1, len(words) - 1) if words[at] in vocabulary.relatives]):
+        found = find(vocabulary.relatives, words, at)
+        if found is None or not values.phrases.is_type(DOOR, text, at - 1):
+            continue
+        state = found[1] + (words[found[1]] in asking["still"])
+        if words[state] in states and (words[state + 1][0] in _ENDING or words[state + 1] in vocabulary.joining):
+            text.drop(at + 1, state)
+            text.replace(at, [vocabulary.word("if"), it, asking["asking_be"][0]])
 
 
 def _say_kind(text: Words, vocabulary: Lexicon) -> None:

@@ -271,7 +271,7 @@ class WordReader:
             if role in ("tries", "at_most", "up_to_times"):
                 return self._tries.number(match, at)
             if role == "stop_after":
-                return self._tries.stop_after(match, at)
+                return self._order.stop_after(match, at)
             return self._tries.again(match, at) if role == "try_again" else self._order.read(match, at)
         if role == "ordinal" and match is not None and at not in text.articles and begins_item(tokens):
             return match.last + (text.words[match.last] == ",")
