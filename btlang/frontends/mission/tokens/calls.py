@@ -246,6 +246,7 @@ class Calls:
         if not kind or place[:1] in _ODD[1:]:
             return
         kinds = tuple(("kind", value.text) for value in match.values if value.type == KINDS)
+        kind = PERSON if any(PERSON in self._vocabulary.values.likenesses.types_of(of) for _, of in kinds) else kind
         relation = "at" if kind == PERSON else "inside"
         where = ((relation, place),) if place else (("seen_by", SELF),)
         key = self._context.keys.get(kind, kind)

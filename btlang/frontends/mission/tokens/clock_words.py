@@ -6,6 +6,7 @@ from bisect import bisect_left
 from functools import cached_property
 
 from btlang.diagnostics.diagnostic import diagnostic
+from btlang.frontends.mission.explanations.times import assumed_between
 from btlang.frontends.mission.token import (
     BEFORE_CONDITIONS,
     IN_CONDITIONS,
@@ -203,6 +204,7 @@ class ClockWords(SentenceReader):
         last = self._context.read(_TIME, self._text, match.last + 1) if joins else None
         if last is None or entry is None:
             return 0
+        self._calls.problems += assumed_between(self._text, at, last[1])
         start, end = self._text.starts[at], self._text.ends[last[1] - 1]
         asked = Token("condition", start, end, Called(entry, _times(match.values[0].text, last[0])))
         if tokens and tokens[-1].kind == "every":

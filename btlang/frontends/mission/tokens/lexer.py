@@ -12,7 +12,7 @@ from btlang.frontends.mission.tokens.condition_names import condition_names, set
 from btlang.frontends.mission.tokens.counted_things import with_counted_things
 from btlang.frontends.mission.tokens.ended_rules import with_ends
 from btlang.frontends.mission.tokens.left_out import find_unplaced
-from btlang.frontends.mission.tokens.other_things import with_other_things
+from btlang.frontends.mission.tokens.other_things import with_other_things, with_things_there
 from btlang.frontends.mission.tokens.repeated_statements import (
     with_questions_each_time,
     with_questions_once,
@@ -30,6 +30,7 @@ from btlang.frontends.mission.tokens.rules_behind import (
 from btlang.frontends.mission.tokens.rules_inside import with_rules_inside
 from btlang.frontends.mission.tokens.settling import (
     find_brief_stays,
+    find_unclear_people,
     find_unclear_things,
     turn_branches,
     with_either_end,
@@ -101,10 +102,12 @@ class Lexer:
         with_stays(self.tokens, source, vocabulary.asking["standing_verbs"])
         self.problems += find_brief_stays(self.tokens, vocabulary, source) if explain else ()
         self.problems += find_unclear_things(self.tokens, vocabulary, self.text) if explain else ()
+        self.problems += find_unclear_people(self.tokens, vocabulary, self.text) if explain else ()
         self.problems += find_unplaced(self.tokens, vocabulary, source) if explain else ()
         with_meetings(self.tokens, vocabulary)
         with_sightings(self.tokens, vocabulary, source)
         self.problems += with_counted_things(self.tokens, self.vocabulary, source)
+        with_things_there(self.tokens)
         self.problems += with_other_things(self.tokens, vocabulary, self.text)
         with_rules_behind(self.tokens)
         self.problems += find_counted_rules(self.tokens, source)

@@ -116,6 +116,7 @@ class OrderWords(ClockWords, JourneyWords, RuleWords):
             or self._journey_of_constraint(at)
             or self._wait_for(at)
             or self._faces(at)
+            or self._put_back(at)
             or self._back(at)
             or (self._partial.add_third(at + 1, None) if text.words[at] in self._vocabulary.asking["subject"] else 0)
         )

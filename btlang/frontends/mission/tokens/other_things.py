@@ -1,4 +1,4 @@
-"""Things that are introduced again: `take a cup to the lab and a cup to the hall` means two cups."""
+"""Which things are meant: two in `take a cup to the lab and a cup to the hall`, those there behind a journey."""
 
 from __future__ import annotations
 
@@ -6,13 +6,15 @@ from collections.abc import Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.token import JOINTS, STATEMENT_ENDS, Called, Token
+from btlang.frontends.mission.tokens.ended_rules import GO
 from btlang.frontends.mission.tokens.word_matches import words_of
 from btlang.text.source import Span
 from btlang.text.words import Words
 from btlang.vocabulary.lexicon import Lexicon
-from btlang.vocabulary.references import Choice, choice_of
+from btlang.vocabulary.references import ALL, NAMES, RELATIONS, Choice, choice_of
 from btlang.vocabulary.value_type import OBJECT
 
+_TAKING, _PLACED = ("PickUp", "Take", "Bring"), {NAMES, *RELATIONS}
 _NEAREST, _OTHER = "nearest", "other_than"
 _REASON = "it may be one that was meant before"
 _SIMPLE = frozenset(("command", "name", "open", "close", *JOINTS, *STATEMENT_ENDS))
@@ -42,6 +44,27 @@ def with_other_things(tokens: list[Token], vocabulary: Lexicon, text: Words) -> 
             words, names = Span(text.source, token.start, token.end), vocabulary.values.likenesses.members(which[1])
             example = next(iter(names or ()), words.text)
             yield diagnostic("BT150", words, words=words.text, reason=_REASON, example=example)
+
+
+def with_things_there(tokens: list[Token]) -> None:
+    """Make `go to the lab and pick up the cups` pick up those in the lab."""
+    for at in range(2, len(tokens)):
+        said, journey = tokens[at].value, tokens[at - 2].value
+        if not isinstance(said, Called) or said.entry.id not in _TAKING or tokens[at - 1].kind not in JOINTS:
+            continue
+        goes = isinstance(journey, Called) and journey.entry.id == GO
+        place = dict(journey.arguments).get("place", "{") if isinstance(journey, Called) and goes else "{"
+        for name, text in said.arguments:
+            choice = choice_of(text)
+            if (
+                place[:1] != "{"
+                and choice is not None
+                and choice.how == ALL
+                and not dict(choice.parts).keys() & _PLACED
+            ):
+                parts = tuple(sorted((*choice.parts, ("inside", place))))
+                arguments = {**dict(said.arguments), name: choice.replace(parts=parts).text}
+                tokens[at].value = said.replace(arguments=tuple(arguments.items()))
 
 
 def _chosen(token: Token) -> Choice | None:

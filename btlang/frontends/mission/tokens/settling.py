@@ -28,6 +28,7 @@ from btlang.frontends.mission.token import (
 )
 from btlang.text.source import Source, Span
 from btlang.text.words import Words
+from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import ALL, choice_of
@@ -253,6 +254,40 @@ def find_unclear_things(tokens: Sequence[Token], vocabulary: Lexicon, text: Word
             if pronoun:
                 yield diagnostic("BT151", span, words=pronoun, one=carried, other=asked)
         carried = "" if _is_delivered(value) else thing
+
+
+def find_unclear_people(tokens: Sequence[Token], vocabulary: Lexicon, text: Words) -> Iterator[Diagnostic]:
+    """Report `follow Alice until you see Bob. Tell her "Bye"`: whom the command or its condition is about."""
+    about, asked = "", ""
+    pronouns = {word for word, types in vocabulary.values.pronouns.items() if [*types] == [PERSON]}
+    if text.distinct.isdisjoint(pronouns):
+        return
+    for at, token in enumerate(tokens):
+        said = _person_of(token.value) if isinstance(token.value, Called) else ""
+        if not said:
+            continue
+        span = Span(text.source, token.start, token.end)
+        pronoun = next((word for word in span.text.lower().split() if word in pronouns), "")
+        if pronoun and said == asked:
+            yield diagnostic("BT151", span, words=pronoun, one=about, other=asked)
+            asked = ""
+        elif token.kind == "command" and not pronoun:
+            about, asked = said, ""
+        elif token.kind == "condition" and not pronoun and about not in ("", said):
+            form = run_start(tokens, at, IN_CONDITIONS) - 1
+            first = statement_start(tokens, at)
+            ends = form > first and tokens[form].kind in ("until", "while")
+            asked = said if ends and any(_person_of(each.value) == about for each in tokens[first:form]) else ""
+
+
+def _person_of(said: object) -> str:
+    """The name of the person whom a phrase is about, "" for none, or for one who is chosen elsewhere."""
+    if not isinstance(said, Called):
+        return ""
+    texts = (text for name, text in said.arguments if said.entry.slot(name).type == PERSON)
+    chosen = next(texts, "")
+    choice = choice_of(chosen)
+    return chosen if chosen[:1] != "{" else dict(choice.parts).get(NAME, "") if choice is not None else ""
 
 
 def _is_delivered(said: object) -> bool:

@@ -266,8 +266,8 @@ class Tries(SentenceReader):
 
     def _doubt_what(self, match: Match, at: int) -> int:
         """BT150 for `go to the lab. If bumped, wait 5 s and try again`: what is tried again isn't clear."""
-        form = self._tokens[statement_start(self._tokens, len(self._tokens))]
-        if self._text.words[at] not in self._trying or form.kind != "if":
+        form = self._tokens[statement_start(self._tokens, len(self._tokens)) :][:1]
+        if self._text.words[at] not in self._trying or not form or form[0].kind != "if":
             return 0
         end = self._attempts(match)[1]
         words = self._text.span(at, end)
