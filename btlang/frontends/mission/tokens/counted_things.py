@@ -23,6 +23,9 @@ def with_counted_things(tokens: list[Token], vocabulary: Lexicon, source: Source
 
     Where nothing was counted, it is asked where the robot has gone: `go to the lab. If there are 3 people there, wave`.
     """
+    said_of = (token.value for token in tokens if isinstance(token.value, Called))
+    if all(value.entry.id != COMPARED for value in said_of):
+        return  # as nearly always
     last: Called | Listed | None = None
     goal = ""
     there = tuple(f" {word}" for word, types in vocabulary.values.pronouns.items() if PLACE in types)

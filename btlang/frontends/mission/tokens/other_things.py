@@ -29,7 +29,8 @@ def with_other_things(tokens: list[Token], vocabulary: Lexicon, text: Words) -> 
     for token in tokens:
         if token.kind not in _SIMPLE:
             counts.clear()
-        value, thing = token.value, _chosen(token)
+        value = token.value
+        thing = _chosen(value) if token.kind == "command" and isinstance(value, Called) else None
         if thing is None or not isinstance(value, Called):
             continue
         parts = tuple(part for part in thing.parts if part[0] != _OTHER)
@@ -67,12 +68,11 @@ def with_things_there(tokens: list[Token]) -> None:
                 tokens[at].value = said.replace(arguments=tuple(arguments.items()))
 
 
-def _chosen(token: Token) -> Choice | None:
+def _chosen(value: Called) -> Choice | None:
     """The object that a command chooses, the nearest of its kind, and takes to somebody or somewhere."""
-    value = token.value
-    if token.kind != "command" or not isinstance(value, Called) or len(value.arguments) < 2:
+    if len(value.arguments) < 2:
         return None
-    for choice in (choice_of(said) for _, said in value.arguments):
+    for choice in (choice_of(said) for _, said in value.arguments if said[:1] == "{"):
         if choice is not None and choice.type == OBJECT and choice.how == _NEAREST and choice.parts:
             return choice
     return None

@@ -41,6 +41,7 @@ IMPLIED = "implied"
 """The role of a search that nobody has asked for: `tell me where the cup is`."""
 TURNED = "turned"
 """The role of an `otherwise` behind words about a failure."""
+_ENDS_WHILE = ("until", "while")
 MEASURES = frozenset(("for", "up_to", "within", "count"))
 """What may stand between a command and the words that ask how it went."""
 WAITS = ("wait_until", "wait_for", "wait_up_to")
@@ -181,8 +182,8 @@ def with_either_end(tokens: list[Token]) -> None:
 def with_watched_waits(tokens: list[Token]) -> None:
     """Let `wait 5 min. As soon as C, A` wait for C as long as that, and do A if C comes true in time."""
     for at, form in enumerate(tokens):
-        last = run_start(tokens, at, STATEMENT_ENDS)
-        if form.kind != "as_soon_as" or not 0 < last < at or tokens[last - 1].kind != "wait":
+        last = run_start(tokens, at, STATEMENT_ENDS) if form.kind == "as_soon_as" else 0
+        if not 0 < last < at or tokens[last - 1].kind != "wait":
             continue
         asked = tokens[at + 1 : run_end(tokens, at + 1, IN_CONDITIONS)]
         if asked:
@@ -260,7 +261,7 @@ def find_unclear_people(tokens: Sequence[Token], vocabulary: Lexicon, text: Word
     """Report `follow Alice until you see Bob. Tell her "Bye"`: whom the command or its condition is about."""
     about, asked = "", ""
     pronouns = {word for word, types in vocabulary.values.pronouns.items() if [*types] == [PERSON]}
-    if text.distinct.isdisjoint(pronouns):
+    if text.distinct.isdisjoint(pronouns) or all(token.kind not in _ENDS_WHILE for token in tokens):
         return
     for at, token in enumerate(tokens):
         said = _person_of(token.value) if isinstance(token.value, Called) else ""
@@ -276,7 +277,7 @@ def find_unclear_people(tokens: Sequence[Token], vocabulary: Lexicon, text: Word
         elif token.kind == "condition" and not pronoun and about not in ("", said):
             form = run_start(tokens, at, IN_CONDITIONS) - 1
             first = statement_start(tokens, at)
-            ends = form > first and tokens[form].kind in ("until", "while")
+            ends = form > first and tokens[form].kind in _ENDS_WHILE
             asked = said if ends and any(_person_of(each.value) == about for each in tokens[first:form]) else ""
 
 
