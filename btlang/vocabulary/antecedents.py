@@ -95,7 +95,8 @@ class Antecedents:
         article = next(said, None)
         is_new = article is not None and here.source.text[slice(*article)].lower() != self._definite
         if name:
-            return ((NAME, name),) if is_new or not kind_of else (("kind", kind_of),)
+            is_named = (is_new and name.lower() != kind_of) or not kind_of
+            return ((NAME, name),) if is_named else (("kind", kind_of),)
         behind = [more for more, _ in modifiers.behind(kind, here, end, self._names)]
         before = [
             parts

@@ -20,6 +20,7 @@ from __future__ import annotations
 import re
 from bisect import bisect
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
@@ -34,8 +35,10 @@ from btlang.passes.lint.other_readings import (
     find_in_chain,
     sort_by_place,
 )
+from btlang.text.formatting import joined
 from btlang.text.source import Source, Span
 from btlang.tree import ast
+from btlang.tree.sums import COUNTING
 from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.value_type import PERSON, PLACE
 
@@ -203,6 +206,25 @@ def find_rules_at_goals(compilation: Compilation) -> Iterator[Diagnostic]:
     other = f"{journey.span.text}, {vocabulary.word('then')} {vocabulary.word('wait_forever')}. {said}"
     problem = diagnostic("BT050", whole, taken=taken, fixed=taken, other=other)
     yield problem.replace(readings=((whole, taken), (whole, other)))
+
+
+def find_counts_behind_lists(compilation: Compilation) -> Iterator[Diagnostic]:
+    """Report `go through the lab and the hall and count the people`: in each, or only in the last."""
+    word, joints = compilation.vocabulary.word, compilation.vocabulary.roles["and"]
+    for body in ast.bodies(compilation.mission):
+        for node in compilation.syntax(body):
+            for left, right in pairwise(ast.parts(node)) if isinstance(node, ast.Chain) else ():
+                goals = [sorted(_places_of(each)) for each in ast.parts(left) if isinstance(each, ast.Phrase)]
+                counts = isinstance(right, ast.Phrase) and right.entry.id in COUNTING and not _places_of(right)
+                if not (ast.is_list(left) and counts and all(goals)):
+                    continue
+                if left.span.source.text[left.span.end : right.span.start].strip(" ,").lower() not in joints:
+                    continue
+                whole = Span(left.span.source, left.span.start, right.span.end)
+                taken = f"{left.span.text}, {word('then')} {right.span.text}"
+                other = f"{right.span.text} in {joined([goal for goal, *_ in goals], word('and'))}"
+                problem = diagnostic("BT050", whole, taken=taken, fixed=taken, other=other)
+                yield problem.replace(readings=((whole, taken), (whole, other)))
 
 
 def _places_of(phrase: ast.Phrase) -> set[str]:

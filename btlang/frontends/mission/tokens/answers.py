@@ -7,7 +7,7 @@ from functools import cached_property
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import BEFORE_CONDITIONS, JOINTS, Called, Listed, Token, run_start, statement_start
 from btlang.frontends.mission.tokens.addressed_texts import AddressedTexts
-from btlang.frontends.mission.tokens.sentence_reader import is_question, latest_question
+from btlang.frontends.mission.tokens.sentence_reader import is_answer, is_question, latest_question
 from btlang.frontends.mission.tokens.silent_words import begins
 from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of
 from btlang.tree.answers import ABOUT_ANSWERS, ANSWERED, ASK, EXAMPLE, OF_WHICH, UNANSWERED, asking_verbs
@@ -73,7 +73,8 @@ class Answers(AddressedTexts):
             return 0
         start, end = self._text.starts[at], self._text.ends[found[1] - 1]
         if not is_first:
-            if self._text.words[at] not in self._vocabulary.joining:
+            is_listed = self._tokens[-1].kind == "comma" and self._replies_before(behind)
+            if self._text.words[at] not in self._vocabulary.joining and not is_listed:
                 return 0
             del self._tokens[behind:]
             self._tokens.append(Token("and", start, self._text.ends[at]))
@@ -81,6 +82,11 @@ class Answers(AddressedTexts):
         self.note_answerer()
         self._if(Token("condition", start, end, yes), found[0])
         return found[1] + (self._text.words[found[1]] == ",")
+
+    def _replies_before(self, end: int) -> bool:
+        """Whether the statement that ends there depends on a reply: `if they do, A, if they don't, B`."""
+        said = self._tokens[statement_start(self._tokens, end) : end]
+        return len(said) > 1 and said[0].kind == "if" and is_answer(said[1 + (said[1].kind == "not")])
 
     def silence(self, match: Match, at: int) -> int:
         """`..., if she says nothing, A` behind other replies, or with more conditions: as a condition of its own.

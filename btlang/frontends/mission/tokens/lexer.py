@@ -167,8 +167,14 @@ class Lexer:
 
 
 def _drop_words_of_turns(text: Words, vocabulary: Lexicon) -> None:
-    """Take out what says nothing beside a list, with its commas: `the lab, the hall and the dock, in that order`."""
-    words = text.words
+    """Take out what says nothing beside a list, with its commas: `the lab and the dock, in that order`.
+
+    `either` says nothing at an end: `avoid the lab. Don't go into the hall either`.
+    """
+    words, either = text.words, vocabulary.roles["either"]
+    last = [] if text.distinct.isdisjoint(either) else [at for at in range(1, len(words) - 1) if words[at] in either]
+    for at in (at for at in reversed(last) if words[at + 1][0] in _ENDING):
+        text.drop(at, at + 1)
     if text.distinct.isdisjoint(vocabulary.in_turn):
         return  # as nearly always
     for at in reversed([at for at, word in enumerate(words) if word in vocabulary.in_turn]):

@@ -285,8 +285,8 @@ def _person_of(said: object) -> str:
     """The name of the person whom a phrase is about, "" for none, or for one who is chosen elsewhere."""
     if not isinstance(said, Called):
         return ""
-    texts = (text for name, text in said.arguments if said.entry.slot(name).type == PERSON)
-    chosen = next(texts, "")
+    people = {slot.name for slot in said.entry.slots if slot.type == PERSON}
+    chosen = next((text for name, text in said.arguments if name in people), "")
     choice = choice_of(chosen)
     return chosen if chosen[:1] != "{" else dict(choice.parts).get(NAME, "") if choice is not None else ""
 

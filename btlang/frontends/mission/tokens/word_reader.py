@@ -257,7 +257,8 @@ class WordReader:
                     return end
             if is_first and (end := self._requests.begged(at)):
                 return end
-        if is_first and self._remarks.is_possible and (match is None or role in ("condition", "there_are")):
+        tells = is_first and self._remarks.is_possible and not (tokens and tokens[-1].kind == "define")
+        if tells and (match is None or role in ("condition", "there_are")):
             if end := self._remarks.end(at):
                 self._problems.append(diagnostic("BT158", (span := text.span(at, end)), words=span.text))
                 return end + (text.words[end] == ",")
@@ -340,7 +341,7 @@ class WordReader:
             self._order.lasts(at)
         if role == "meanwhile" and (end := self._order.during(match)):
             return end
-        if role == "politeness" or (role in ("following", "then") and self._order.says_nothing(match, at)):
+        if role == "politeness" or (role in ("following", "then", "whenever") and self._order.says_nothing(match, at)):
             return after_politeness(tokens, self._text.words, match)
         if at in self._text.going_on:
             go_on(tokens)
