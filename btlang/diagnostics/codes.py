@@ -189,7 +189,7 @@ _ALL = (
     Code("BT147", "Nothing is done with the answer to '{words}'.",
          "Say until when to ask, for example: {example}", "warning", "unused answer"),
     Code("BT148", "'{words}' only picks it up.", "To have it brought, write: {fixed}", "note", "picked up only"),
-    Code("BT149", "'{words}' asks from where the robot is then.", "To go to {person} first, write: {fixed}", "note",
+    Code("BT149", "'{words}' is done from where the robot is then.", "To go to {person} first, write: {fixed}", "note",
          "asks from afar"),
     Code("BT150", "'{words}' doesn't fit here: {reason}.", "Write for example: {example}"),
     Code("BT151", "'{words}' can be read in two ways.", "Write what you mean: {one}\nOr: {other}"),

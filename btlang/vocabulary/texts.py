@@ -54,7 +54,9 @@ class Texts:
         self._direct = tree_of((words, said) for said, clauses in language["direct"].items() for words in ways(clauses))
         self.of_persons = frozenset(language["of_persons"])
         """Words for persons that are others for whoever hears them."""
-        self._joining = set().union(*map(words_of, _JOINING))
+        self._joining_words = [*map(words_of, _JOINING)]
+        self._joining = set().union(*self._joining_words)
+        self._timing = {phrase.split()[0] for phrase in roles.get("at", ())}
         self._joints = words_of("nor") | words_of("and") | words_of("or")
         self._doubtful = {*_MARKS, *self.of_persons, *self._joining, *language.get("counts", ())}
 
@@ -134,8 +136,17 @@ class Texts:
         doubtful = (at for at in range(first, last) if text.words[at] in self._doubtful)
         return next((at for at in doubtful if at == first or not self._belongs(text, at)), 0)
 
+    def _begins_no_other(self, text: Words, at: int) -> bool:
+        """Whether a word begins none of the words that could go on with the mission: the `in` of `in ten minutes`."""
+        word = text.words[at]
+        if word in self._timing or word not in self._joining or word in self.of_persons:
+            return False
+        return all(find(joining, text.words, at) is None for joining in self._joining_words)
+
     def _belongs(self, text: Words, at: int) -> bool:
         """Whether a word that could end a text goes on with the verb before it: `the book is on the table`."""
+        if self._begins_no_other(text, at):
+            return True
         is_joint = any(find(joints, text.words, at) is not None for joints in (self._joints, self._then))
         return text.words[at - 1] in self.inverting - self._modals and text.words[at] in self._joining and not is_joint
 

@@ -60,7 +60,7 @@ def test_numbers_that_are_said(sentence: str, tree: str) -> None:
     assert btlang.parse_tree(str(typed.to("english")), world=WORLD).tree == typed.tree
 
 
-@pytest.mark.parametrize(("sentence", "code"), rows("refused.txt"), ids=lambda text: text)
+@pytest.mark.parametrize(("sentence", "code"), [*rows("refused.txt"), *rows("unclear.txt")], ids=lambda text: text)
 def test_what_is_refused(sentence: str, code: str) -> None:
     for parser in PARSERS:
         with pytest.raises(btlang.MissionError) as refused:

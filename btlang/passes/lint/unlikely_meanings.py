@@ -21,6 +21,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
 from btlang.passes.lint.other_readings import Readings
 from btlang.passes.lint.two_readings import make_printer, make_warning
+from btlang.text.formatting import joined
 from btlang.text.source import Span
 from btlang.text.time_of_day import seconds_of
 from btlang.tree import ast
@@ -198,14 +199,22 @@ def find_ended_rounds(compilation: Compilation) -> Iterator[Diagnostic]:
 def find_distant_questions(compilation: Compilation) -> Iterator[Diagnostic]:
     """Report a question to somebody by name, or at a place, before which nothing moves the robot or asks about them.
 
-    The same for `if you see Alice in the lab`: the robot looks from where it is.
+    The same for `if you see Alice in the lab` and `wave to Alice in the lab`: that is done from where the robot is.
     That it drives to a thing to take it brings it to nobody.
     """
     body, vocabulary = compilation.mission.body, compilation.vocabulary
     nodes = compilation.syntax(body) if body is not None else []
     phrases = _phrases(nodes)
-    if all(each.entry.id not in (ASK, *_SIGHTS) for each in phrases):
-        return  # as nearly always
+    if all(each.entry.id != ASK and "|" not in "".join(text for _, text in each.arguments) for each in phrases):
+        return  # as nearly always: nobody is asked, and nothing is chosen by what it is like
+    for node in nodes:
+        asked = [_person_of(each) for each in _phrases(ast.parts(node)) if each.entry.id == ASK]
+        if ast.is_list(node) and len({*asked} - {""}) > 1:  # from beside one of them, the others are asked from afar
+            word = vocabulary.word
+            all_of = joined(asked, word("and"))
+            fixed = f"{' '.join(vocabulary.asking['journey'])} {all_of} {word('and')} ask each of them ..."
+            yield diagnostic("BT149", node.span, words=node.span.text, person=all_of, fixed=fixed)
+            return
     sights = {id(node.condition) for node in nodes if isinstance(node, ast.If)}
     for phrase in sorted(phrases, key=lambda each: each.span.start):
         named = [text for name, text in phrase.arguments if phrase.entry.slot(name).type == PERSON]
@@ -213,8 +222,10 @@ def find_distant_questions(compilation: Compilation) -> Iterator[Diagnostic]:
         parts = dict(choice.parts) if choice is not None else {}
         there = next((parts[relation] for relation in ("at", "inside") if relation in parts), "")
         goal = there or (named[0] if named and named[0] in vocabulary.values.listed(PERSON) else "")
-        looks = there != "" and phrase.entry.id in _SIGHTS and id(phrase) in sights
-        if (phrase.entry.id == ASK or looks) and goal and goal[:1] != "{":
+        drives = MOVES in phrase.entry.resources or "navigation" in phrase.entry.needs
+        stays = phrase.entry.sort == "action" and not drives
+        is_far = there != "" and (stays or (phrase.entry.id in _SIGHTS and id(phrase) in sights))
+        if (phrase.entry.id == ASK or is_far) and goal and goal[:1] != "{":
             words = phrase.span.text
             journey = " ".join((*vocabulary.asking["journey"], goal, vocabulary.word("then")))
             is_verb = words.split()[0].lower() in asking_verbs(vocabulary)  # but not `keep asking Bob`
@@ -225,6 +236,12 @@ def find_distant_questions(compilation: Compilation) -> Iterator[Diagnostic]:
         leads = MOVES in phrase.entry.resources and not (is_at_thing or phrase.entry.first)
         if named or leads or phrase.entry.sort == "name":
             return
+
+
+def _person_of(phrase: ast.Phrase) -> str:
+    """Return the name of the person in a phrase, "" for none and for one who is chosen."""
+    texts = (text for name, text in phrase.arguments if phrase.entry.slot(name).type == PERSON and text[:1] != "{")
+    return next(texts, "")
 
 
 def find_unused_answers(compilation: Compilation) -> Iterator[Diagnostic]:

@@ -38,6 +38,7 @@ from btlang.vocabulary.value_type import PLACE
 
 _DAYTIME, _MOMENT = "TimeOfDay", 600.0  # seconds in which a rule notices that it has become a time
 _EXAMPLE = "6 pm"
+_MOMENTARY, _MOMENT_ONLY = ("PersonSays", "SomebodySays"), "it is so for a moment only"
 _HEADS = frozenset(("every", "every_day", "at", "delay"))
 _OPEN, GO = "OpenZone", "GoTo"
 _NOT_DONE = "a definition is done once, and this holds all the time"
@@ -88,6 +89,8 @@ def with_ends(tokens: list[Token], vocabulary: Lexicon, span: Callable[[int, int
             if at > 0 and tokens[at - 1].kind == "define":
                 whole = span(tokens[at].start, tokens[_condition_end(tokens, at + 2)[0] - 1].end)
                 problems.append(diagnostic("BT152", whole, words=whole.text, reason=_NOT_DONE, advice=_IN_THE_MISSION))
+            elif _is_momentary(tokens, at + 2):
+                problems.append(_only_then(tokens, at, vocabulary, span))
             elif (further := _otherwise_behind(tokens, at)) is not None:
                 problems.append(_what_then(further, tokens, at, vocabulary, span))
             elif begins and opening is not None:
@@ -190,6 +193,22 @@ def _otherwise_behind(tokens: list[Token], at: int) -> Token | None:
     behind = run_end(tokens, _condition_end(tokens, at + 2)[0], JOINTS | STATEMENT_ENDS)
     is_so = behind < len(tokens) and tokens[behind].kind == "otherwise" and tokens[behind].value is None
     return tokens[behind] if is_so else None
+
+
+def _is_momentary(tokens: list[Token], at: int) -> bool:
+    """Whether a condition at a place is so for a moment alone: somebody says something."""
+    asked = (token.value for token in tokens[at : _condition_end(tokens, at)[0]])
+    return any(isinstance(value, Called) and value.entry.id in _MOMENTARY for value in asked)
+
+
+def _only_then(tokens: list[Token], at: int, vocabulary: Lexicon, span: Callable[[int, int], Span]) -> Diagnostic:
+    """Return the error for `never enter the hall unless Bob says "come in"`: it would be closed again at once."""
+    last, word = tokens[_condition_end(tokens, at + 2)[0] - 1].end, vocabulary.word
+    forbidden, condition = span(tokens[at].start, tokens[at].end).text, span(tokens[at + 2].start, last).text
+    whole = span(tokens[at + 1].start, last)
+    is_end = tokens[at + 1].kind == "unless"
+    one = f"{forbidden} {word('until')} {condition}" if is_end else f"{word('as_soon_as')} {condition}, {forbidden}"
+    return diagnostic("BT152", whole, words=whole.text, reason=_MOMENT_ONLY, advice=f"Write for example: {one}")
 
 
 def _what_then(

@@ -91,6 +91,8 @@ class Requests(Questions):
             return self._plead(entry, value, at, command)
         if text.words[at] in self._vocabulary.asking["wishing"] and first in text.articles and not self._is_end(first):
             return self._wish(value, command)
+        if end := self._miss_values(value.first, command):
+            return end
         named = self._measured(first) if first in text.articles else None
         is_value = named is not None and self._ends(named.last)  # `tell Bob the last count`
         if entry.id == TELL and value.last == match.last and self._goes_on(match.last) and not is_value:
@@ -113,6 +115,22 @@ class Requests(Questions):
             return 0
         self._say(at, measured, command, value.name)
         return measured.last if is_last else match.last
+
+    def _miss_values(self, at: int, command: Token) -> int:
+        """BT157 for `tell Bob both numbers`: there is only the last one. Returns where to go on, 0 for other words."""
+        text, values = self._text, self._vocabulary.values
+        several, end = {*values.both, *self._vocabulary.roles["all_names"]}, at
+        while text.words[end] in several or values.is_number([text.words[end]]):
+            end += 1
+        one = text.words[end].removesuffix("s")
+        is_value = end > at and one != text.words[end] and any(one in tree for tree in self._vocabulary.measured)
+        if not (is_value and self._ends(end + 1)):
+            return 0
+        span = text.span(at, end + 1)
+        problem = diagnostic("BT157", span, words=span.text, values=self._values(), quoted=f'... "{span.text}"')
+        self._calls.problems.append(problem)
+        self._tokens.append(command)
+        return end + 1
 
     def _value_behind(self, at: int, slot: str, first: int, command: Token) -> int:
         """`say "it is" and the time`: the text, then the value."""
