@@ -15,10 +15,22 @@ from btlang.vocabulary.word_tree import WordTree, find
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Callable, Set
+    from typing import Protocol
 
     from btlang.vocabulary.descriptions import Modifiers
-    from btlang.vocabulary.reading_context import ReadingContext
     from btlang.vocabulary.references import Parts
+
+    class Reading(Protocol):
+        """What is known where `one` is read."""
+
+        latest: dict[str, str]
+        listed: dict[str, str]
+        modifiers: frozenset[str]
+        joiners: frozenset[str]
+
+        def described(self, kind: str, how: str, parts: Parts) -> str:
+            """The choice of a name that has these parts."""
+
 
 _LONGEST_NAME = 4  # words
 _MOST_ADJECTIVES = 3  # words
@@ -67,15 +79,17 @@ class Antecedents:
         is_definite = article is not None and text.source.text[slice(*article)].lower() == self._definite
         return is_definite and (latest[:1] == "{" or text.words[at] == self._likenesses.kind_of(PLACE, latest))
 
-    def another(self, context: ReadingContext, kind: str, text: Words, end: int) -> tuple[str, int] | None:
+    def another(
+        self, context: Reading, kind: str, text: Words, end: int, descriptions: Modifiers
+    ) -> tuple[str, int] | None:
         """What `one` alone is: one of those that were spoken of, one like the thing before, or that thing itself."""
-        latest, behind, modifiers = context.latest.get(kind, "{"), text.words[end], context.values.modifiers
+        latest, behind = context.latest.get(kind, "{"), text.words[end]
         if not (behind in context.modifiers or not behind[0].isalpha() or behind in context.joiners):
             return None
         spoken = choice_of(context.listed.get(kind, ""))
         parts = spoken.parts if spoken is not None and NAMES not in dict(spoken.parts) else ()
-        parts = parts or self._parts_of_one(kind, text, end - 1, latest, modifiers)
-        if next(modifiers.behind(kind, text, end, self._names), None):  # `one from the lab`
+        parts = parts or self._parts_of_one(kind, text, end - 1, latest, descriptions)
+        if next(descriptions.behind(kind, text, end, self._names), None):  # `one from the lab`
             parts = tuple(part for part in parts if part[0] not in RELATIONS)
         if parts and NAME not in dict(parts):
             return context.described(kind, "nearest", parts), end

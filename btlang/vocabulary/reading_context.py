@@ -383,7 +383,7 @@ class ReadingContext:
         if not is_one and _OTHER_SORT.get(kind) in types:  # `avoid the lab while Bob is in it`, `don't go in there`
             is_one = self.latest.get(ZONE, "") == self.latest.get(PLACE, "")
         if is_one and word in self.values.ones:
-            return self.values.antecedents.another(self, kind, text, end)
+            return self.values.antecedents.another(self, kind, text, end, self.values.modifiers)
         if kind == PERSON and word in self.values.plural_pronouns and self._are_things(types):
             return None  # `if Alice is near, take the cups to the lab, otherwise take them to the hall`
         if is_one and word in self.values.plural_pronouns and self._stands_for_several(kind):

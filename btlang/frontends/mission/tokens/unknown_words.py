@@ -155,8 +155,10 @@ class UnknownWords:
             if named is not None:
                 self._context.latest[kind] = named
         span = Span(text.source, text.begin(at), text.ends[end - 1])
-        code = "BT164" if why is None else "BT158" if self._is_idle(why[1], end) else "BT165"
-        return end, diagnostic(code, span, words=span.text)
+        is_behind = why is None and self._tokens[-1:] != [] and self._tokens[-1].kind == "comma"
+        if (why is not None or is_behind) and self._is_idle(at if why is None else why[1], end):
+            return end, diagnostic("BT158", span, words=span.text)
+        return end, diagnostic("BT164" if why is None else "BT165", span, words=span.text)
 
     def _is_idle(self, at: int, end: int) -> bool:
         """Whether a reason asks for nothing and goes on with no command: `because Alice is working there`."""
@@ -177,6 +179,8 @@ class UnknownWords:
         persons = vocabulary.values.names_tree(PERSON)
         is_told = words[at] in vocabulary.asking["told_of"] or find(persons, words, at) is not None
         is_described = at in self._text.articles and begins(self._tokens)
+        if at in self._text.articles and self._tokens[-1:] != [] and self._tokens[-1].kind == "comma":
+            is_described = not vocabulary.values.texts.inverting.isdisjoint(words[at + 1 : end])  # `the floor is wet`
         if not (is_described or (is_told and begins_item(self._tokens))):
             return False
         value = self._context.any(self._text, at)
