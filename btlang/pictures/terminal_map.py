@@ -146,7 +146,10 @@ class _Dots:
 
 
 class _Letters:
-    """The cells with letters. Where a name would touch another one, only its first letter stands at its point."""
+    """The cells with letters. A name that would touch another one is written above or below its point.
+
+    Where there is no room for it either, only its first letter is written, if that hides no other name.
+    """
 
     def __init__(self, width: int, height: int) -> None:
         self._width, self._height = width, height
@@ -155,14 +158,16 @@ class _Letters:
     def name(self, x: float, y: float, text: str, style: str) -> None:
         """Write a name whose middle is at a point."""
         said = one_line(text)
-        row, first = int(y) // _DOWN, int(x) // _ACROSS - len(said) // 2
+        own, first = int(y) // _DOWN, int(x) // _ACROSS - len(said) // 2
         first = max(min(first, self._width - len(said)), 0)
-        around = [(row, column) for column in range(first - 1, first + len(said) + 1)]
-        fits = len(said) <= self._width and cell_len(said) == len(said) and 0 <= row < self._height
-        if not fits or any(cell in self.cells for cell in around):
+        fits = len(said) <= self._width and cell_len(said) == len(said)
+        for row in (own, own - 1, own + 1) if fits else ():
+            around = [(row, column) for column in range(first - 1, first + len(said) + 1)]
+            if 0 <= row < self._height and not any(cell in self.cells for cell in around):
+                self.cells.update((cell, (letter, style)) for cell, letter in zip(around[1:-1], said, strict=True))
+                return
+        if (own, int(x) // _ACROSS) not in self.cells:
             self.mark(x, y, said[:1] if said.isascii() else "*", style)
-            return
-        self.cells.update((cell, (letter, style)) for cell, letter in zip(around[1:-1], said, strict=True))
 
     def mark(self, x: float, y: float, sign: str, style: str) -> None:
         cell = int(y) // _DOWN, int(x) // _ACROSS
