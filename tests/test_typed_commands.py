@@ -55,12 +55,17 @@ def test_a_file_wins_over_a_mission_of_the_same_words(capsys: pytest.CaptureFixt
         ("hello", "btc: there's no verb or file 'hello'\nDid you mean: btc run hello\n"),
         ("patrol --watch", "btc: there's no verb or file 'patrol'\nDid you mean: btc run patrol --watch\n"),
         ("list", "btc: there's no verb or file 'list'\nDid you mean: btc task list\n"),
+        ("worlds", "btc: there's no verb or file 'worlds'\nDid you mean: btc world\n"),
+        ("missions", "btc: there's no verb or file 'missions'\nDid you mean: btc examples\n"),
+        ("simulate tea.txt", "btc: there's no verb or file 'simulate'\nDid you mean: btc run tea.txt\n"),
+        ("start", "btc: there's no verb or file 'start'\nDid you mean: btc robot up\n"),
         ("gesture", "btc gesture: say what to do: play, check, picture, record\nRun 'btc help gesture' for help.\n"),
         ("fly x", "btc: there's no verb or file 'fly'\nRun 'btc help' for help.\n"),
         ("--world x.toml", "btc: unexpected option '--world'\nA verb comes first: btc VERB --world x.toml\n"),
         ("help rnu", "btc: there's no verb 'rnu'\nDid you mean: btc help run\n"),
         ("help wave", "btc: there's no verb 'wave'\nRun 'btc help' for help.\n"),
         ("run --sped max -c wave", "btc run: there's no option '--sped'\nDid you mean: --speed\n"),
+        ("run --verbose tea.txt", "btc run: there's no option '--verbose'\nRun 'btc help run' for help.\n"),
         ("tea.txt --xyz", "btc run: there's no option '--xyz'\nRun 'btc help run' for help.\n"),
         ("robot stpo", "btc robot: there's no act 'stpo'\nDid you mean: btc robot stop\n"),
         ("robot halt", "btc robot: there's no act 'halt'\nDid you mean: btc robot stop\n"),
@@ -94,10 +99,12 @@ def test_stop_alone_is_refused_while_a_robot_is_up(
     assert typed("go to the lab, then stop", *RUN) == 0
 
 
-def test_no_word_stands_for_two_acts() -> None:
+def test_no_word_stands_for_two_acts_or_verbs() -> None:
     for verb in VERBS.values():
         words = [*verb.acts, *(word for act in verb.acts.values() for word in act.also)]
         assert len(words) == len(set(words))
+    words = [*VERBS, *(word for verb in VERBS.values() for word in verb.also)]
+    assert len(words) == len(set(words))
 
 
 def test_a_word_that_is_neither_is_read_as_a_mission(capsys: pytest.CaptureFixture[str]) -> None:
