@@ -14,6 +14,7 @@ from btlang.cli import main
 from btlang.cli.parser import parse_arguments
 from btlang.cli.verbs import VERBS
 from btlang.task.commands import client
+from btlang.vocabulary.shipped import shipped
 
 RUN = ["--speed", "max", "--lines"]
 
@@ -245,6 +246,19 @@ def test_names_of_another_world_that_ships(capsys: pytest.CaptureFixture[str]) -
     assert "A world that ships" not in capsys.readouterr().err
     assert typed("check", "-c", "go to the reception", "--world", str(Path(world).with_name("museum.toml"))) == 2
     assert "A world that ships" not in capsys.readouterr().err
+
+
+def test_worlds_of_an_installed_package_are_found(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    worlds = tmp_path / "btlang" / "_resources" / "examples" / "worlds"
+    worlds.parent.mkdir(parents=True)
+    worlds.symlink_to(Path(shipped("examples", "worlds")).resolve())
+    (tmp_path / "keywords").symlink_to(Path(shipped("keywords")).resolve())
+    monkeypatch.setattr("btlang.vocabulary.shipped.PACKAGE", str(tmp_path / "btlang"))
+    monkeypatch.setattr("btlang.cli.missions.shipped", shipped.__wrapped__)
+    assert typed("check", "-c", "go to the mummy") == 2
+    assert f"To use it, add: --world {worlds / 'museum.toml'}\n" in capsys.readouterr().err
 
 
 def test_the_world_that_ships_is_listed(capsys: pytest.CaptureFixture[str]) -> None:

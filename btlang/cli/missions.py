@@ -85,7 +85,7 @@ def _advice_on_world(error: MissionError, source: Source, options: argparse.Name
     from glob import glob
     from shlex import quote
 
-    for path in sorted(glob(shipped("examples", "worlds", "*.toml"))):
+    for path in sorted(glob(os.path.join(shipped("examples", "worlds"), "*.toml"))):
         with open(path, encoding="utf-8") as file:
             text = file.read().lower()
         if all(f'"{words.lower()}"' in text for words in lacking):
