@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from importlib import import_module
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
@@ -61,7 +62,7 @@ def parse_tree(
     count. Raises MissionError with all diagnostics.
     """
     source = source_of(text)
-    with gc_paused:
+    with gc_paused, _hint_at_file(text):
         vocabulary, chosen = mission_vocabulary(source, keywords, world_of(world), language, has_robot=has_robot)
         read = read_text(source, main, vocabulary=vocabulary, parser=parser, errors_of=errors_of, known=_known(values))
         if isinstance(read, Tree):
@@ -71,6 +72,18 @@ def parse_tree(
     return Mission(
         compilation.tree, vocabulary, chosen, tuple(compilation.warnings), program, tuple(all_facts(program))
     )
+
+
+@contextmanager
+def _hint_at_file(text: str | Source) -> Iterator[None]:
+    """Add to errors about a text that looks like the name of a file how to read that file."""
+    try:
+        yield
+    except MissionError as error:
+        name = text.strip() if isinstance(text, str) else ""
+        if " " in name or not os.path.splitext(name)[1][1:].isalpha():
+            raise
+        raise error.advising(f"This is read as a mission. To read the file: btlang.parse_file({name!r})") from None
 
 
 def parse_file(

@@ -217,6 +217,8 @@ def _advice(what: object) -> str:
         return "give its children one by one, or with a star: sequence(*children)"
     if isinstance(what, GeneratorType | CoroutineType):  # `weld(1)`, whose function is a leaf
         return f"give the function and its values, and don't call it: {_as_leaf(what)}"
+    if any(base.__module__.startswith("py_trees.") for base in type(what).__mro__):
+        return "write btlang.from_py_trees(...) round it"
     decorated = "decorate a function with btlang.action or btlang.condition"
     return decorated if callable(what) else f"{decorated}, and give it its values with leaf(function, value)"
 

@@ -121,5 +121,4 @@ def hint_at_text(subject: str, verb: str) -> Iterator[None]:
         has_mistakes = " " in subject.strip() and not looks_like_path(subject)
         if os.path.exists(subject) or not (has_mistakes or reads_as_mission(subject)):
             raise
-        advice = ("help", f"To give a mission as text: btc {verb} -c {quote_mission(subject)}")
-        raise MissionError([p.replace(arguments=(*p.arguments, advice)) for p in error.diagnostics]) from None
+        raise error.advising(f"To give a mission as text: btc {verb} -c {quote_mission(subject)}") from None
