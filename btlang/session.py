@@ -323,6 +323,11 @@ class Run:
         return self.bus.clock.now
 
     @property
+    def succeeded(self) -> bool:
+        """Return whether it has ended in SUCCESS."""
+        return self.outcome is not None and self.outcome.succeeded
+
+    @property
     def is_under_way(self) -> bool:
         """Return whether it has started and hasn't ended."""
         return self._under_way

@@ -159,7 +159,9 @@ def test_each_repr_is_short() -> None:
         assert repr(session) == "<Session on SimulatedRobot>"
         run = session.prepare(mission, speed="max")
         assert repr(run) == f"<Run {run.id[:8]}, not started, 0.0 s>"
+        assert not run.succeeded
         outcome = run.execute()
+        assert run.succeeded
         assert repr(run) == f"<Run {run.id[:8]}, ended: SUCCESS after {outcome.seconds:.1f} s>"
     events = [repr(event) for event in run.events()]
     assert events[0] == "<StatusesChanged 0.00 s, Say RUNNING>"
