@@ -188,7 +188,7 @@ def test_options_may_stand_anywhere(robot: TaskLayer, btc: Btc) -> None:
     said = list[str]()
     robot.session.robot.say = said.append
     assert btc("robot", "say", "--json", "hi", "there")[0] == 0
-    assert btc("robot", "say", "--", "--json")[0] == 0
+    assert btc("robot", "say", "--", "--json") == (0, 'The robot says "--json".\n')
     assert said == ["hi there", "--json"]
 
 
