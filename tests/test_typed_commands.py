@@ -236,6 +236,16 @@ def test_examples_of_a_verb_are_commands(verb: str, capsys: pytest.CaptureFixtur
         assert parse_arguments(shlex.split(command)[1:]).verb == verb
 
 
+@pytest.mark.parametrize(
+    "page", sorted(Path(shipped("examples")).resolve().rglob("*.md")), ids=lambda page: page.parent.name
+)
+def test_commands_of_the_pages_of_examples_are_known(page: Path) -> None:
+    shown = re.findall(r"^ {4}btc (.+)$|`btc ([^`]+)`", page.read_text(encoding="utf-8"), re.MULTILINE)
+    assert len(shown) > 1
+    for line in map("".join, shown):
+        assert parse_arguments(shlex.split(line)).verb == line.split()[0]
+
+
 def test_names_of_another_world_that_ships(capsys: pytest.CaptureFixture[str]) -> None:
     assert typed("check", "-c", "go to the reception, then go to room 1") == 2
     [advice] = [line for line in capsys.readouterr().err.splitlines() if line.startswith("A world that ships")]
