@@ -184,7 +184,7 @@ class MissionError(Exception):
         return "\n\n".join(render(d) for d in self.diagnostics)
 
     def advising(self, advice: str) -> MissionError:
-        """Return it with an advice below each diagnostic."""
+        """Return the same error with a further hint below each diagnostic."""
         return MissionError([each.replace(arguments=(*each.arguments, ("help", advice))) for each in self.diagnostics])
 
 
