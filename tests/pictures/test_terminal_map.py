@@ -73,6 +73,27 @@ def test_a_name_without_room_is_a_letter_that_hides_no_other_name() -> None:
     assert "kitchen w" in lines
 
 
+def test_zones_have_an_outline_and_a_name() -> None:
+    zones = """[[zones]]
+name = "stairs"
+kind = "keep out"
+points = [[3, 2.5], [9, 2.5], [9, 4], [3, 4]]
+[[zones]]
+name = "hall"
+kind = "area"
+points = [[0, 0], [1, 0], [1, 1]]
+"""
+    world = f"start = {{ x = 1, y = 1 }}\nwalls = [[[0, 0], [10, 0], [10, 5], [0, 5], [0, 0]]]\n{zones}"
+    shown = TerminalMap(read_world(Source(world, "world.toml")), unicode=False)
+    lines = drawn(shown, None)
+    assert "\n".join(lines).count("x") > 20
+    assert any("stairs" in line for line in lines)
+    assert not any("hall" in line for line in lines)
+    columns, rows = shown.size(40, 12)
+    styles = {style for line in shown.lines(None, columns, rows) for text, style in line if "x" in text}
+    assert styles == {"red"}
+
+
 @pytest.mark.parametrize(("width", "height"), [(15, 30), (80, 4), (0, 0)])
 def test_where_there_is_no_room(width: int, height: int, world: World) -> None:
     assert TerminalMap(world, unicode=True).size(width, height) == (0, 0)
