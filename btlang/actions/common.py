@@ -11,6 +11,8 @@ from btlang.robots.robot import Base, Machine, Power, RobotError, Sensors
 
 _SHARES = {"slowly": 0.5, "carefully": 0.5, "quietly": 0.4}
 """Shares of the normal speed. "Quickly" is as fast as the robot can."""
+COUNTABLE = ("object", "person")
+"""The types of things that have a kind and can be seen."""
 STUCK = "the wheels turn but the robot doesn't move"
 
 
@@ -34,6 +36,11 @@ def things_described(robot: Base, type: str, **parts: str) -> list[str]:
     The parts are `kind`, `color` and `use` of objects, `clothing`, `color` and `gesture` of people; "" is any.
     """
     return robot.described(type, {name: text for name, text in parts.items() if text})
+
+
+def of_a_kind(robot: Base, kind: str, **parts: str) -> list[str]:
+    """Return the names of the known objects and people of a kind with these parts."""
+    return [name for type in COUNTABLE for name in things_described(robot, type, kind=kind, **parts)]
 
 
 def keep_pace(robot: Base, manner: str | None, steps: Generator[None, None, None]) -> Generator[None, None, None]:
@@ -107,7 +114,9 @@ def compares(
     at_most: float | None,
     equal: float | None,
 ) -> bool:
-    """Return whether a number is as each of these limits says; None is no limit."""
+    """Return whether a number is as each of these limits says (None is none); without any, whether it is above 0."""
+    if (below, above, at_least, at_most, equal) == (None,) * 5:
+        return found > 0
     return (
         (below is None or found < below)
         and (above is None or found > above)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from contextlib import closing
 from typing import Protocol
 
-from btlang.actions.common import DrivingRobot, Watch, compares, spot, things_described
+from btlang.actions.common import COUNTABLE, DrivingRobot, Watch, compares, of_a_kind, spot
 from btlang.actions.motion import Steps, turn
 from btlang.actions.navigation import accomplish, go_to, travel
 from btlang.actions.sensing import holding
@@ -105,8 +105,8 @@ def count_kind(
     x: float | None = None,
     y: float | None = None,
 ) -> Steps:
-    """Count the objects of a kind, as `count_objects` counts all."""
-    yield from _count(robot, blackboard, "object", place, x, y, kinds)
+    """Count the objects or people of a kind, as `count_objects` counts all objects."""
+    yield from _count(robot, blackboard, kinds, place, x, y, of_kind=True)
 
 
 def count(blackboard: Blackboard) -> int | Failed:
@@ -128,7 +128,7 @@ def counted(
 ) -> bool | Failed:
     """Return whether the robot counted so many last; without a limit, any. Fails if it hasn't counted.
 
-    Fails, too, if it counted anything but objects of these kinds, or what `counted` says: "person" or "object".
+    Fails, too, if it counted anything but these kinds, or what `counted` says: "person" or "object".
     """
     found = count(blackboard)
     if isinstance(found, Failed):
@@ -136,31 +136,30 @@ def counted(
     things = str(blackboard.get(_COUNTED)) if _COUNTED in blackboard else ""
     if kinds not in (None, things) or (counted is not None and (counted == _PERSON) != (things == _PERSON)):
         raise ActionFailed(f"it counted something else last: {things}")
-    if (below, above, at_least, at_most, equal) == (None,) * 5:
-        above = 0
     return compares(found, below, above, at_least, at_most, equal) or Failed(lambda: f"it counted {found}")
 
 
 def _count(
     robot: SearchingRobot,
     blackboard: Blackboard,
-    type: str,
+    what: str,
     place: str | None,
     x: float | None,
     y: float | None,
-    kind: str = "",
+    of_kind: bool = False,
 ) -> Steps:
     if place is not None or x is not None:
         yield from go_to(robot, place, x, y)
-    found: set[str] = set(robot.seen(type))
+    types = COUNTABLE if of_kind else (what,)
+    found = {name for type in types for name in robot.seen(type)}
     with closing(turn(robot, _AROUND)) as turning:
         for _ in turning:
             yield
-            found.update(robot.seen(type))
-    if kind:
-        found &= set(things_described(robot, type, kind=kind))
+            found.update(name for type in types for name in robot.seen(type))
+    if of_kind:
+        found &= set(of_a_kind(robot, what))
     blackboard.set(COUNT, len(found))
-    blackboard.set(_COUNTED, kind or type)
+    blackboard.set(_COUNTED, what)
 
 
 def _search(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import dist, inf, radians
 
-from btlang.actions.common import compares, things_described, where
+from btlang.actions.common import compares, of_a_kind, where
 from btlang.engine.leaves.leaf import Failed
 from btlang.robots.geometry import Point
 from btlang.robots.robot import Base, Docking, Hands, Navigation, Power, RobotError, Sensors, SensorSilent
@@ -256,8 +256,8 @@ def objects_at(
     at_most: float | None = None,
     equal: float | None = None,
 ) -> bool | Failed:
-    """Return whether so many objects of a kind are at a place, as far as the robot knows."""
-    found = len(things_described(robot, "object", kind=kinds, at=place))
+    """Return whether so many objects or people of a kind are at a place, as far as the robot knows."""
+    found = len(of_a_kind(robot, kinds, at=place))
     return compares(found, below, above, at_least, at_most, equal) or Failed(lambda: f"it knows of {found} there")
 
 

@@ -175,7 +175,7 @@ _ALL = (
          "To keep out from now on, write: {fixed}", "note", "from midnight on"),
     Code("BT139", "'{words}' waits for another number, but nothing counts again.", "Write for example: {example}",
          "warning", "no further count"),
-    Code("BT140", "'{words}' is read as {time}, the next such time after '{before}'.",
+    Code("BT140", "'{words}' is read as {time}, {which} '{before}'.",
          "To mean another time, write am or pm after it.", "note", "assumed time"),
     Code("BT141", "I can't read '{words}': {wanted} is needed.", "Write for example: do \"OpenGripper\" with width 0.05"),
     Code("BT142", "English can't express this tree: {reason}."),

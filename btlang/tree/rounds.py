@@ -58,9 +58,13 @@ def _set_of(node: ast.Ast) -> Choice | None:
 
 
 class _Round(Record):
-    """A set, and the parts `first` to `last` of a chain that are in its round; no chain if one command is all."""
+    """A set, and the parts `first` to `last` of a chain that are in its round; no chain if the `whole` of a command is.
+
+    That is more than the command itself where a condition behind it is about its thing: `wave at all if they are near`.
+    """
 
     choice: Choice
+    whole: ast.Ast
     chain: ast.Chain | None = None
     first: int = 0
     last: int = 0
@@ -139,16 +143,18 @@ def _add_loops(root: ast.Ast, vocabulary: Lexicon) -> ast.Ast:
     for at, choice in sets:
         found = _round(nodes, at, choice, parents)
         if found.chain is None:
-            alone[id(nodes[at])] = choice
+            alone[id(found.whole)] = choice
         else:
             of_chain.setdefault(id(found.chain), []).append(found)
 
     def combine(node: ast.Ast, done: list[ast.Ast]) -> ast.Ast:
-        choice = _set_of(node)
+        choice, own = _set_of(node), alone.get(id(node))
         if choice is not None and isinstance(node, ast.Phrase | ast.Name):
-            one = _replace_argument(node, choice.text, f"{{{choice.key}}}")
-            return _loop(choice, one, vocabulary) if id(node) in alone else one
-        made = ast.with_parts(node, done)
+            made: ast.Ast = _replace_argument(node, choice.text, f"{{{choice.key}}}")
+        else:
+            made = ast.with_parts(node, done)
+        if own is not None:
+            return _loop(own, made, vocabulary)
         for each in sorted(of_chain.get(id(node), ()), key=lambda found: -found.first):
             made = _wrap(made, each, vocabulary)
         return made
@@ -227,14 +233,22 @@ def _round(nodes: Sequence[ast.Ast], at: int, choice: Choice, parents: dict[int,
         common = next((up for up in path if id(up) in others), None)
         if isinstance(common, ast.Chain):
             first, end = (_index(common, _path(one, parents)) for one in (node, nodes[last]))
-            return _Round(choice, common, first, _goes_along(common, first, end, choice))
+            return _Round(choice, node, common, first, _goes_along(common, first, end, choice))
     chain = path[1] if len(path) > 1 else None
+    if isinstance(chain, ast.If) and _asks_about(chain, node, key):
+        return _Round(choice, chain)
     if isinstance(chain, ast.Chain):
         first = _index(chain, path)
         end = _goes_along(chain, first, first, choice)
         if end > first:
-            return _Round(choice, chain, first, end)
-    return _Round(choice)
+            return _Round(choice, node, chain, first, end)
+    return _Round(choice, node)
+
+
+def _asks_about(form: ast.If, node: ast.Ast, key: str) -> bool:
+    """Whether a command depends on a condition behind it that speaks of its thing."""
+    is_behind = form.body is node and form.condition.span.start >= node.span.end
+    return is_behind and any(key in ast.keys_of(each) for each in ast.parents_first(form.condition))
 
 
 def _path(node: ast.Ast, parents: dict[int, ast.Ast]) -> list[ast.Ast]:

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from itertools import chain
+
 from btlang.text.words import END_OF_TEXT, Words
+from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.likenesses import Likenesses
 from btlang.vocabulary.nouns import Description
+from btlang.vocabulary.references import NAMES, RELATIONS, choice_of
 from btlang.vocabulary.value_type import OBJECT, PLACE
 from btlang.vocabulary.word_tree import WordTree, find
 
@@ -12,7 +16,12 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Callable, Set
 
+    from btlang.vocabulary.descriptions import Modifiers
+    from btlang.vocabulary.reading_context import ReadingContext
+    from btlang.vocabulary.references import Parts
+
 _LONGEST_NAME = 4  # words
+_MOST_ADJECTIVES = 3  # words
 _NOT_IN_NAMES = frozenset((",", ";", ":", "(", ")", END_OF_TEXT))
 
 
@@ -58,17 +67,62 @@ class Antecedents:
         is_definite = article is not None and text.source.text[slice(*article)].lower() == self._definite
         return is_definite and (latest[:1] == "{" or text.words[at] == self._likenesses.kind_of(PLACE, latest))
 
+    def another(self, context: ReadingContext, kind: str, text: Words, end: int) -> tuple[str, int] | None:
+        """What `one` alone is: one of those that were spoken of, one like the thing before, or that thing itself."""
+        latest, behind, modifiers = context.latest.get(kind, "{"), text.words[end], context.values.modifiers
+        if not (behind in context.modifiers or not behind[0].isalpha() or behind in context.joiners):
+            return None
+        spoken = choice_of(context.listed.get(kind, ""))
+        parts = spoken.parts if spoken is not None and NAMES not in dict(spoken.parts) else ()
+        parts = parts or self._parts_of_one(kind, text, end - 1, latest, modifiers)
+        if next(modifiers.behind(kind, text, end, self._names), None):  # `one from the lab`
+            parts = tuple(part for part in parts if part[0] not in RELATIONS)
+        if parts and NAME not in dict(parts):
+            return context.described(kind, "nearest", parts), end
+        return (latest, end) if latest[:1] != "{" else (dict(parts)[NAME], end) if parts else None
+
+    def _parts_of_one(self, kind: str, text: Words, at: int, latest: str, modifiers: Modifiers) -> Parts:
+        """What `one` at a word is like: as the noun before it says, in its statement or the one before; () for nothing.
+
+        The latest value of the type, where it is a name, is named itself behind `a red cup`, but not behind `the cup`.
+        """
+        here, start, _ = text.earlier(at)
+        found = self._noun(kind, text, at) or (self._noun(kind, here, start - 1) if start else None)
+        if found is None or (latest[:1] == "{" and kind != OBJECT):
+            return ()
+        here, first, end, kind_of, name = found
+        said = (here.articles[i] for i in range(first, first - _MOST_ADJECTIVES, -1) if i in here.articles)
+        article = next(said, None)
+        is_new = article is not None and here.source.text[slice(*article)].lower() != self._definite
+        if name:
+            is_named = (is_new and name.lower() != kind_of) or not kind_of
+            return ((NAME, name),) if is_named else (("kind", kind_of),)
+        behind = [more for more, _ in modifiers.behind(kind, here, end, self._names)]
+        before = [
+            parts
+            for place in range(first - 1, first - _MOST_ADJECTIVES, -1)
+            for parts, last in modifiers.before(here, place, self._names)
+            if last == first
+        ]
+        return (("kind", kind_of), *chain(*before[-1:]), *chain(*behind[-1:])) if kind_of else ()
+
     def _before(self, kind: str, text: Words, at: int) -> tuple[str, str]:
         """The kind, and the last word, of the latest name or noun of a type before a word in its statement."""
+        found = self._noun(kind, text, at)
+        return ("", "") if found is None else (found[3], found[0].words[found[2] - 1])
+
+    def _noun(self, kind: str, text: Words, at: int) -> tuple[Words, int, int, str, str] | None:
+        """The latest name or noun of a type before a word in its statement: where it is, its kind, and the name."""
         text, start, at = text.earlier(at)
-        end, kind_of, noun = 0, "", ""
+        latest, end = None, 0
         for first in range(at - 1, start - 1, -1):
             named = find(self._names(kind), text.words, first)
             if named is not None and end <= named[1] <= at:
-                end, noun = named[1], text.words[named[1] - 1]
-                kind_of = self._likenesses.kind_of(kind, named[0])
+                end = named[1]
+                latest = text, first, end, self._likenesses.kind_of(kind, named[0]), named[0]
             for tree in ("kind", "kinds"):
                 of = find(self._names(tree), text.words, first)
                 if of is not None and end < of[1] <= at and kind in self._likenesses.types_of(of[0]):
-                    end, kind_of, noun = of[1], of[0], text.words[of[1] - 1]
-        return kind_of, noun
+                    end = of[1]
+                    latest = text, first, end, of[0], ""
+        return latest

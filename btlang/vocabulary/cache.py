@@ -34,7 +34,7 @@ _MOST_IN_PROCESS = 16
 _in_process: dict[tuple[Any, ...], Any] = {}
 MOST_FILES = 20  # those that were used longest ago are deleted
 _PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-_CODE = ("", "diagnostics", "robots", "text", "vocabulary")  # their modules make what is kept; "" holds the version
+_CODE = ("", "diagnostics", "robots", "robots/worlds", "text", "vocabulary")  # they make it; "" holds the version
 _OTHERS_MAY_WRITE = stat.S_IWGRP | stat.S_IWOTH
 
 

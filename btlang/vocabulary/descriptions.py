@@ -190,6 +190,11 @@ class Modifiers:
                 for more, end in self._related(kind, text, said[1], names, 1):
                     yield ((name, said[0]), *more), end
 
+    def relation(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
+        """The relation of a thing of a type to what follows that begins at a word, and where its words end."""
+        found = find(self._relations, text.words, at)
+        return found if found is not None and kind in RELATIONS[found[0]] else None
+
     def _related(self, kind: str, text: Words, at: int, names: Names, depth: int) -> Iterator[tuple[Parts, int]]:
         to_self = find(self._self_relations, text.words, at)
         if to_self is not None and kind in RELATIONS[to_self[0]] and depth == 1:

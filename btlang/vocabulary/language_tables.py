@@ -40,16 +40,16 @@ CHANGING = ("increase", "decrease")
 ASKING = (
     "journey", "search", "whereabouts", "whether", "any_place", "searching", "making_sure", "counting", "asking_be",
     "asking_do", "answers", "silence", "any_answer", "feeling", "there", "very", "states", "subject", "been", "towards",
-    "going", "coming", "letting", "hours", "time_is", "finding_out", "inspecting", "telling", "lasting", "whole",
-    "located", "wishing", "wished", "fetching", "picturing", "begging", "contents", "yet", "finding", "getting",
-    "bringing", "home", "pleading", "saying_that", "plea", "reminding",
+    "going", "coming", "letting", "hours", "by_then", "time_is", "finding_out", "inspecting", "telling", "lasting",
+    "whole", "located", "wishing", "wished", "fetching", "picturing", "begging", "contents", "yet", "finding",
+    "getting", "bringing", "home", "pleading", "saying_that", "plea", "reminding",
     "reminder", "addressed", "informing", "informed", "staying", "resuming", "interrupting", "and_back",
     "if_yes", "if_no", "told_of", "standing", "able", "unable", "reaching", "finishing", "waiting", "apiece",
-    "between_joint", "standing_verbs", "events", "duties", "reasons", "performing", "naming", "named_as", "in_turn",
-    "until_none", "rounds", "obliging", "failing", "found", "counted", "replied",
+    "between_joint", "standing_verbs", "kept_up", "events", "duties", "reasons", "performing", "naming", "named_as",
+    "in_turn", "until_none", "rounds", "obliging", "failing", "found", "counted", "replied",
     "so", "being", "causing", "asking_for", "plea_for", "helping", "plea_for_help",
     "speaking", "spoken_of", "still", "motionless", "who", "somebody", "answering", "likewise",
-    "remaining", "entering", "turning_to", "ended", "having",
+    "remaining", "entering", "turning_to", "ended", "fewer", "having", "putting",
 )  # fmt: skip
 """What the table `asking` of a language may have; without it there are no questions, and no remarks."""
 

@@ -142,8 +142,10 @@ class Lexicon:
         """What does nothing where it stands alone: `stay here`."""
         self.in_turn = tree_of((words, True) for words in self.asking["in_turn"])
         """The words beside a list that say nothing: `in that order`."""
-        self.ended = tree_of((words, True) for words in self.asking["ended"])
-        """The words for what isn't so any more: `it's gone`."""
+        self.ended = tree_of((words, role == "fewer") for role in ("ended", "fewer") for words in self.asking[role])
+        """The words for what isn't so any more, and whether they are about a count: `it's gone`, `there are fewer`."""
+        self.relatives = tree_of((words, True) for words in language["relatives"])
+        """The words that begin what is said of a thing: `that is`."""
         self.entering = tree_of((words, True) for words in self.asking["entering"])
         """The words behind which a place is left out: `go in`."""
         self.until_none = tree_of((words, True) for words in self.asking["until_none"])
@@ -216,6 +218,7 @@ class Lexicon:
         self._find_collisions()
         if self._problems:
             raise MissionError(self._problems)
+        self._phrase_words = frozenset(words_of(self.trie, *self.measured))
         self._before_accents = self.orthography
         self.orthography = self.orthography.with_words((*self.words(), *self.values.pronouns))
         self._is_made = True
@@ -263,7 +266,8 @@ class Lexicon:
         accents = self.orthography.spellings.keys() - self._before_accents.spellings.keys()
         if made._problems or not words.isdisjoint(accents) or not all(word.isascii() for word in words):
             return None
-        return made.replaced(orthography=self.orthography, _added=None, _own_nodes=set())
+        own_words = self._phrase_words | words
+        return made.replaced(orthography=self.orthography, _added=None, _own_nodes=set(), _phrase_words=own_words)
 
     def with_names(self, names: Mapping[str, Sequence[str]], features: Features | None = None) -> Lexicon:
         """The same words, whose slots take further names by their types: the places, people and objects of a world.
@@ -359,9 +363,9 @@ class Lexicon:
 
     def words(self) -> frozenset[str]:
         """Every word that can be read, also those in names and values."""
-        trees: list[TrieNode] = [self.trie, *self.measured, *self.values.word_trees(), self.values.phrases.tree]
+        trees: list[TrieNode] = [*self.values.word_trees(), self.values.phrases.tree]
         trees += [self.values.names_tree(name) for name, kind in self.types.items() if kind.kind == "names"]
-        words = words_of(*trees) | self.articles
+        words = words_of(*trees) | self._phrase_words | self.articles
         said = self.values.role_words
         words.update(said.particles, said.fillers, said.speaker, *chain(*said.introducing.values()))
         words.update(self.values.modifiers.words())

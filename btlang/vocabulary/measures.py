@@ -21,6 +21,11 @@ _MOST_TIME_WORDS, _HALF_DAY = 4, 720  # minutes
 _FARTHEST = 1e6  # metres, as in a world file
 
 
+def _minutes(time: str) -> int:
+    """The minutes of a port text since midnight."""
+    return int(time[:2]) * 60 + int(time[3:])
+
+
 class Measures:
     """Reads numbers at a place in a text, with the units of `types` and the number words of a language."""
 
@@ -35,6 +40,10 @@ class Measures:
         self._past_words = [(language["clock"].get(name, ()), sign) for name, sign in (("past", 1), ("to", -1))]
         self._hour_words = frozenset(language["clock"].get("hour", ()))
         roles = language["roles"]
+        before_times = (words.partition(" {")[0].split()[-1] for words in roles.get("between_times", ()))
+        self._span_words = frozenset(before_times).difference(roles.get("after", ()))
+        """Words before two hours: `from 10 to 12 pm`, in which `10 to 12` is no time."""
+        self._span_joints = frozenset(language["asking"].get("between_joint", ()))
         self._joints = frozenset(
             (",", *(word for role in ("and", "or") for word in roles.get(role, ()) if " " not in word))
         )
@@ -83,6 +92,7 @@ class Measures:
     def later_time(self, text: Words, at: int) -> tuple[str, int] | None:
         """A time that doesn't say in which half of the day it is, `9:30` behind `9 pm`: the next such one.
 
+        The last such one before the end of a span: `from 8 to 10 pm`.
         That it is assumed is written down in the text.
         """
         if text.picked is not None or self._halves.isdisjoint(text.distinct):
@@ -94,15 +104,23 @@ class Measures:
         is_told = self.half_of_day(text, end) is not None or (at > 1 and text.words[at - 2] in self.parts_of_day)
         if is_told or self.quantity(text, at) is not None or self._shared_half(text, end, hour) is not None:
             return None
-        before = self._latest_told(text, at)
-        if before is None:
+        minute = int(hour % 12) * 60 + (minutes or 0)
+        behind = self._end_of_span(text, at, end)
+        beside = behind or self._latest_told(text, at)
+        if beside is None:
             return None
-        told, span = before
-        first = int(told[:2]) * 60 + int(told[3:])
-        later = first + (int(hour % 12) * 60 + (minutes or 0) - first) % _HALF_DAY
-        time = f"{later // 60 % 24:02}:{later % 60:02}"
-        text.assumed[at] = time, end, span
+        told = _minutes(beside[0])
+        meant = told + (minute - told) % _HALF_DAY - (_HALF_DAY if behind is not None else 0)
+        time = f"{meant // 60 % 24:02}:{meant % 60:02}"
+        text.assumed[at] = time, end, beside[1]
         return time, end
+
+    def _end_of_span(self, text: Words, at: int, end: int) -> tuple[str, Span] | None:
+        """The time behind an hour that begins a span, `from 8 to 10 pm`, and its place."""
+        if not at or text.words[at - 1] not in self._span_words or text.words[end] not in self._span_joints:
+            return None
+        time = self.time_of_day(text, end + 1)
+        return (time[0], text.span(end + 1, time[1])) if time is not None else None
 
     def _latest_told(self, text: Words, at: int) -> tuple[str, Span] | None:
         """The last time before a word that says in which half of the day it is, `9 pm` or `noon`, and its place."""
@@ -150,8 +168,9 @@ class Measures:
             return 0, at
         value, end = number
         minutes = round(value * 60) if value < 1 else int(value)
+        is_span = at > 0 and text.words[at - 1] in self._span_words
         for words, sign in self._past_words:
-            if text.words[end] in words and 0 < minutes < 60:
+            if text.words[end] in words and 0 < minutes < 60 and not is_span:
                 return sign * minutes, end + 1
         return 0, at
 

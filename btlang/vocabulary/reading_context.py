@@ -192,7 +192,11 @@ class ReadingContext:
         if value is None or kind not in WORLD or text.words[value[1]] not in self.modifiers:
             return  # as nearly always
         end = value[1]
-        described = _description(value[0])
+        described, of = _description(value[0]), self.values.modifiers.relation(kind, text, end)
+        if of is not None and of[0] == "off" and self.pronouns.get(text.words[of[1]]) == [PERSON]:
+            whom = (("off", self.latest.get(PERSON, "")),)  # `take the cup from him`
+            if described is None or whom[0][1]:
+                yield self.described(kind, described[0], (*described[1], *whom)) if described else value[0], of[1] + 1
         if described is None:
             return
         how, parts = described
@@ -206,14 +210,14 @@ class ReadingContext:
             if text.words[at] in self.values.pronoun_words and any(part != "off" for part, _ in more):
                 continue  # `put it on the table` isn't about what is on the table
             if self.values.likenesses.may_say(kind, parts, more):
-                yield self._described(kind, how, (*parts, *more)), last
+                yield self.described(kind, how, (*parts, *more)), last
 
     def inside(self, kind: str, written: str, place: str) -> str:
         """What a value is in a place, which may be a reference; "" where it can't be described so."""
         how, parts = _description(written) or ("", ())
         more = (("inside", place),)
         return (
-            self._described(kind, how, (*parts, *more))
+            self.described(kind, how, (*parts, *more))
             if how and self.values.likenesses.may_say(kind, parts, more)
             else ""
         )
@@ -237,10 +241,11 @@ class ReadingContext:
         for parts, start in self.values.modifiers.before(text, at, names):
             named = find(names(kind), text.words, start)
             if named is not None and self.values.likenesses.may_say(kind, (), parts):
-                best = self._described(kind, "nearest", (*parts, (NAME, named[0]))) if parts else named[0], named[1]
+                best = self.described(kind, "nearest", (*parts, (NAME, named[0]))) if parts else named[0], named[1]
         return best
 
-    def _described(self, kind: str, how: str, parts: Parts) -> str:
+    def described(self, kind: str, how: str, parts: Parts) -> str:
+        """The choice of a name that has these parts."""
         return Choice(how, kind, self.keys.get(kind, kind), self._settled(kind, tuple(sorted(parts)))).text
 
     def _settled(self, kind: str, parts: Parts) -> Parts:
@@ -351,7 +356,7 @@ class ReadingContext:
         chosen = self.choice(text, at, kind)
         if chosen is None or not is_one(chosen[0].how):
             return None
-        choice = self._described(kind, chosen[0].how, chosen[0].parts)
+        choice = self.described(kind, chosen[0].how, chosen[0].parts)
         return choice if self.values.listed(kind) or self.known is None else "", chosen[1]
 
     def _said_again(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
@@ -370,15 +375,6 @@ class ReadingContext:
         latest = self.latest.get(kind, "")
         return kind in self.listed or (kind == OBJECT and latest[:1] not in ("", "{") and not latest.endswith("s"))
 
-    def _another(self, kind: str, text: Words, end: int) -> tuple[str, int] | None:
-        """What `one` alone is: a thing of the kind of the latest one, or the thing itself where it has no kind."""
-        latest, behind = self.latest.get(kind, "{"), text.words[end]
-        goes_on = behind in self.modifiers or not behind[0].isalpha() or behind in self.joiners
-        if latest[:1] == "{" or not goes_on:
-            return None
-        of = self.values.likenesses.kind_of(kind, latest)
-        return self._described(kind, "nearest", (("kind", of),)) if of else latest, end
-
     def _referred(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
         """What a pronoun stands for."""
         word, end = find(self.values.pronoun_words, text.words, at) or ("", at)
@@ -387,7 +383,7 @@ class ReadingContext:
         if not is_one and _OTHER_SORT.get(kind) in types:  # `avoid the lab while Bob is in it`, `don't go in there`
             is_one = self.latest.get(ZONE, "") == self.latest.get(PLACE, "")
         if is_one and word in self.values.ones:
-            return self._another(kind, text, end)
+            return self.values.antecedents.another(self, kind, text, end)
         if kind == PERSON and word in self.values.plural_pronouns and self._are_things(types):
             return None  # `if Alice is near, take the cups to the lab, otherwise take them to the hall`
         if is_one and word in self.values.plural_pronouns and self._stands_for_several(kind):

@@ -16,7 +16,7 @@ from btlang.vocabulary.nouns import Description
 from btlang.vocabulary.pattern import Form, Slot
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.references import choice_of, is_related
-from btlang.vocabulary.value_type import OBJECT, TEXT, WORLD, ZONE, ValueType
+from btlang.vocabulary.value_type import KINDS, OBJECT, TEXT, WORLD, ZONE, ValueType
 from btlang.vocabulary.values import Values
 from btlang.vocabulary.verbs import fill, is_no_way
 from btlang.vocabulary.word_tree import END, NO_WORDS, SLOTS, VERBS
@@ -107,8 +107,9 @@ def longest(
     lists: bool = True,
     found: tuple[SlotValue, ...] = (),
 ) -> Match | None:
-    """The longest phrase at a word; where two are equally long, the one with words in place of slots, or with a name in
-    place of a text. A value that can be of any type is one of the type that the vocabulary has first.
+    """The longest phrase at a word; where two are equally long, the one with a kind of the world, then the one with
+    words in place of slots, or with a name in place of a text. A value that can be of any type is one of the type that
+    the vocabulary has first.
 
     `found` are the values that have led to the root. A slot of an entry also takes a list of values, unless `lists`
     is False, but not that of a second object: a thing goes into one other thing. It ends before a phrase, also
@@ -128,7 +129,9 @@ def longest(
     while True:
         while node is not None:
             word = words[i]
-            if END in node and (i > best_last or best is None):
+            if END in node and (
+                i > best_last or best is None or (i == best_last and _has_kinds(found) > _has_kinds(best_values))
+            ):
                 meaning: Meaning = node[END]
                 if meaning.entry is not None or all(_may_be_listed(value, meaning.role) for value in found):
                     best, best_last, best_values = meaning, i, found
@@ -185,6 +188,11 @@ def longest(
         if match is not None and match.last > best_last:
             return match
     return Match(best, best_last, best_values) if best is not None else None
+
+
+def _has_kinds(values: Iterable[SlotValue]) -> bool:
+    """Whether values say a kind of the world: where it has guests, `count the guests` counts no others."""
+    return any(value.type == KINDS for value in values)
 
 
 def _may_be_listed(value: SlotValue, role: str) -> bool:

@@ -14,6 +14,8 @@ OBJECT = "object"
 DOOR = "door"
 PERSON = "person"
 ZONE = "zone"
+KINDS = "kinds"
+"""A kind of what a world has, in the plural: `cups`."""
 WORLD = (PLACE, PERSON, OBJECT, ZONE, DOOR)
 """The types of names that have a place: robots know where each one is."""
 

@@ -38,6 +38,7 @@ def in_one_line(mission: btlang.Mission) -> str:
         *rows("replies.txt"),
         *rows("times.txt"),
         *rows("waits.txt"),
+        *rows("counts.txt"),
     ],
     ids=lambda text: text,
 )

@@ -14,6 +14,11 @@ from tests.ros.client import check_nodes
 from tests.ros.processes import LONG, Command
 
 RUNS = amount(2, 20)
+LOST = 1
+"""The segments that Fast DDS may leave: once in a thousand ends a thread of its own holds one for a moment too long.
+
+A node that isn't destroyed would leave one in each run.
+"""
 SHARED = {"FASTDDS_BUILTIN_TRANSPORTS": None}
 """As Fast DDS is by default: with shared memory."""
 
@@ -50,4 +55,5 @@ def test_missions_in_a_row(start_sim: Callable[..., Command], domain: int, tmp_p
     check_nodes(domain, "btlang_sim")
     assert sim.end() == 130
     check_nodes(domain)
-    assert [file for segment in used for file in (segment, f"{segment}_el") if Path(file).exists()] == []
+    left = [segment for segment in used if Path(segment).exists() or Path(f"{segment}_el").exists()]
+    assert len(left) <= LOST, left

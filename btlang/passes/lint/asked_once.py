@@ -44,9 +44,13 @@ def find_asked_once(compilation: Compilation) -> Iterator[Diagnostic]:
                 before.update((id(item), (node.items, at)) for at, item in enumerate(node.items))
             if type(node) is ast.If:
                 yield from _too_early(node, vocabulary)
-            if type(node) is ast.If and not node.negated and node.otherwise is None:
+            if type(node) is ast.If and node.otherwise is not None:
+                yield from _warn_of_otherwise(node, vocabulary)
+            elif type(node) is ast.If and not node.negated:
                 items, at = before.get(id(node), ((), 0))
                 sentence = _sentence_before(items, at)
+                if sentence and _is_awaited(node, sentence[-1]):
+                    continue
                 joins_rule = at > 0 and isinstance(items[at - 1], ast.Whenever) and "\n" not in node.span.text
                 if joins_rule or _is_statement(node, vocabulary):
                     is_first = not sentence and at + 1 < len(items)
@@ -92,6 +96,10 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
         advice = f"All rounds are over by then. To do it in each round, write: {each}"
         yield _with_reading(node, words, advice, whole, each)
         return
+    if isinstance(timed, ast.WaitTime) and not _SENTENCE_END.search(
+        node.span.source.text, timed.span.end, node.span.start
+    ):
+        return  # `at 6 pm, if C, A`
     is_timed = isinstance(timed, ast.UntilTime | ast.For | ast.WaitTime)
     phrases = [each for item in before for each in ast.parents_first(item) if isinstance(each, ast.Phrase)]
     entries = [each.entry for each in phrases]  # `turn left until bumped` has asked
@@ -106,8 +114,9 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
     is_seen = isinstance(asked, ast.Phrase) and asked.entry.id in _IN_VIEW and _is_tour(journeys)
     if is_timed or is_driving or (is_seen and is_front):
         each = f"{vocabulary.word('whenever')} {node.span.text[len(words.split(maxsplit=1)[0]) :].lstrip()}"
+        place, each = _as_sentence(node, each, vocabulary)
         advice = f"'{last}' is over by then. To do it {'meanwhile' if is_timed else 'on the way'}, write: {each}"
-        yield _with_reading(node, words, advice, node.span, each)
+        yield _with_reading(node, words, advice, place, each)
     elif isinstance(asked, ast.Phrase) and (
         any(_leads_through(journey, asked) for journey in journeys)
         or (
@@ -117,6 +126,36 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
     ):
         advice = f"'{last}' comes first, and fails if it can't be done. What decides about it stands before it."
         yield diagnostic("BT068", node.span, words=words, advice=advice)
+
+
+def _warn_of_otherwise(node: ast.If, vocabulary: Lexicon) -> Iterator[Diagnostic]:
+    """Report `when the battery is low, A. Otherwise B`: it isn't asked again while B is done."""
+    word, body, otherwise = node.span.text.split(maxsplit=1)[0], node.body.span, node.otherwise
+    is_front = node.condition.span.end <= body.start and otherwise is not None and body.end <= otherwise.span.start
+    if otherwise is None or not is_front or word.lower() not in vocabulary.asked_once or _is_answered(node):
+        return
+    condition, rest = node.condition.span.text, otherwise.span.text
+    each = f"{vocabulary.word('whenever')} {condition}, {body.text}. {rest[:1].upper()}{rest[1:]}"
+    yield _with_reading(node, f"{word} {condition}", f"To do it each time, write: {each}", node.span, each)
+
+
+def _as_sentence(node: ast.If, rule: str, vocabulary: Lexicon) -> tuple[Span, str]:
+    """Return the place and the words of what is said before in its sentence and a rule, which begins a sentence."""
+    source, place = node.span.source, node.span
+    ends = [found.end() for found in _SENTENCE_END.finditer(source.text, 0, place.start)]
+    first = max(ends, default=0)
+    done = source.text[first : place.start].rstrip(" ,").split()
+    while done and done[-1].lower().strip(",") in vocabulary.joining:
+        done.pop()
+    if not done:
+        return place, rule
+    place = Span(source, place.start - len(source.text[first : place.start].lstrip()), place.end)
+    return place, f"{' '.join(done).rstrip(',')}. {rule[:1].upper()}{rule[1:]}"
+
+
+def _is_awaited(node: ast.If, before: ast.Ast) -> bool:
+    """Return whether what stands before waits for the condition, by the same words: `wait 5 min. As soon as C, A`."""
+    return any(each.span == node.condition.span for each in ast.parents_first(before))
 
 
 def _is_tour(journeys: Sequence[ast.Phrase]) -> bool:
@@ -245,12 +284,13 @@ def _with_reading(node: ast.If, words: str, advice: str, place: Span, fixed: str
     return problem.replace(readings=((place, fixed),))  # type: ignore[no-any-return]
 
 
-def _asked_once(node: ast.If, words: str, other: str, vocabulary: Lexicon) -> Diagnostic:
+def _asked_once(node: ast.If, words: str, other: str, vocabulary: Lexicon, before: ast.Ast | None = None) -> Diagnostic:
     """Make BT068 with the words that ask, and the same with others in front that wait for it, or watch for it."""
     once, each = (other.replace("{}", vocabulary.word(role)) for role in ("as_soon_as", "whenever"))
+    place, each = _as_sentence(node, each, vocabulary)
     advice, help = f"To wait until it is true, write: {once}", f"To do it each time, write: {each}"
     problem = diagnostic("BT068", node.span, words=words, advice=advice, help=help)
-    return problem.replace(readings=((node.span, once), (node.span, each)))  # type: ignore[no-any-return]
+    return problem.replace(readings=((node.span, once), (place, each)))  # type: ignore[no-any-return]
 
 
 def _is_answered(node: ast.If) -> bool:

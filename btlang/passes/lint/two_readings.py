@@ -20,6 +20,7 @@ from __future__ import annotations
 import re
 from bisect import bisect
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
@@ -34,10 +35,12 @@ from btlang.passes.lint.other_readings import (
     find_in_chain,
     sort_by_place,
 )
+from btlang.text.formatting import joined
 from btlang.text.source import Source, Span
 from btlang.tree import ast
+from btlang.tree.sums import COUNTING
 from btlang.vocabulary.capabilities import MOVES
-from btlang.vocabulary.value_type import PERSON
+from btlang.vocabulary.value_type import PERSON, PLACE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -186,8 +189,10 @@ def find_rules_at_goals(compilation: Compilation) -> Iterator[Diagnostic]:
     if rule is None or not isinstance(journey, ast.Phrase) or rule.span.start < journey.span.start:
         return
     asked = rule.condition
-    is_about_people = isinstance(asked, ast.Phrase) and _is_about_people(asked.entry, vocabulary)
-    if MOVES not in journey.entry.resources or not is_about_people:
+    if MOVES not in journey.entry.resources or not isinstance(asked, ast.Phrase):
+        return
+    is_about_goal = not _places_of(asked).isdisjoint(_places_of(journey))
+    if not (is_about_goal or _is_about_people(asked.entry, vocabulary)):
         return
     doing, condition, said = rule.body.span, asked.span, rule.span.text
     is_behind = doing.start < condition.start
@@ -201,6 +206,30 @@ def find_rules_at_goals(compilation: Compilation) -> Iterator[Diagnostic]:
     other = f"{journey.span.text}, {vocabulary.word('then')} {vocabulary.word('wait_forever')}. {said}"
     problem = diagnostic("BT050", whole, taken=taken, fixed=taken, other=other)
     yield problem.replace(readings=((whole, taken), (whole, other)))
+
+
+def find_counts_behind_lists(compilation: Compilation) -> Iterator[Diagnostic]:
+    """Report `go through the lab and the hall and count the people`: in each, or only in the last."""
+    word, joints = compilation.vocabulary.word, compilation.vocabulary.roles["and"]
+    for body in ast.bodies(compilation.mission):
+        for node in compilation.syntax(body):
+            for left, right in pairwise(ast.parts(node)) if isinstance(node, ast.Chain) else ():
+                goals = [sorted(_places_of(each)) for each in ast.parts(left) if isinstance(each, ast.Phrase)]
+                counts = isinstance(right, ast.Phrase) and right.entry.id in COUNTING and not _places_of(right)
+                if not (ast.is_list(left) and counts and all(goals)):
+                    continue
+                if left.span.source.text[left.span.end : right.span.start].strip(" ,").lower() not in joints:
+                    continue
+                whole = Span(left.span.source, left.span.start, right.span.end)
+                taken = f"{left.span.text}, {word('then')} {right.span.text}"
+                other = f"{right.span.text} in {joined([goal for goal, *_ in goals], word('and'))}"
+                problem = diagnostic("BT050", whole, taken=taken, fixed=taken, other=other)
+                yield problem.replace(readings=((whole, taken), (whole, other)))
+
+
+def _places_of(phrase: ast.Phrase) -> set[str]:
+    """Return the names of places that a command or condition has."""
+    return {text for name, text in phrase.arguments if phrase.entry.slot(name).type == PLACE}
 
 
 def find_lasting_reactions(compilation: Compilation) -> Iterator[Diagnostic]:

@@ -38,6 +38,7 @@ if TYPE_CHECKING:
 _LOOPS = (ast.Repeat, ast.Retry, ast.Every, ast.While)
 _KEEP_ASKING = 'keep asking Alice "Tea?" until she says yes'
 _COUNTED_AGAIN = "every 10 min, count the people. As soon as there are more than 3, wave"
+_SIGHTS = ("SeesPerson", "SeesObject")
 _COUNTED = "count the people. If there are more than 3, wave"
 _ENDLESS, _PICK_UP = "-1", "PickUp"
 _PACES = ("every", "every_day", "weekly", "on_days", "at", "until_time")
@@ -195,22 +196,30 @@ def find_ended_rounds(compilation: Compilation) -> Iterator[Diagnostic]:
 
 
 def find_distant_questions(compilation: Compilation) -> Iterator[Diagnostic]:
-    """Report a question to somebody by name before whom nothing moves the robot, or asks where they are.
+    """Report a question to somebody by name, or at a place, before which nothing moves the robot or asks about them.
 
+    The same for `if you see Alice in the lab`: the robot looks from where it is.
     That it drives to a thing to take it brings it to nobody.
     """
     body, vocabulary = compilation.mission.body, compilation.vocabulary
-    phrases = _phrases(compilation.syntax(body)) if body is not None else []
-    if all(each.entry.id != ASK for each in phrases):
+    nodes = compilation.syntax(body) if body is not None else []
+    phrases = _phrases(nodes)
+    if all(each.entry.id not in (ASK, *_SIGHTS) for each in phrases):
         return  # as nearly always
+    sights = {id(node.condition) for node in nodes if isinstance(node, ast.If)}
     for phrase in sorted(phrases, key=lambda each: each.span.start):
         named = [text for name, text in phrase.arguments if phrase.entry.slot(name).type == PERSON]
-        if phrase.entry.id == ASK and named and named[0] in vocabulary.values.listed(PERSON):
+        choice = choice_of(named[0]) if named else None
+        parts = dict(choice.parts) if choice is not None else {}
+        there = next((parts[relation] for relation in ("at", "inside") if relation in parts), "")
+        goal = there or (named[0] if named and named[0] in vocabulary.values.listed(PERSON) else "")
+        looks = there != "" and phrase.entry.id in _SIGHTS and id(phrase) in sights
+        if (phrase.entry.id == ASK or looks) and goal and goal[:1] != "{":
             words = phrase.span.text
-            journey = " ".join((*vocabulary.asking["journey"], named[0], vocabulary.word("then")))
+            journey = " ".join((*vocabulary.asking["journey"], goal, vocabulary.word("then")))
             is_verb = words.split()[0].lower() in asking_verbs(vocabulary)  # but not `keep asking Bob`
             fixed = f"{journey} {words[:1].lower()}{words[1:]}" if is_verb else f"{journey} ..."
-            yield diagnostic("BT149", phrase.span, words=words, person=named[0], fixed=fixed)
+            yield diagnostic("BT149", phrase.span, words=words, person=goal, fixed=fixed)
             return
         is_at_thing = {phrase.entry.slot(name).type for name, _ in phrase.arguments} == {OBJECT}
         leads = MOVES in phrase.entry.resources and not (is_at_thing or phrase.entry.first)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain
 
 Parts = tuple[tuple[str, str], ...]
@@ -11,7 +11,7 @@ SPEAKER = "me"
 
 
 def of_thing(
-    kind: str,
+    kinds: Iterable[str],
     color: str,
     size: str,
     states: tuple[str, ...],
@@ -23,17 +23,23 @@ def of_thing(
     """Return the parts by which an object or a place can be described, in lower case except for its owner."""
     several = (*(("state", state) for state in states), *(("use", use) for use in uses))
     pieces = (("part", text) for text in chain.from_iterable(map(_with_shorter, having)))
-    named = [("color", _spelt(color)), ("kind", kind), ("size", size), ("content", content), *several, *pieces]
+    of_kinds = (("kind", kind) for kind in kinds)
+    named = [("color", _spelt(color)), *of_kinds, ("size", size), ("content", content), *several, *pieces]
     return (*((name, text.lower()) for name, text in named if text), *([("owner", owner)] if owner else []))
 
 
-def head_of(name: str) -> str:
-    """Return the kind in a name of several words: `parcel` of "big parcel", `room` of "room 1"; else ""."""
-    words = name.split()
-    if len(words) < 2:
-        return ""
-    head = words[-1] if words[-1].isalpha() else words[-2]  # before a number
-    return head if head.isalpha() else ""
+def kinds_of(name: str, kind: str) -> tuple[str, ...]:
+    """Return the kinds that a name of several words says, and the declared one last: `parcel` of "big parcel", `room`
+    and `meeting room` of "meeting room 1".
+    """
+    words = name.lower().split()
+    named = words if words[-1:] and words[-1].isalpha() else words[:-1]
+    heads = named[-1:] if named and named[-1].isalpha() and len(words) > 1 else []
+    if heads and named is not words:
+        heads.append(" ".join(named))
+    return tuple(dict.fromkeys(each for each in (*heads, kind.lower()) if each and each != kind.lower())) + (
+        (kind.lower(),) if kind else ()
+    )
 
 
 def of_person(wears: tuple[str, ...], gesture: str) -> Parts:

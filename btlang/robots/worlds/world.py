@@ -7,7 +7,7 @@ from itertools import pairwise
 from random import Random
 
 from btlang.robots.geometry import Point, Pose, Segment, contains
-from btlang.robots.worlds.likeness import Parts, head_of, of_person, of_thing, wears
+from btlang.robots.worlds.likeness import Parts, kinds_of, of_person, of_thing, wears
 from btlang.support.record import Record
 from btlang.text.time_of_day import DAY, USUAL_START
 from btlang.vocabulary.references import HOME, PARTS
@@ -76,7 +76,7 @@ class Place(Record):
     @property
     def parts(self) -> Parts:
         """The parts that it can be described by."""
-        return of_thing(self.kind or head_of(self.name), self.color, self.sized, self.state, self.owner)
+        return of_thing(kinds_of(self.name, self.kind), self.color, self.sized, self.state, self.owner)
 
 
 class Thing(Record):
@@ -124,8 +124,8 @@ class WorldObject(Thing):
     @property
     def parts(self) -> Parts:
         """The parts that it can be described by."""
-        kind = self.kind or head_of(self.name)
-        return of_thing(kind, self.color, self.sized, self.state, self.owner, self.uses, self.content, self.having)
+        kinds = kinds_of(self.name, self.kind)
+        return of_thing(kinds, self.color, self.sized, self.state, self.owner, self.uses, self.content, self.having)
 
 
 class Stop(Record):

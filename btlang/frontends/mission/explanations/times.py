@@ -60,12 +60,19 @@ def explain_time(text: Words, at: int, wanted: bool, vocabulary: Lexicon) -> Dia
 
 
 def assumed_times(text: Words, values: Sequence[SlotValue]) -> Iterator[Diagnostic]:
-    """BT140 for each time of which only what stands before says whether it is in the morning."""
-    firsts = (at for value in values if value.type == _TIME for at in range(value.first, value.last))
-    for at in (at for at in firsts if at in text.assumed):
-        time, last, before = text.assumed[at]
-        span = text.span(at, last)
-        yield diagnostic("BT140", span, words=span.text, time=time, before=before.text)
+    """BT140 for each time of which only what stands beside it says whether it is in the morning."""
+    for value in values:
+        if value.type == _TIME:
+            yield from assumed_between(text, value.first, value.last)
+
+
+def assumed_between(text: Words, first: int, last: int) -> Iterator[Diagnostic]:
+    """The same for the times among some words."""
+    for at in (at for at in range(first, last) if at in text.assumed):
+        time, end, beside = text.assumed[at]
+        span = text.span(at, end)
+        which = "the next such time after" if beside.start < span.start else "the last such time before"
+        yield diagnostic("BT140", span, words=span.text, time=time, which=which, before=beside.text)
 
 
 def without_hour(text: Words, at: int, end: int, vocabulary: Lexicon) -> Diagnostic | None:

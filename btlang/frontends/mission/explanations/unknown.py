@@ -41,6 +41,7 @@ from btlang.vocabulary.value_type import OBJECT, PLACE, WORLD, ValueType, with_u
 from btlang.vocabulary.verbs import canonical
 from btlang.vocabulary.word_tree import SLOTS, find
 
+_BEFORE_TIMES = ("until", "wait_until", "before", "after")
 _LIST = "list of names"
 """What a word in the plural needs before it."""
 _NOT_A_VALUE = frozenset((END_OF_TEXT, END_OF_STATEMENT, ",", ":", "(", ")"))
@@ -82,7 +83,7 @@ def explain_unknown(
         return untaken
     if misfits:
         return _misfit(text, start, end, misfits, vocabulary, context, definitions)
-    time = explain_time(text, at, False, vocabulary)
+    time = explain_time(text, at, bool(before) and before[-1].kind in _BEFORE_TIMES, vocabulary)
     if time is not None:
         return time
     number = vocabulary.values.number(text, at)

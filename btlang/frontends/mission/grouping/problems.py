@@ -168,4 +168,6 @@ def with_blanks(scan: Scan, token: Token) -> Span:
 def found_words(scan: Scan, token: Token) -> str:
     if token.kind in _FOUND:
         return _FOUND[token.kind]
-    return "the mission ends" if token.kind in ENDS else f"'{scan.words(token)}' comes next"
+    if token.kind in ENDS:
+        return "the mission ends"
+    return f"'{scan.words(token)}' comes next" if scan.words(token) else "the sentence ends"

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import Called, Listed, Token
+from btlang.frontends.mission.tokens.silent_words import BEGINS
 from btlang.frontends.mission.tokens.told_words import ToldWords
+from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of
 from btlang.text.words import Words
 from btlang.tree.answers import ASK
 from btlang.vocabulary.entry import RECIPIENT, Entry
-from btlang.vocabulary.match import SlotValue
+from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE, ZONE
@@ -22,6 +26,7 @@ _MATTER = "begins what it is about, but not what to say"
 _PERSON = "is a person, and the question is missing"
 _MEASURES = frozenset(("count", "at_most", "up_to_times", "tries", "within", "for", "up_to", "every"))
 _DONE = ("command", "at", "wait", "wait_until", "wait_forever")
+_BEFORE_TIME = frozenset((*BEGINS, "and"))
 _BEHIND = ("politeness", "then", "and", "unless")
 
 
@@ -34,6 +39,41 @@ class AddressedTexts(ToldWords):
             return True
         match = self._phrase(at)
         return match is not None and match.meaning.role in _BEHIND
+
+    @cached_property
+    def _addressing(self) -> frozenset[str]:
+        """The verbs behind which a person is told or asked something."""
+        entries = (self._vocabulary.entry(id) for id in (TELL, ASK))
+        verbs = (phrase.split()[0] for entry in entries if entry is not None for phrase in entry.phrases)
+        return frozenset((*verbs, *self._vocabulary.asking["reminding"]))
+
+    def with_time(self, match: Match | None, at: int) -> Match | None:
+        """The phrase at a word; `remind Bob at 3 pm to rest` is `at 3 pm, remind Bob to rest`."""
+        text = self._text
+        if text.words[at] not in self._addressing or (self._tokens and self._tokens[-1].kind not in _BEFORE_TIME):
+            return match  # as nearly always
+        person = self._context.read(PERSON, text, at + 1)
+        times = self._times(person[1]) if person is not None else []
+        if person is None or not times:
+            return match
+        last = times[-1].last
+        places = [*range(at, person[1]), *rest_of(text, last)]
+        found = match_of(text, places, {}, (self._vocabulary.trie,), self._context)
+        entry = found.meaning.entry if found is not None else None
+        if found is None or entry is None or entry.id not in (TELL, ASK) or found.last <= person[1] - at:
+            return match
+        said = ";".join(text for time in times for text in time.values[0].texts)
+        self._tokens.append(Token("at", text.starts[person[1]], text.ends[last - 1], said))
+        return relocated(found, places)
+
+    def _times(self, at: int) -> list[Match]:
+        """The times of day at a word: `at 3 pm and again at 4 pm`."""
+        found, words, roles = list[Match](), self._text.words, self._vocabulary.roles
+        while (time := self._phrase(at)) is not None and time.meaning.role == "at":
+            found.append(time)
+            at = time.last + 1 if words[time.last] in roles["and"] else time.last
+            at += words[at] in roles["again"]
+        return found
 
     def _behind_manner(self, at: int) -> int:
         """Where to go on behind words that say nothing, which may end what is said: `right away`."""

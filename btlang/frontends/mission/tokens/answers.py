@@ -7,7 +7,7 @@ from functools import cached_property
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import BEFORE_CONDITIONS, JOINTS, Called, Listed, Token, run_start, statement_start
 from btlang.frontends.mission.tokens.addressed_texts import AddressedTexts
-from btlang.frontends.mission.tokens.sentence_reader import is_question, latest_question
+from btlang.frontends.mission.tokens.sentence_reader import is_answer, is_question, latest_question
 from btlang.frontends.mission.tokens.silent_words import begins
 from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of
 from btlang.tree.answers import ABOUT_ANSWERS, ANSWERED, ASK, EXAMPLE, OF_WHICH, UNANSWERED, asking_verbs
@@ -52,10 +52,8 @@ class Answers(AddressedTexts):
         place, (name, end) = named
         if name != self._asked_person():
             return match
-        pronouns = self._vocabulary.values.pronouns.items()
-        pronoun = next((word for word, kinds in pronouns if kinds == [PERSON]), "")
         places = [*range(at, place + 1), *rest_of(text, end)]
-        found = match_of(text, places, {place - at: pronoun}, (self._vocabulary.trie,), context)
+        found = match_of(text, places, {place - at: self._pronoun}, (self._vocabulary.trie,), context)
         if found is None or found.last <= place - at:
             return match
         entry = found.meaning.entry
@@ -75,7 +73,8 @@ class Answers(AddressedTexts):
             return 0
         start, end = self._text.starts[at], self._text.ends[found[1] - 1]
         if not is_first:
-            if self._text.words[at] not in self._vocabulary.joining:
+            is_listed = self._tokens[-1].kind == "comma" and self._replies_before(behind)
+            if self._text.words[at] not in self._vocabulary.joining and not is_listed:
                 return 0
             del self._tokens[behind:]
             self._tokens.append(Token("and", start, self._text.ends[at]))
@@ -83,6 +82,11 @@ class Answers(AddressedTexts):
         self.note_answerer()
         self._if(Token("condition", start, end, yes), found[0])
         return found[1] + (self._text.words[found[1]] == ",")
+
+    def _replies_before(self, end: int) -> bool:
+        """Whether the statement that ends there depends on a reply: `if they do, A, if they don't, B`."""
+        said = self._tokens[statement_start(self._tokens, end) : end]
+        return len(said) > 1 and said[0].kind == "if" and is_answer(said[1 + (said[1].kind == "not")])
 
     def silence(self, match: Match, at: int) -> int:
         """`..., if she says nothing, A` behind other replies, or with more conditions: as a condition of its own.
@@ -94,7 +98,9 @@ class Answers(AddressedTexts):
             words = text.span(at, last - (text.words[last - 1] == ","))
             problem = diagnostic("BT144", words, words=words.text, problem=OF_WHICH, example=EXAMPLE)
             self._calls.problems.append(problem)
-        is_joined = any(text.words[last] in self._vocabulary.roles[role] for role in ("or", "and"))
+        limit = self._phrase(last)
+        behind = limit.last if limit is not None and limit.meaning.role in _LIMITS else last
+        is_joined = any(text.words[behind] in self._vocabulary.roles[role] for role in ("or", "and"))
         behind = run_start(self._tokens, len(self._tokens), ("comma",))
         is_reply = is_joined if self._question(behind, right_before=True) else self._is_asked(right_before=False)
         if entry is None or not is_reply:
@@ -223,6 +229,26 @@ class Answers(AddressedTexts):
         self.said(asked, at)
         self._tokens.append(asked)
         return found[1]
+
+    def replied(self, at: int) -> int:
+        """`if he doesn't answer or says no`: he says that, too. Returns where to go on, 0 for other words."""
+        before = self._tokens[-2].value if len(self._tokens) > 1 and self._tokens[-1].kind in ("or", "and") else None
+        if not isinstance(before, Called) or before.entry.id != UNANSWERED:
+            return 0
+        places = [at, *rest_of(self._text, at)]
+        found = match_of(self._text, places, {0: self._pronoun}, (self._vocabulary.trie,), self._context)
+        if found is None or found.meaning.role != "condition" or found.meaning.entry is None:
+            return 0
+        match = relocated(found, places)
+        token = self._calls.token(match, at)
+        self.said(token, at)
+        self._tokens.append(token)
+        return match.last
+
+    @cached_property
+    def _pronoun(self) -> str:
+        """A pronoun that stands for people alone: `he`."""
+        return next((word for word, kinds in self._vocabulary.values.pronouns.items() if kinds == [PERSON]), "")
 
     def _silent(self, token: Token, words: str) -> None:
         """Makes `she says nothing` and `she doesn't say anything` the condition that nobody has answered."""

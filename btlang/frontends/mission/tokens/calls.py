@@ -20,14 +20,13 @@ from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.references import ALL, NAMES, SELF, Choice, choice_of, free_key, keys_in, point_ports, renamed
 from btlang.vocabulary.trie import TrieNode, longest
-from btlang.vocabulary.value_type import DOOR, PERSON, PLACE, WORLD, ZONE
+from btlang.vocabulary.value_type import DOOR, KINDS, PERSON, PLACE, WORLD, ZONE
 from btlang.vocabulary.values import key_of
 from btlang.vocabulary.word_tree import find
 
 NEGATED = frozenset(("negated", "negated_twice"))
 """The roles of conditions that say `not` themselves."""
 _ENDS = (END_OF_STATEMENT, END_OF_TEXT, ";", ")")
-_KINDS = "kinds"
 _ODD = ("", "{", "(")  # how texts begin that are no plain values: of unknown names, references, choices and points
 
 
@@ -246,7 +245,8 @@ class Calls:
         place = next((value.text for value in match.values if value.type == PLACE and not value.more), "")
         if not kind or place[:1] in _ODD[1:]:
             return
-        kinds = tuple(("kind", value.text) for value in match.values if value.type == _KINDS)
+        kinds = tuple(("kind", value.text) for value in match.values if value.type == KINDS)
+        kind = PERSON if any(PERSON in self._vocabulary.values.likenesses.types_of(of) for _, of in kinds) else kind
         relation = "at" if kind == PERSON else "inside"
         where = ((relation, place),) if place else (("seen_by", SELF),)
         key = self._context.keys.get(kind, kind)

@@ -6,7 +6,10 @@ from bisect import bisect_left
 from functools import cached_property
 
 from btlang.diagnostics.diagnostic import diagnostic
+from btlang.frontends.mission.explanations.times import assumed_between
 from btlang.frontends.mission.token import (
+    BEFORE_CONDITIONS,
+    IN_CONDITIONS,
     JOINTS,
     KEEP_OUT,
     Called,
@@ -14,6 +17,7 @@ from btlang.frontends.mission.token import (
     Token,
     constraint_of,
     keeps_out,
+    run_start,
     statement_start,
 )
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
@@ -28,6 +32,7 @@ _WEEKDAYS = frozenset(map(str.lower, WEEKDAYS))
 _SIMPLE = frozenset(("command", "name", "wait", "nothing", *JOINTS))
 _TODAY, _DAYTIME = "TodayIs", "TimeOfDay"
 _DAYS, _LATEST = "days", "12:00"
+_BEFORE_HOURS = frozenset(("if", "unless", "while", "whenever", "as_soon_as", "not"))
 
 
 class ClockWords(SentenceReader):
@@ -112,35 +117,78 @@ class ClockWords(SentenceReader):
         self._tokens.append(Token("until_time", text.starts[at], text.ends[at + 1], said.value))
         return at + 2
 
+    def _by_then(self, at: int) -> int:
+        """`if nobody is there by 6 pm, A`: asked at that time."""
+        text, tokens = self._text, self._tokens
+        is_by = text.words[at] in self._vocabulary.asking["by_then"] and tokens[-1:] and tokens[-1].kind == "condition"
+        form = run_start(tokens, len(tokens), IN_CONDITIONS) - 1 if is_by else -1
+        time = self._context.read(_TIME, text, at + 1) if form >= 0 and tokens[form].kind in ("if", "unless") else None
+        if time is None or (form > 0 and tokens[form - 1].kind not in BEGINS):
+            return 0
+        begin = tokens[form].start
+        tokens[form:form] = [Token("at", begin, begin, time[0]), Token("comma", begin, begin)]
+        return time[1]
+
     @cached_property
     def _hour_words(self) -> frozenset[str]:
         """The words with which hours begin, or that leave out days."""
         said = (phrase for role in ("but", "except", "until_time") for phrase in self._vocabulary.roles[role])
-        return frozenset((*self._vocabulary.asking["hours"], *(phrase.split()[0] for phrase in said)))
+        asking = self._vocabulary.asking
+        return frozenset((*asking["hours"], *asking["by_then"], *(phrase.split()[0] for phrase in said)))
 
     def hours(self, at: int) -> int:
         """`never enter the hall after 6 pm`, `... between 10 pm and 6 am`: while it is then."""
         if self._text.words[at] not in self._hour_words:
             return 0  # as nearly always
         tokens, start = self._tokens, self._text.starts[at]
-        if end := self._not_then(at) or self._not_on_days(at) or self._until_then(at):
+        if end := self._not_then(at) or self._not_on_days(at) or self._until_then(at) or self._by_then(at):
             return end
         if not tokens or self._text.words[at] not in self._vocabulary.asking["hours"]:
             return 0
-        if constraint_of(tokens[-1]) is None:
-            return 0
-        match = self._with_front(at, at, "time_is")
-        if match is None or match.meaning.role != "condition":
+        joint = self._joint_of_hours()
+        match = self._with_front(at, at, "time_is") if joint is not None else None
+        if match is None or joint is None or match.meaning.role != "condition":
             return 0
         condition = self._calls.token(match, at)
         condition.kind = "condition"
-        tokens += [Token("while", start, start), condition]
+        if joint == "if":
+            self._doubt_hours(at, match.last)
+        tokens += [Token("and" if joint == "if" else joint, start, start)] if joint else []
+        tokens.append(condition)
+        if joint != "while":
+            return match.last
         said = dict(condition.value.arguments) if isinstance(condition.value, Called) else {}
         if said.get("below", _LATEST) < _LATEST:  # `don't go into the lab before 7 am`, said in the evening
             words = self._text.span(at, match.last)
             until = f"{self._vocabulary.word('until')} {words.text.split(maxsplit=1)[-1]}"
             self._calls.problems.append(diagnostic("BT138", words, words=words.text, fixed=f"... {until}"))
         return match.last
+
+    def _joint_of_hours(self) -> str | None:
+        """How hours go on with what stands before them: as its condition, as one more, or as all of one ("").
+
+        "if" where it isn't clear when they are asked about; None where they say nothing of it.
+        """
+        tokens = self._tokens
+        if constraint_of(tokens[-1]) is not None:
+            return "while"
+        if tokens[-1].kind in _BEFORE_HOURS:
+            return ""
+        form = run_start(tokens, len(tokens), IN_CONDITIONS) - 1
+        if tokens[-1].kind != "condition" or form < 0 or tokens[form].kind not in BEFORE_CONDITIONS:
+            return None
+        return "if" if tokens[form].kind in ("if", "unless") else "and"
+
+    def _doubt_hours(self, at: int, end: int) -> None:
+        """BT151 for `if the door is open after 6 pm, A`: asked at 6 pm, or at any time behind it."""
+        tokens, text, word = self._tokens, self._text, self._vocabulary.word
+        form, last = tokens[run_start(tokens, len(tokens), IN_CONDITIONS) - 1], tokens[-1]
+        whole = text.span(bisect_left(text.starts, form.start), end)
+        asked, condition = (text.source.text[first : last.end] for first in (form.start, last.start))
+        is_so = " ".join((*self._vocabulary.asking["time_is"], text.span(at, end).text))
+        one = f"{word('at')} {text.span(at + 1, end).text}, {asked}, ..."
+        other = f"{word('whenever')} {condition} {word('and')} {is_so}, ..."
+        self._calls.problems.append(diagnostic("BT151", whole, words=whole.text, one=one, other=other))
 
     def _is_singular(self, days: SlotValue) -> bool:
         """Whether days are said by the names that they have, `Friday`: not `Fridays`, `weekdays`."""
@@ -156,6 +204,7 @@ class ClockWords(SentenceReader):
         last = self._context.read(_TIME, self._text, match.last + 1) if joins else None
         if last is None or entry is None:
             return 0
+        self._calls.problems += assumed_between(self._text, at, last[1])
         start, end = self._text.starts[at], self._text.ends[last[1] - 1]
         asked = Token("condition", start, end, Called(entry, _times(match.values[0].text, last[0])))
         if tokens and tokens[-1].kind == "every":
@@ -166,12 +215,14 @@ class ClockWords(SentenceReader):
         first = statement_start(tokens, len(tokens))
         if len(tokens) > first and tokens[-1].kind not in BEGINS:
             return self._within_hours(match, asked, last) if self._is_end(last[1]) else 0
-        if not self._begins_there(last[1]):
+        forbids = self._forbids(last[1])
+        if not (forbids or self._begins_there(last[1])):
             return 0
-        if self._forbids(last[1]):  # `from 8 pm to 10 pm, stay out of the lab`
+        if forbids:  # `from 8 pm to 10 pm, stay out of the lab`
             tokens += [Token("while", start, start), asked, Token("comma", end, end)]
             return self._behind_comma(last[1])
-        lasts = words[at] in self._vocabulary.roles["start_at"] or self._is_repeated(last[1])
+        is_kept_up = words[self._behind_comma(last[1])] in self._vocabulary.asking["kept_up"]
+        lasts = words[at] in self._vocabulary.roles["start_at"] or is_kept_up or self._is_repeated(last[1])
         if not lasts or (tokens and tokens[-1].kind not in BEGINS):
             return 0
         tokens += [  # `from 7 am to 10 am, A`, `between 7 am and 10 am, A every 5 min`: also begun within that time

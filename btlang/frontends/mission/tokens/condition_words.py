@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from btlang.diagnostics.diagnostic import Diagnostic
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.token import Token
 from btlang.text.words import Words
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import TrieNode, longest
+from btlang.vocabulary.value_type import PERSON
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -30,17 +31,36 @@ def with_words_before(
     names: TrieNode,
     context: ReadingContext,
 ) -> tuple[Match | None, Diagnostic | None]:
-    """Words behind `and` or `or` that are no condition, read with those of the one before them in front."""
+    """Words behind `and` or `or` that are no condition, or one of the robot alone, with those of the one before them.
+
+    `if Alice is near or in the lab` is about Alice, as if `in the lab` weren't a condition without her.
+    """
     before = tokens[-2 if tokens[-2].kind != "comma" else -3]
     if before is not origin[0]:
         return None, None
-    if match is not None:  # `not`
+    is_whole = match is not None and match.meaning.role == "condition"
+    if match is not None and not is_whole:  # `not`
         following = (longest(root, text, match.last, context) for root in (vocabulary.trie, names))
         if any(own is not None and own.meaning.role in ("name", "condition", "negated") for own in following):
             return None, None
     from btlang.frontends.mission.tokens.shared_words import continued  # most missions have none
 
-    return continued(*origin[1:], text, at, vocabulary, context) or (None, None)
+    shared, problem = continued(*origin[1:], text, at, vocabulary, context) or (None, None)
+    if match is None or not is_whole:
+        return shared, problem
+    if shared is not None and shared.last >= match.last:
+        return shared, problem
+    return None, _other_subject(origin[2], text, match, at, vocabulary)
+
+
+def _other_subject(before: Match, text: Words, match: Match, at: int, vocabulary: Lexicon) -> Diagnostic | None:
+    """BT150 for `if Alice is near and holding a cup`: who holds it isn't said, and only the robot's own hands count."""
+    is_about_person = any(value.type == PERSON and value.first < at - 2 for value in before.values[:1])
+    if not is_about_person or not text.words[at].endswith(tuple(vocabulary.doing)):
+        return None
+    span = text.span(at, match.last)
+    example = f"you are {span.text}"
+    return diagnostic("BT150", span, words=span.text, reason="it may be said of somebody else", example=example)
 
 
 def check_negation(

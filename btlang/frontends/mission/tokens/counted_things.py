@@ -5,37 +5,65 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.frontends.mission.token import Called, Listed, Token
+from btlang.frontends.mission.token import Called, Listed, Token, arguments_of
 from btlang.text.source import Source, Span
 from btlang.tree.sums import COMPARED, COUNTING
-from btlang.vocabulary.value_type import OBJECT, PERSON
+from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.references import choice_of
+from btlang.vocabulary.value_type import KINDS, OBJECT, PERSON, PLACE
 
-_KINDS, _SORT = "kinds", "counted"
+_SORT = "counted"
 COUNTED = {"CountPeople": PERSON, "CountObjects": OBJECT, "CountKind": OBJECT}
 """What commands count, by their ids."""
+_AT = {PERSON: "PeopleAt", KINDS: "ObjectsAt"}
 
 
-def with_counted_things(tokens: list[Token], source: Source) -> Iterator[Diagnostic]:
-    """Leave out of a comparison what it says that was counted; report it where something else was (BT150)."""
+def with_counted_things(tokens: list[Token], vocabulary: Lexicon, source: Source) -> Iterator[Diagnostic]:
+    """Leave out of a comparison what it says that was counted; report it where something else was (BT150).
+
+    Where nothing was counted, it is asked where the robot has gone: `go to the lab. If there are 3 people there, wave`.
+    """
+    said_of = (token.value for token in tokens if isinstance(token.value, Called))
+    if all(value.entry.id != COMPARED for value in said_of):
+        return  # as nearly always
     last: Called | Listed | None = None
+    goal = ""
+    there = tuple(f" {word}" for word, types in vocabulary.values.pronouns.items() if PLACE in types)
     for token in tokens:
         said = token.value
         if not isinstance(said, Called | Listed):
             continue
+        places = {slot.name for slot in said.entry.slots if slot.type == PLACE}
+        goal = next((text for name, text in arguments_of(said)[-1] if name in places), goal)
         if said.entry.id in COUNTING:
             last = said
         elif said.entry.id == COMPARED and isinstance(said, Called):
-            things = {name: text for name, text in said.arguments if name in (_KINDS, _SORT)}
-            token.value = said.replace(arguments=tuple(each for each in said.arguments if each[0] not in things))
-            if things and last is not None and not _counts(last, things):
-                span = Span(source, token.start, token.end)
+            things = {name: text for name, text in said.arguments if name in (KINDS, _SORT)}
+            compared: Called = said.replace(arguments=tuple(each for each in said.arguments if each[0] not in things))
+            token.value = compared
+            span = Span(source, token.start, token.end)
+            if things and goal and last is None and span.text.lower().endswith(there):
+                token.value = _asked_there(compared, things, goal, vocabulary)
+            elif things and last is not None and not _counts(last, things):
                 reason = "what was counted last is something else"
                 example = f"count the {span.text.split()[-1]}. If {span.text}, wave"
                 yield diagnostic("BT150", span, words=span.text, reason=reason, example=example)
 
 
+def _asked_there(said: Called, things: dict[str, str], goal: str, vocabulary: Lexicon) -> Called:
+    """Compare how many people or things of a kind there are at a place, in place of what was counted."""
+    entry = vocabulary.entry(_AT.get(KINDS if KINDS in things else things[_SORT], ""))
+    if entry is None:
+        return said
+    choice = choice_of(goal)
+    given = {**dict(said.arguments), **things}
+    arguments = ((slot.name, given[slot.name]) for slot in entry.slots if slot.name in given)
+    where = next(slot.name for slot in entry.slots if slot.type == PLACE)
+    return Called(entry, (*arguments, (where, goal if choice is None else f"{{{choice.key}}}")))
+
+
 def _counts(said: Called | Listed, things: dict[str, str]) -> bool:
     """Whether a command counts things of a kind, or people."""
     first = said.arguments if isinstance(said, Called) else said.arguments[0]
-    counted = {_SORT: COUNTED[said.entry.id], _KINDS: dict(first).get(_KINDS, "")}
+    counted = {_SORT: COUNTED[said.entry.id], KINDS: dict(first).get(KINDS, "")}
     return all(counted[name] == text for name, text in things.items())

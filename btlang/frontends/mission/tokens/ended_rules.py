@@ -8,6 +8,7 @@ stays somewhere waits there until then, or so long: `stay in the kitchen until B
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.token import (
@@ -25,6 +26,7 @@ from btlang.frontends.mission.token import (
     keeps_out,
     run_end,
     run_start,
+    statement_end,
     statement_start,
     texts_of,
 )
@@ -202,7 +204,10 @@ def _what_then(
 
 
 def _say_where(tokens: list[Token], at: int, vocabulary: Lexicon, span: Callable[[int, int], Span]) -> None:
-    """Make `avoid the hall while Bob is there` ask whether he is in the hall, where the robot isn't."""
+    """Make `avoid the hall while Bob is there` ask whether he is in the hall, where the robot isn't.
+
+    The next statement may ask whether he isn't there any more: `Once he's gone, A`.
+    """
     said = tokens[at].value
     zones = texts_of(said) if isinstance(said, Called | Listed) else ()
     there = tuple(f" {word}" for word, types in vocabulary.values.pronouns.items() if PLACE in types)
@@ -216,7 +221,12 @@ def _say_where(tokens: list[Token], at: int, vocabulary: Lexicon, span: Callable
         if place is not None:
             where = (_slot_of(place), zones[0])
             arguments = tuple((*each, where) for each in arguments_of(value))
-            token.value = value.replace(entry=place, arguments=arguments[0] if isinstance(value, Called) else arguments)
+            there_now = value.replace(entry=place, arguments=arguments[0] if isinstance(value, Called) else arguments)
+            behind = run_end(tokens, statement_end(tokens, at), STATEMENT_ENDS)
+            for denial, asked in pairwise(tokens[behind : statement_end(tokens, behind)]):
+                if denial.kind == "not" and asked.value == value:
+                    asked.value = there_now
+            token.value = there_now
 
 
 def journey_to(place: str, goes: Entry) -> Called:

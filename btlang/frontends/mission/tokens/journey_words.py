@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from btlang.frontends.mission.token import JOINTS, RULES, Token, run_start, statement_start
+from btlang.frontends.mission.token import JOINTS, RULES, STATEMENT_ENDS, Called, Token, run_start, statement_start
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.frontends.mission.tokens.settling import STAYS
 from btlang.frontends.mission.tokens.silent_words import BEGINS, begins, begins_item
@@ -10,10 +10,18 @@ from btlang.frontends.mission.tokens.word_matches import match_of, relocated, re
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.language_tables import NOT_ALONE
 from btlang.vocabulary.match import Match, SlotValue
-from btlang.vocabulary.value_type import DOOR, PERSON, PLACE
+from btlang.vocabulary.references import choice_of
+from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE
 from btlang.vocabulary.word_tree import find
 
 COMES, _COMES_BACK, _DURATION = "WaitForPerson", "ComeBack", "duration"
+_TAKES, _FROM = "Take", ("off", "at", "inside", "on")
+_LOOPED = frozenset(("command", "name", "wait", "every", "count", "repeat", "open", "close", "comma", "and", "then"))
+
+
+def _texts(token: Token) -> list[str]:
+    """The values of a command."""
+    return [text for _, text in token.value.arguments] if isinstance(token.value, Called) else []
 
 
 class JourneyWords(SentenceReader):
@@ -54,6 +62,52 @@ class JourneyWords(SentenceReader):
             return 0
         self._partial.append(journey, at)
         return journey.last
+
+    def stop_after(self, match: Match, at: int) -> int:
+        """`every 30 min, take a picture. Stop after 8 pictures`, `A. After three rounds, B`: so many rounds of it.
+
+        What is counted is a round, or is said in the commands.
+        """
+        tokens, text, end = self._tokens, self._text, match.last + 1
+        last = run_start(tokens, len(tokens), JOINTS | STATEMENT_ENDS | {"stop", "but"})
+        first, noun = statement_start(tokens, last), text.words[match.last]
+        looped = tokens[first:last]
+        if not looped or any(token.kind not in _LOOPED for token in looped):
+            return 0
+        said = text.source.text[looped[0].start : looped[-1].end].lower().split()
+        is_counted = noun in self._vocabulary.asking["rounds"] or not {noun, noun.removesuffix("s")}.isdisjoint(said)
+        paces = [token for token in looped if token.kind in ("every", "count")]
+        commands = [token for token in looped if token.kind not in ("every", "count", "repeat")]
+        commands = commands[commands[:1] != [] and commands[0].kind == "comma" :]
+        is_endless = len(paces) < 2 and all(token.kind == "every" or token.value == "-1" for token in paces)
+        if not (commands and is_counted and is_endless and (self._is_end(end) or text.words[end] == ",")):
+            return 0
+        here, start, stop = looped[0].start, text.starts[at], text.ends[match.last]
+        number = Token("count", start, stop, self._calls.token(match, at).value)
+        if paces and paces[0].kind == "every":
+            made = [paces[0], Token("comma", here, here), *commands, Token("comma", start, start), number]
+        else:
+            front = Token("repeat", here, here), Token("open", here, here)
+            made = [*front, *commands, Token("close", start, start), number]
+        tokens[first:] = [*made, *([] if self._is_end(end) else [Token("semi", stop, stop)])]
+        return end if self._is_end(end) else end + 1
+
+    def _put_back(self, at: int) -> int:
+        """`fetch the cup from the lab. ... Then put it back`: to where it was taken from."""
+        text, entry, asking = self._text, self._vocabulary.entry(_TAKES), self._vocabulary.asking
+        thing = self._context.read(OBJECT, text, at + 1) if text.words[at] in asking["putting"] else None
+        back = find(self._vocabulary.and_back, text.words, thing[1]) if thing is not None else None
+        if entry is None or thing is None or back is None or not self._is_end(back[1]):
+            return 0
+        taken = (choice_of(said) for token in reversed(self._tokens) for said in _texts(token))
+        parts = next((dict(each.parts) for each in taken if each is not None and f"{{{each.key}}}" == thing[0]), {})
+        place = next((parts[relation] for relation in _FROM if relation in parts), "")
+        if not place or place[:1] == "{":
+            return 0
+        said = {OBJECT: thing[0], PLACE: place}
+        arguments = tuple((slot.name, said[slot.type]) for slot in entry.slots if slot.type in said)
+        self._tokens.append(Token("command", text.starts[at], text.ends[back[1] - 1], Called(entry, arguments)))
+        return back[1]
 
     def _back(self, at: int) -> int:
         """`go to the lab and back`: to where the journey before it ended, else to where the mission began."""

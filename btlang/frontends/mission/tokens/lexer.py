@@ -12,6 +12,7 @@ from btlang.frontends.mission.tokens.condition_names import condition_names, set
 from btlang.frontends.mission.tokens.counted_things import with_counted_things
 from btlang.frontends.mission.tokens.ended_rules import with_ends
 from btlang.frontends.mission.tokens.left_out import find_unplaced
+from btlang.frontends.mission.tokens.other_things import with_other_things, with_things_there
 from btlang.frontends.mission.tokens.repeated_statements import (
     with_questions_each_time,
     with_questions_once,
@@ -29,19 +30,22 @@ from btlang.frontends.mission.tokens.rules_behind import (
 from btlang.frontends.mission.tokens.rules_inside import with_rules_inside
 from btlang.frontends.mission.tokens.settling import (
     find_brief_stays,
+    find_unclear_people,
     find_unclear_things,
     turn_branches,
     with_either_end,
     with_rounds,
     with_stays,
+    with_watched_waits,
 )
 from btlang.frontends.mission.tokens.visitors import with_meetings, with_sightings
 from btlang.frontends.mission.tokens.word_reader import WordReader
 from btlang.text.source import Source, Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, split
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.pattern import forms
 from btlang.vocabulary.reading_context import Known, ReadingContext
-from btlang.vocabulary.value_type import OBJECT, PLACE, TEXT, WORLD, ZONE
+from btlang.vocabulary.value_type import DOOR, OBJECT, PLACE, TEXT, WORLD, ZONE
 from btlang.vocabulary.word_tree import find
 
 _MOST_ADJECTIVES = 3
@@ -73,6 +77,7 @@ class Lexer:
         _drop_still(self.text, vocabulary)
         _drop_left(self.text, vocabulary)
         _say_there(self.text, vocabulary)
+        _say_if_so(self.text, vocabulary)
         _say_kind(self.text, vocabulary)
         _drop_commas(self.text, vocabulary)
         _list_ranges(self.text, vocabulary)
@@ -93,13 +98,17 @@ class Lexer:
         turn_branches(self.tokens)
         with_rounds(self.tokens)
         with_either_end(self.tokens)
+        with_watched_waits(self.tokens)
         with_stays(self.tokens, source, vocabulary.asking["standing_verbs"])
         self.problems += find_brief_stays(self.tokens, vocabulary, source) if explain else ()
         self.problems += find_unclear_things(self.tokens, vocabulary, self.text) if explain else ()
+        self.problems += find_unclear_people(self.tokens, vocabulary, self.text) if explain else ()
         self.problems += find_unplaced(self.tokens, vocabulary, source) if explain else ()
         with_meetings(self.tokens, vocabulary)
         with_sightings(self.tokens, vocabulary, source)
-        self.problems += with_counted_things(self.tokens, source)
+        self.problems += with_counted_things(self.tokens, self.vocabulary, source)
+        with_things_there(self.tokens)
+        self.problems += with_other_things(self.tokens, vocabulary, self.text)
         with_rules_behind(self.tokens)
         self.problems += find_counted_rules(self.tokens, source)
         with_checks_apart(self.tokens)
@@ -158,8 +167,14 @@ class Lexer:
 
 
 def _drop_words_of_turns(text: Words, vocabulary: Lexicon) -> None:
-    """Take out what says nothing beside a list, with its commas: `the lab, the hall and the dock, in that order`."""
-    words = text.words
+    """Take out what says nothing beside a list, with its commas: `the lab and the dock, in that order`.
+
+    `either` says nothing at an end: `avoid the lab. Don't go into the hall either`.
+    """
+    words, either = text.words, vocabulary.roles["either"]
+    last = [] if text.distinct.isdisjoint(either) else [at for at in range(1, len(words) - 1) if words[at] in either]
+    for at in (at for at in reversed(last) if words[at + 1][0] in _ENDING):
+        text.drop(at, at + 1)
     if text.distinct.isdisjoint(vocabulary.in_turn):
         return  # as nearly always
     for at in reversed([at for at, word in enumerate(words) if word in vocabulary.in_turn]):
@@ -218,6 +233,24 @@ def _say_there(text: Words, vocabulary: Lexicon) -> None:
         found = find(vocabulary.entering, words, at)
         if found is not None and (words[found[1]][0] in _ENDING or words[found[1]] in vocabulary.joining):
             text.replace(found[1] - 1, [words[found[1] - 1], *there])
+
+
+def _say_if_so(text: Words, vocabulary: Lexicon) -> None:
+    """Put `if it is` for `that is` behind doors, which are as the robot finds them: `close every door that is open`."""
+    words, values, asking = text.words, vocabulary.values, vocabulary.asking
+    if text.distinct.isdisjoint(vocabulary.relatives):
+        return  # as nearly always
+    it = next((word for word, kinds in values.pronouns.items() if DOOR in kinds), "")
+    entries = (vocabulary.entry(id) for id in ("DoorOpen", "DoorClosed"))
+    states = {form[-1] for entry in entries if entry is not None for each in entry.phrases for form in forms(each)}
+    for at in reversed([at for at in range(1, len(words) - 1) if words[at] in vocabulary.relatives]):
+        found = find(vocabulary.relatives, words, at)
+        if found is None or not values.phrases.is_type(DOOR, text, at - 1):
+            continue
+        state = found[1] + (words[found[1]] in asking["still"])
+        if words[state] in states and (words[state + 1][0] in _ENDING or words[state + 1] in vocabulary.joining):
+            text.drop(at + 1, state)
+            text.replace(at, [vocabulary.word("if"), it, asking["asking_be"][0]])
 
 
 def _say_kind(text: Words, vocabulary: Lexicon) -> None:

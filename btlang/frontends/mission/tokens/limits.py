@@ -12,6 +12,7 @@ from btlang.frontends.mission.token import (
     Called,
     Listed,
     Token,
+    drives,
     run_start,
     statement_start,
 )
@@ -21,6 +22,7 @@ from btlang.frontends.mission.tokens.settling import FAILS, MEASURES, STAYS, WOR
 from btlang.frontends.mission.tokens.silent_words import BEGINS
 from btlang.text.source import Span
 from btlang.vocabulary.match import Match
+from btlang.vocabulary.value_type import PERSON, PLACE
 
 _TIME = "duration"
 _LIMITS = ("within", "delay", "for", "held")
@@ -220,6 +222,23 @@ class Limits(GoingOn):
         reason = "it would be done after that has failed"
         self._calls.problems.append(diagnostic("BT152", words, words=words.text, reason=reason, advice=advice))
         return done.last
+
+    def _doubt_place(self, at: int, form: int) -> None:
+        """BT151 for `take the cup to the lab and give it to Bob. If he isn't there, A`: in the lab, or anywhere."""
+        tokens, source, word = self._tokens, self._text.source, self._vocabulary.word
+        there = [word for word, types in self._vocabulary.values.pronouns.items() if PLACE in types]
+        words, given = Span(source, tokens[form].start, tokens[-1].end), tokens[at].value
+        if not isinstance(given, Called) or not words.text.lower().endswith(tuple(f" {word}" for word in there)):
+            return
+        led = [token.value for token in tokens[statement_start(tokens, at) : at] if isinstance(token.value, Called)]
+        places = [text for said in led for name, text in said.arguments if said.entry.slot(name).type == PLACE]
+        person = next((text for name, text in given.arguments if given.entry.slot(name).type == PERSON), "{")
+        if not places or "{" in (person[0], places[-1][0]) or not drives(given):
+            return
+        done = source.text[tokens[at].start : tokens[at].end]
+        one = f"... {word('if')} {person} is in {places[-1]}, {done}, {word('otherwise')} ..."
+        other = f"... {done}. {word(FAILS).capitalize()}, ..."
+        self._calls.problems.append(diagnostic("BT151", words, words=words.text, one=one, other=other))
 
     def _limit(self, command: Token, end: int) -> int:
         """`if he doesn't come within 5 min`: how long a command may take is said behind the words that ask about it."""

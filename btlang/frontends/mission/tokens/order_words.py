@@ -35,6 +35,7 @@ from btlang.vocabulary.match import Match
 from btlang.vocabulary.value_type import OBJECT, PERSON
 from btlang.vocabulary.word_tree import find
 
+_REPEATED = frozenset(("every", "every_day", "whenever"))
 BEFORE_ASIDE = JOINTS | {"otherwise", "or"}
 """Raw kinds behind which words may say that the robot goes on with what it did."""
 
@@ -116,6 +117,7 @@ class OrderWords(ClockWords, JourneyWords, RuleWords):
             or self._journey_of_constraint(at)
             or self._wait_for(at)
             or self._faces(at)
+            or self._put_back(at)
             or self._back(at)
             or (self._partial.add_third(at + 1, None) if text.words[at] in self._vocabulary.asking["subject"] else 0)
         )
@@ -163,8 +165,12 @@ class OrderWords(ClockWords, JourneyWords, RuleWords):
     def says_nothing(self, match: Match, at: int) -> bool:
         """Whether words begin nothing: `say bye when that's done`, `take all cups away, one after the other`.
 
-        `afterwards` says nothing at the end, either.
+        `afterwards` says nothing at the end, either, nor does `each time` where something is done again and again.
         """
+        if match.meaning.role == "whenever":
+            first = statement_start(self._tokens, len(self._tokens))
+            is_repeated = any(token.kind in _REPEATED for token in self._tokens[first:])
+            return is_repeated and (self._is_end(match.last) or self._text.words[match.last] == ",")
         if match.meaning.role == "following":
             is_behind = bool(self._tokens) and self._tokens[-1].kind in ("command", "comma")
             return is_behind and (self._is_end(match.last) or self._text.words[match.last] == ",")

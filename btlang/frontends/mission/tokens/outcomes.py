@@ -136,6 +136,7 @@ class Outcomes(Limits):
                 at, may_ask = self._wait_before(form, asked, end), False
                 form = len(tokens) - 3
             if at is not None and not may_ask and settle(tokens[:form], at):
+                self._doubt_place(at, form)
                 return self._settle(at, form, asked.end, end)
         command = self._before(form)
         somebody = self._vocabulary.negative_subjects

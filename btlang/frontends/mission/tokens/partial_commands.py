@@ -32,8 +32,9 @@ from btlang.vocabulary.entry import RECIPIENT
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import ReadingContext
+from btlang.vocabulary.references import ALL, NAMES, Choice, choice_of
 from btlang.vocabulary.trie import TrieNode, longest
-from btlang.vocabulary.value_type import OBJECT
+from btlang.vocabulary.value_type import OBJECT, PERSON
 
 BEFORE_DOING = frozenset(("before", "after", "while", "until", "never", "followed_by", "meanwhile"))
 """The kinds of tokens behind which a command may have the form of its verb: `after waving`."""
@@ -174,7 +175,10 @@ class PartialCommands:
         read = self._left_out(at)
         if read is None or read[0].last < least:
             return 0
+        people = self._people()
         token, before = self._token_of(read[0], at), said_before(self._tokens)
+        if self._tokens[-1].kind in ("and", "then", "comma"):
+            self._list_people(people)
         is_further = before is not None and self._calls.search_on(before, read[0])
         if is_further is None:
             return 0
@@ -186,6 +190,20 @@ class PartialCommands:
         self._share_recipient(token)
         enlist(self._tokens, token)
         return read[0].last
+
+    def _people(self) -> tuple[str, ...]:
+        """The names of whom `them` stands for."""
+        listed, latest = (choice_of(found.get(PERSON, "")) for found in (self._context.listed, self._context.latest))
+        names = dict(listed.parts).get(NAMES, "") if listed is not None else ""
+        named = self._context.latest.get(PERSON, "") if latest is None else ""
+        return tuple(names.split(";")) if names else (named,) * (named[:1] not in ("", "{"))
+
+    def _list_people(self, before: tuple[str, ...]) -> None:
+        """`give the cup to Alice and the book to Bob and tell them "Tea"`: both of them."""
+        latest, key = self._people()[-1:], self._context.keys.get(PERSON, PERSON)
+        if before and latest and latest[0] not in before:
+            group = Choice(ALL, PERSON, key, ((NAMES, ";".join((*before, *latest))),))
+            self._context.listed[PERSON] = group.text
 
     def add_further(self, before: Token, at: int) -> int:
         """The same command as another one, with words of that left out."""

@@ -18,6 +18,7 @@ from btlang.vocabulary.value_type import OBJECT
 from btlang.vocabulary.word_tree import find
 
 _UNTIL = ("until", "wait_until")
+_COUNTS, _MORE = ("PeopleAt", "ObjectsAt"), {"above", "at_least"}
 _ASKED = tuple([form, "condition", "comma"] for form in (*RULES, "if"))
 
 
@@ -103,8 +104,12 @@ class PartialConditions(PartialCommands):
         form = [token.kind for token in tokens[first : first + 3]]
         if ended is None or tokens[-1].kind not in _UNTIL or form not in _ASKED:
             return 0
+        asked = tokens[first + 1].value
+        counts = asked if isinstance(asked, Called) and asked.entry.id in _COUNTS else None
+        if ended[0] and (counts is None or not dict(counts.arguments).keys() & _MORE):
+            return 0  # `if there are more than 3 people in the lab, wait until there are fewer`
         start, end = self._text.starts[at], self._text.ends[ended[1] - 1]
-        tokens += [Token("not", start, start), Token("condition", start, end, tokens[first + 1].value)]
+        tokens += [Token("not", start, start), Token("condition", start, end, asked)]
         return ended[1]
 
     def _condition(self, found: Match, at: int) -> int:

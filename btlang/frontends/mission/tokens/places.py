@@ -148,11 +148,15 @@ class Places(SentenceReader):
             tokens[at:] = [opening, tokens[at], tokens[last], tokens[-1], closing, *measures]
 
     def placed_before(self, asked: Token) -> None:
-        """`if Bob is in the lab, wait until he leaves`: until he isn't in the lab, wherever the robot looks."""
+        """`if Bob is in the lab, wait until he leaves`: until he isn't in the lab, wherever the robot looks.
+
+        The same behind `avoid the lab while Bob is there`, in the next statement.
+        """
         value, tokens = asked.value, self._tokens
         if not isinstance(value, Called) or value.entry.id != _SEES or tokens[-1:] == [] or tokens[-1].kind != "not":
             return
-        for token in tokens[statement_start(tokens, len(tokens)) :]:
+        here = run_start(tokens, statement_start(tokens, len(tokens)), STATEMENT_ENDS)
+        for token in tokens[statement_start(tokens, here) :]:
             before = token.value
             if token.kind == "condition" and isinstance(before, Called) and before.entry.id == _AT:
                 if {text for _, text in value.arguments} <= {text for _, text in before.arguments}:

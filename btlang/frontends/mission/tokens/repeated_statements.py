@@ -19,6 +19,7 @@ from btlang.frontends.mission.token import (
     Token,
     arguments_of,
     run_end,
+    run_start,
     statement_end,
     statement_start,
 )
@@ -48,6 +49,7 @@ def with_repeats_apart(tokens: list[Token], source: Source) -> Iterator[Diagnost
     for at in reversed([at for at, token in enumerate(tokens) if token.kind in AGAIN and at > 0]):
         if tokens[at - 1].kind == "and" and tokens[at + 1 : at + 2] and tokens[at + 1].kind == "at":
             _at_both(tokens, at)
+            continue
         if tokens[at - 1].kind != "stop":
             continue
         kinds = [token.kind for token in tokens[at : at + 3]]
@@ -104,14 +106,23 @@ def with_questions_once(tokens: list[Token], source: Source) -> Iterator[Diagnos
 
 
 def with_questions_each_time(tokens: list[Token]) -> None:
-    """Make `every hour, ask Bob "Q" until he says yes` into `ask Bob "Q" every hour until he says yes`."""
-    for at in [at for at, token in enumerate(tokens) if token.kind == "every"]:
+    """Make `every hour, ask Bob "Q" until he says yes` into `ask Bob "Q" every hour until he says yes`.
+
+    One that was asked before is asked again only then: `ask Bob "Q". If he says no, every hour ask him again until C`.
+    """
+    for at in reversed([at for at, token in enumerate(tokens) if token.kind == "every"]):
         asked = run_end(tokens, at + 1, ("comma",))
         if [token.kind for token in tokens[asked : asked + 3]] != ["command", *_UNTIL] or not _asks(tokens[asked]):
             continue
         answer = tokens[asked + 2].value
-        if isinstance(answer, Called) and answer.entry.id in ABOUT_ANSWERS:
-            tokens[at : asked + 1] = [tokens[asked], tokens[at]]
+        if not isinstance(answer, Called) or answer.entry.id not in ABOUT_ANSWERS:
+            continue
+        every, question = tokens[at], tokens[asked]
+        before = next((token for token in reversed(tokens[:at]) if _asks(token)), None)
+        is_again = before is not None and before.value == question.value
+        pause = [Token("wait", every.start, every.end, every.value), Token("then", every.end, every.end)]
+        first = at - 2 if is_again and at > 1 and tokens[at - 2] is before else at
+        tokens[first : asked + 1] = [*(pause if is_again and first == at else ()), question, every]
 
 
 def _asks(token: Token) -> bool:
@@ -119,14 +130,21 @@ def _asks(token: Token) -> bool:
 
 
 def _at_both(tokens: list[Token], at: int) -> None:
-    """`A at 6 pm and again at 9 pm`: at both times."""
-    first = statement_start(tokens, at)
-    commands = tokens[first : at - 2]
-    if tokens[at - 2].kind == "at" and commands and all(token.kind in _PLAIN for token in commands):
-        here = tokens[at].start
-        end = Token("close", tokens[at - 2].end, tokens[at - 2].end)
-        tokens[at - 1 : at + 1] = [end, Token("semi", here, here), *_bracketed(commands, tokens[at])]
-        tokens.insert(first, Token("open", tokens[first].start, tokens[first].start))
+    """`A at 6 pm and again at 9 pm`: at both times, with what is joined behind: `..., and B`."""
+    first, end = statement_start(tokens, at), run_start(tokens, statement_end(tokens, at), STATEMENT_ENDS)
+    commands, further = tokens[first : at - 2], tokens[at + 2 : end]
+    if tokens[at - 2].kind != "at" or not commands or any(token.kind not in _PLAIN for token in (*commands, *further)):
+        return
+    if further and further[0].kind not in JOINTS:
+        return
+    begin, here = commands[0].start, tokens[at].start
+    times = tokens[at - 2], tokens[at + 1]
+    said = [*commands, *further]
+    whole = [Token("open", begin, begin), *said, Token("close", said[-1].end, said[-1].end)]
+    tokens[first:end] = [
+        times[0], Token("comma", begin, begin), *whole, Token("semi", here, here), times[1], Token("comma", here, here),
+        *_bracketed(said, tokens[at]),
+    ]  # fmt: skip
 
 
 def with_times_first(tokens: list[Token]) -> None:

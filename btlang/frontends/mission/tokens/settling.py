@@ -28,6 +28,7 @@ from btlang.frontends.mission.token import (
 )
 from btlang.text.source import Source, Span
 from btlang.text.words import Words
+from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import ALL, choice_of
@@ -40,6 +41,7 @@ IMPLIED = "implied"
 """The role of a search that nobody has asked for: `tell me where the cup is`."""
 TURNED = "turned"
 """The role of an `otherwise` behind words about a failure."""
+_ENDS_WHILE = ("until", "while")
 MEASURES = frozenset(("for", "up_to", "within", "count"))
 """What may stand between a command and the words that ask how it went."""
 WAITS = ("wait_until", "wait_for", "wait_up_to")
@@ -152,28 +154,41 @@ def with_rounds(tokens: list[Token]) -> None:
 
 
 def with_either_end(tokens: list[Token]) -> None:
-    """Make `A for 5 min or until C` the same as `for up to 5 min, A until C`, and `wait 5 min or until C` likewise."""
+    """Make `A for 5 min or until C` the same as `for up to 5 min, A until C`, `wait 5 min [or] until C` likewise."""
     at = 0
-    while at + 2 < len(tokens):
+    while at + 1 < len(tokens):
         at += 1
-        if tokens[at].kind != "or" or tokens[at].value is not None or tokens[at + 1].kind != "until":
+        until = at + (tokens[at].kind == "or" and tokens[at].value is None)
+        if until + 1 >= len(tokens) or tokens[until].kind != "until":
             continue
         time, start = tokens[at - 1], tokens[at].start
-        end = at + 2
+        end = until + 1
         while end < len(tokens) and tokens[end].kind in IN_CONDITIONS - {"close"}:
             end += 1
-        if time.kind in ("for", "up_to") and tokens[at - 2].kind in ("command", "name"):
+        if until > at and time.kind in ("for", "up_to") and tokens[at - 2].kind in ("command", "name"):
             said = tokens[at - 2]
             limit = Token("up_to", said.start, said.start, time.value)
             comma, opening = Token("comma", said.start, said.start), Token("open", said.start, said.start)
             closing = Token("close", tokens[end - 1].end, tokens[end - 1].end)
-            tokens[at - 2 : end] = [opening, limit, comma, said, *tokens[at + 1 : end], closing]
+            tokens[at - 2 : end] = [opening, limit, comma, said, *tokens[until:end], closing]
         elif time.kind == "wait":
             time.kind = "wait_up_to"
-            del tokens[at : at + 2]
+            del tokens[at : until + 1]
         elif time.kind == "close" and tokens[at - 2].kind == "wait":  # `wait at the door for 5 min or until C`
             tokens[at - 2].kind = "wait_up_to"
-            tokens[at - 1 : end] = [*tokens[at + 2 : end], Token("close", start, tokens[end - 1].end)]
+            tokens[at - 1 : end] = [*tokens[until + 1 : end], Token("close", start, tokens[end - 1].end)]
+
+
+def with_watched_waits(tokens: list[Token]) -> None:
+    """Let `wait 5 min. As soon as C, A` wait for C as long as that, and do A if C comes true in time."""
+    for at, form in enumerate(tokens):
+        last = run_start(tokens, at, STATEMENT_ENDS) if form.kind == "as_soon_as" else 0
+        if not 0 < last < at or tokens[last - 1].kind != "wait":
+            continue
+        asked = tokens[at + 1 : run_end(tokens, at + 1, IN_CONDITIONS)]
+        if asked:
+            tokens[last - 1].kind, form.kind = "wait_up_to", "if"
+            tokens[last:last] = [Token(each.kind, each.start, each.end, each.value, each.role) for each in asked]
 
 
 def with_stays(tokens: list[Token], source: Source, standing: Container[str]) -> None:
@@ -240,6 +255,40 @@ def find_unclear_things(tokens: Sequence[Token], vocabulary: Lexicon, text: Word
             if pronoun:
                 yield diagnostic("BT151", span, words=pronoun, one=carried, other=asked)
         carried = "" if _is_delivered(value) else thing
+
+
+def find_unclear_people(tokens: Sequence[Token], vocabulary: Lexicon, text: Words) -> Iterator[Diagnostic]:
+    """Report `follow Alice until you see Bob. Tell her "Bye"`: whom the command or its condition is about."""
+    about, asked = "", ""
+    pronouns = {word for word, types in vocabulary.values.pronouns.items() if [*types] == [PERSON]}
+    if text.distinct.isdisjoint(pronouns) or all(token.kind not in _ENDS_WHILE for token in tokens):
+        return
+    for at, token in enumerate(tokens):
+        said = _person_of(token.value) if isinstance(token.value, Called) else ""
+        if not said:
+            continue
+        span = Span(text.source, token.start, token.end)
+        pronoun = next((word for word in span.text.lower().split() if word in pronouns), "")
+        if pronoun and said == asked:
+            yield diagnostic("BT151", span, words=pronoun, one=about, other=asked)
+            asked = ""
+        elif token.kind == "command" and not pronoun:
+            about, asked = said, ""
+        elif token.kind == "condition" and not pronoun and about not in ("", said):
+            form = run_start(tokens, at, IN_CONDITIONS) - 1
+            first = statement_start(tokens, at)
+            ends = form > first and tokens[form].kind in _ENDS_WHILE
+            asked = said if ends and any(_person_of(each.value) == about for each in tokens[first:form]) else ""
+
+
+def _person_of(said: object) -> str:
+    """The name of the person whom a phrase is about, "" for none, or for one who is chosen elsewhere."""
+    if not isinstance(said, Called):
+        return ""
+    people = {slot.name for slot in said.entry.slots if slot.type == PERSON}
+    chosen = next((text for name, text in said.arguments if name in people), "")
+    choice = choice_of(chosen)
+    return chosen if chosen[:1] != "{" else dict(choice.parts).get(NAME, "") if choice is not None else ""
 
 
 def _is_delivered(said: object) -> bool:

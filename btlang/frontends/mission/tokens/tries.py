@@ -37,9 +37,10 @@ _STATEMENT_ENDS = (END_OF_STATEMENT, END_OF_TEXT)
 _OPERANDS = frozenset(("command", "name", "close", "wait", "nothing", "fail", "node"))
 _IN_ALL = frozenset(("count", "at_most", "up_to_times", "tries"))
 _ASKED = frozenset(("condition", "not"))
-_LOOPED = frozenset(("command", "name", "wait", "every", "count", "repeat", "open", "close", "comma", "and", "then"))
 _TWICE = "2"
 _ENDLESS = "-1"
+_UNCLEAR = "it isn't clear what is tried again"
+_EXAMPLE = "go to the lab. If that fails, wait 5 s and try again"
 _ENDING = ("for", "until", "until_time")
 _ANEW = "that would be done anew once it has worked"
 _TRIED_FOR = "Write for example: try again every minute for up to 10 minutes."
@@ -123,7 +124,9 @@ class Tries(SentenceReader):
         if tried is None or tried.kind not in _OPERANDS or (asks and not is_question(tried)):
             if end := self._while_so(match, at, asks):
                 return end
-            return self._ask_again(match, at) if asks else self._after_repair(match, at) or self._try_that(match, at)
+            if asks:
+                return self._ask_again(match, at)
+            return self._after_repair(match, at) or self._try_that(match, at) or self._doubt_what(match, at)
         first = _first_of_form(tokens, statement_start(tokens, last), last)
         number, end, pace = self._attempts(match)
         if not number or (pause is not None and pace is not None):
@@ -218,35 +221,6 @@ class Tries(SentenceReader):
             tokens += [Token("close", stop, stop), Token("count", start, stop, left), *([] if pace is None else [pace])]
         return behind
 
-    def stop_after(self, match: Match, at: int) -> int:
-        """`every 30 min, take a picture. Stop after 8 pictures`, `A. After three rounds, B`: so many rounds of it.
-
-        What is counted is a round, or is said in the commands.
-        """
-        tokens, text, end = self._tokens, self._text, match.last + 1
-        last = run_start(tokens, len(tokens), _JOINTS | STATEMENT_ENDS | {"but"})
-        first, noun = statement_start(tokens, last), text.words[match.last]
-        looped = tokens[first:last]
-        if not looped or any(token.kind not in _LOOPED for token in looped):
-            return 0
-        said = text.source.text[looped[0].start : looped[-1].end].lower().split()
-        is_counted = noun in self._vocabulary.asking["rounds"] or not {noun, noun.removesuffix("s")}.isdisjoint(said)
-        paces = [token for token in looped if token.kind in ("every", "count")]
-        commands = [token for token in looped if token.kind not in ("every", "count", "repeat")]
-        commands = commands[commands[:1] != [] and commands[0].kind == "comma" :]
-        is_endless = len(paces) < 2 and all(token.kind == "every" or token.value == "-1" for token in paces)
-        if not (commands and is_counted and is_endless and (self._is_end(end) or text.words[end] == ",")):
-            return 0
-        here, start, stop = looped[0].start, text.starts[at], text.ends[match.last]
-        number = Token("count", start, stop, self._calls.token(match, at).value)
-        if paces and paces[0].kind == "every":
-            made = [paces[0], Token("comma", here, here), *commands, Token("comma", start, start), number]
-        else:
-            front = Token("repeat", here, here), Token("open", here, here)
-            made = [*front, *commands, Token("close", start, start), number]
-        tokens[first:] = [*made, *([] if self._is_end(end) else [Token("semi", stop, stop)])]
-        return end if self._is_end(end) else end + 1
-
     def _while_so(self, match: Match, at: int, asks: bool) -> int:
         """`if it is shut, wait 5 s and check again, up to 3 times`: while it is so, and it is asked so often in all.
 
@@ -259,6 +233,8 @@ class Tries(SentenceReader):
         if not condition or tokens[first].kind != "if" or any(token.kind not in _ASKED for token in condition):
             return 0
         asked = latest_question(tokens) if asks else None
+        if first and text.words[at] in self._trying:
+            return 0  # `go to the lab. If bumped, wait 5 s and try again`
         is_new = asks and (asked is None or any(map(is_answer, tokens[tokens.index(asked) : first])))
         if is_new or not (body or asks) or any(token.kind not in _REPAIRS for token in body):
             return 0
@@ -282,6 +258,22 @@ class Tries(SentenceReader):
             Token("count", start, stop, str(int(number) - 1)),
         ]  # fmt: skip
         return last
+
+    @cached_property
+    def _trying(self) -> frozenset[str]:
+        """The verbs for what is to work, not for what is to be asked: `try again`, not `check again`."""
+        return frozenset(phrase.split()[0] for role in ("try", "retry") for phrase in self._vocabulary.roles[role])
+
+    def _doubt_what(self, match: Match, at: int) -> int:
+        """BT150 for `go to the lab. If bumped, wait 5 s and try again`: what is tried again isn't clear."""
+        form = self._tokens[statement_start(self._tokens, len(self._tokens)) :][:1]
+        if self._text.words[at] not in self._trying or not form or form[0].kind != "if":
+            return 0
+        end = self._attempts(match)[1]
+        words = self._text.span(at, end)
+        self._calls.problems.append(diagnostic("BT150", words, words=words.text, reason=_UNCLEAR, example=_EXAMPLE))
+        self._tokens.append(Token("nothing", words.start, words.end))
+        return end
 
     def _ask_again(self, match: Match, at: int) -> int:
         """`ask Bob "Tea?". If he says no, ask again`: what was asked before."""

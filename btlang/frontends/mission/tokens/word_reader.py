@@ -45,6 +45,7 @@ from btlang.frontends.mission.tokens.tries import Tries
 from btlang.frontends.mission.tokens.unknown_words import UnknownWords
 from btlang.frontends.mission.tokens.visitors import Visitors
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
+from btlang.tree.answers import UNANSWERED
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.language_tables import CONNECTIVES, NOT_ALONE, ORDER, QUESTIONS
 from btlang.vocabulary.lexicon import NODE_ROLES
@@ -152,7 +153,8 @@ class WordReader:
         form = self._form(at)
         if form:
             return form
-        match = self._without_measure(self._requests.with_name(self._match(at), at), at)
+        match = self._requests.with_time(self._requests.with_name(self._match(at), at), at)
+        match = self._without_measure(match, at)
         if match is not None and match.meaning.role in NODE_ROLES:
             if end := self._node(match, at):
                 return end
@@ -227,7 +229,7 @@ class WordReader:
             if named is not None and (match is None or named.last >= match.last):
                 match, self._root = named, names
         if self._origin is not None and tokens[-1].kind in _JOINING:
-            if match is None or match.meaning.role in ("not", "never"):  # `or don't answer`
+            if match is None or match.meaning.role in ("not", "never", "condition"):  # `or don't answer`, `or near`
                 shared, problem = with_words_before(
                     self._origin, tokens, self._text, match, at, self._vocabulary, names, self._context
                 )
@@ -255,7 +257,8 @@ class WordReader:
                     return end
             if is_first and (end := self._requests.begged(at)):
                 return end
-        if is_first and self._remarks.is_possible and (match is None or role in ("condition", "there_are")):
+        tells = is_first and self._remarks.is_possible and not (tokens and tokens[-1].kind == "define")
+        if tells and (match is None or role in ("condition", "there_are")):
             if end := self._remarks.end(at):
                 self._problems.append(diagnostic("BT158", (span := text.span(at, end)), words=span.text))
                 return end + (text.words[end] == ",")
@@ -269,7 +272,7 @@ class WordReader:
             if role in ("tries", "at_most", "up_to_times"):
                 return self._tries.number(match, at)
             if role == "stop_after":
-                return self._tries.stop_after(match, at)
+                return self._order.stop_after(match, at)
             return self._tries.again(match, at) if role == "try_again" else self._order.read(match, at)
         if role == "ordinal" and match is not None and at not in text.articles and begins_item(tokens):
             return match.last + (text.words[match.last] == ",")
@@ -302,7 +305,7 @@ class WordReader:
         tokens, text = self._tokens, self._text
         asks = tokens[-1:] != [] and tokens[-1].kind in _ASKING
         end = (
-            (self._partial.add_condition(at) or self._requests.answered(at) if asks else 0)
+            (self._partial.add_condition(at) or self._requests.answered(at) if asks else self._requests.replied(at))
             or without_meaning(tokens, text, match, role, at, self._vocabulary, self._context)
             or self._order.no_phrase(at)
             or self._partial.performed(at)
@@ -338,7 +341,7 @@ class WordReader:
             self._order.lasts(at)
         if role == "meanwhile" and (end := self._order.during(match)):
             return end
-        if role == "politeness" or (role in ("following", "then") and self._order.says_nothing(match, at)):
+        if role == "politeness" or (role in ("following", "then", "whenever") and self._order.says_nothing(match, at)):
             return after_politeness(tokens, self._text.words, match)
         if at in self._text.going_on:
             go_on(tokens)
@@ -394,6 +397,8 @@ class WordReader:
         if match.meaning.role != "negated_twice":
             shared = self._origin if self._shares else None
             self._origin = (token, *shared[1:]) if shared is not None else (token, at, match, self._root)
+        if isinstance(token.value, Called) and token.value.entry.id == UNANSWERED:
+            return self._outcomes.unanswered(match.last)
         return self._outcomes.settle(match.last) if len(tokens) > 2 else match.last
 
     def _is_said_twice(self, said: Token) -> bool:
