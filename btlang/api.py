@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from importlib import import_module
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
@@ -55,13 +56,13 @@ def parse_tree(
     files whose nodes become words, names of installed packs, or functions decorated with `action` or `condition`.
     `world` is the path of a world file, or its text, by default the world that ships. `main` is the ID of the tree to
     run, if XML or JSON has several. `language` is that of the mission: "en", "es" or the folder of another one.
-    `values` are what the mission may use by these names though it doesn't set them, or others of the same kind: a run
-    gets them (`Session.prepare`). `origins` gets the nodes by their identities, each with the syntax that it was made
-    of. With `has_robot` a robot is chosen already: the words and the world of the one that its first lines name don't
-    count. Raises MissionError with all diagnostics.
+    `values` are values by name, or others of the same kind, that the mission may use without setting them; a run gets
+    its values from `Session.prepare`. `origins` is filled with the syntax that each node was made of, by the identity
+    of the node. `has_robot` says that a robot has been chosen: the words and the world of a robot that the mission
+    names are then ignored. Raises MissionError with all diagnostics.
     """
     source = source_of(text)
-    with gc_paused:
+    with gc_paused, _hint_at_file(text):
         vocabulary, chosen = mission_vocabulary(source, keywords, world_of(world), language, has_robot=has_robot)
         read = read_text(source, main, vocabulary=vocabulary, parser=parser, errors_of=errors_of, known=_known(values))
         if isinstance(read, Tree):
@@ -71,6 +72,18 @@ def parse_tree(
     return Mission(
         compilation.tree, vocabulary, chosen, tuple(compilation.warnings), program, tuple(all_facts(program))
     )
+
+
+@contextmanager
+def _hint_at_file(text: str | Source) -> Iterator[None]:
+    """Add to errors about a text that looks like the name of a file how to read that file."""
+    try:
+        yield
+    except MissionError as error:
+        name = text.strip() if isinstance(text, str) else ""
+        if " " in name or not os.path.splitext(name)[1][1:].isalpha():
+            raise
+        raise error.advising(f"This is read as a mission. To read the file: btlang.parse_file({name!r})") from None
 
 
 def parse_file(
@@ -184,7 +197,7 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax", "
     `tree` is the tree itself. `world` is the path of its world file, or its text, None for the one that ships.
     `warnings` are diagnostics that don't keep it from running. `syntax` is the syntax tree that it was compiled from,
     if there is one. `facts` are places of this mission, in addition to those of the world. `rules` are the house rules
-    round it, which its tree has too (btlang.house_rules), None without any.
+    around it (btlang.house_rules), which are also in its tree; None if there are none.
     """
 
     tree: Tree

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterator, Mapping
 from types import CoroutineType, GeneratorType
 from typing import TypeAlias
@@ -66,11 +67,31 @@ class Behavior(Record, uncompared=("span", "numbers")):
     ) -> Mission:
         """Compile it. Its functions are words of its texts, too; the options are those of `btlang.parse_tree`.
 
-        `subtrees` are the trees that `sub_tree` nodes name. Raises MissionError for all mistakes of the first text that
-        has some, or of the tree: ports of known nodes are checked (BT132), unknown nodes only when it runs.
+        A text that isn't understood may also use the other decorated functions of the scripts that made the tree, such
+        as quantities. `subtrees` are the trees that `sub_tree` nodes name. Raises MissionError for all mistakes of the
+        first text that has some, or of the tree: ports of known nodes are checked (BT132), unknown nodes only when it
+        runs.
         """
-        functions = dict.fromkeys(_functions([self, *subtrees.values()]))
-        vocabulary = world_vocabulary([*keywords, *functions], world, language)
+        words = [*keywords, *dict.fromkeys(_functions([self, *subtrees.values()]))]
+        try:
+            return self._compile(words, world, language, subtrees)
+        except MissionError as error:
+            others = [each for each in _functions_of_scripts([self, *subtrees.values()]) if each not in words]
+            if not others:
+                raise
+            try:
+                return self._compile([*words, *others], world, language, subtrees)
+            except MissionError as left:
+                raise min(left, error, key=lambda each: len(each.diagnostics)) from None
+
+    def _compile(
+        self,
+        keywords: Keywords,
+        world: str | os.PathLike[str] | Source | None,
+        language: str,
+        subtrees: Mapping[str, Child],
+    ) -> Mission:
+        vocabulary = world_vocabulary(keywords, world, language)
         assembly = _Assembly(vocabulary)
         for name, child in subtrees.items():
             assembly.define(name, assembly.node(child))
@@ -217,6 +238,8 @@ def _advice(what: object) -> str:
         return "give its children one by one, or with a star: sequence(*children)"
     if isinstance(what, GeneratorType | CoroutineType):  # `weld(1)`, whose function is a leaf
         return f"give the function and its values, and don't call it: {_as_leaf(what)}"
+    if any(base.__module__.startswith("py_trees.") for base in type(what).__mro__):
+        return "write btlang.from_py_trees(...) round it"
     decorated = "decorate a function with btlang.action or btlang.condition"
     return decorated if callable(what) else f"{decorated}, and give it its values with leaf(function, value)"
 
@@ -250,6 +273,24 @@ def _functions(waiting: list[Child]) -> list[Callable[..., object]]:
         elif hasattr(child, "btlang_entry"):
             found.append(child)  # type: ignore[arg-type]
     return found
+
+
+def _functions_of_scripts(waiting: list[Child]) -> list[Callable[..., object]]:
+    """Return the decorated functions of the scripts that made behaviors, but for those that replace words."""
+    paths = set[str]()
+    while waiting:
+        child = waiting.pop()
+        if isinstance(child, Behavior):
+            paths |= {child.span.source.name} if child.span is not None else set()
+            waiting += child.children
+    modules = [module for module in list(sys.modules.values()) if getattr(module, "__file__", None) in paths]
+    functions = dict.fromkeys(each for module in modules for each in vars(module).values() if _is_word(each))
+    return list(functions)
+
+
+def _is_word(value: object) -> bool:
+    entry = getattr(value, "btlang_entry", None)
+    return isinstance(entry, Entry) and not entry.replaces
 
 
 _ONLY_A_CONDITION, _MISFIT = "BT028", "BT132"

@@ -128,7 +128,7 @@ class Session:
         return f"<Session on {type(self.robot).__name__}{f', {self.current!r}' if self.current is not None else ''}>"
 
     def map(self, unicode: bool) -> TerminalMap | None:
-        """Return the world for a terminal, if the robot moves in it, and not in a room of which it may be no map."""
+        """Return the map of the world for a terminal; None for a real robot, whose room the world may not describe."""
         if not self._is_simulated:
             return None
         from btlang.pictures.terminal_map import TerminalMap
@@ -323,6 +323,11 @@ class Run:
         return self.bus.clock.now
 
     @property
+    def succeeded(self) -> bool:
+        """Return whether it has ended in SUCCESS."""
+        return self.outcome is not None and self.outcome.succeeded
+
+    @property
     def is_under_way(self) -> bool:
         """Return whether it has started and hasn't ended."""
         return self._under_way
@@ -398,7 +403,7 @@ class Run:
         self.controls.stop()
 
     def suspend(self) -> None:
-        """End the run so that `Session.restore` can go on with what `save` then gives; its outcome is "suspended"."""
+        """End the run with the outcome "suspended". `Session.restore` continues it from what `save` returns then."""
         self.controls.suspend()
 
     def save(self) -> dict[str, Any]:

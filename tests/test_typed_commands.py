@@ -14,6 +14,7 @@ from btlang.cli import main
 from btlang.cli.parser import parse_arguments
 from btlang.cli.verbs import VERBS
 from btlang.task.commands import client
+from btlang.vocabulary.shipped import shipped
 
 RUN = ["--speed", "max", "--lines"]
 
@@ -55,12 +56,17 @@ def test_a_file_wins_over_a_mission_of_the_same_words(capsys: pytest.CaptureFixt
         ("hello", "btc: there's no verb or file 'hello'\nDid you mean: btc run hello\n"),
         ("patrol --watch", "btc: there's no verb or file 'patrol'\nDid you mean: btc run patrol --watch\n"),
         ("list", "btc: there's no verb or file 'list'\nDid you mean: btc task list\n"),
+        ("worlds", "btc: there's no verb or file 'worlds'\nDid you mean: btc world\n"),
+        ("missions", "btc: there's no verb or file 'missions'\nDid you mean: btc examples\n"),
+        ("simulate tea.txt", "btc: there's no verb or file 'simulate'\nDid you mean: btc run tea.txt\n"),
+        ("start", "btc: there's no verb or file 'start'\nDid you mean: btc robot up\n"),
         ("gesture", "btc gesture: say what to do: play, check, picture, record\nRun 'btc help gesture' for help.\n"),
         ("fly x", "btc: there's no verb or file 'fly'\nRun 'btc help' for help.\n"),
         ("--world x.toml", "btc: unexpected option '--world'\nA verb comes first: btc VERB --world x.toml\n"),
         ("help rnu", "btc: there's no verb 'rnu'\nDid you mean: btc help run\n"),
         ("help wave", "btc: there's no verb 'wave'\nRun 'btc help' for help.\n"),
         ("run --sped max -c wave", "btc run: there's no option '--sped'\nDid you mean: --speed\n"),
+        ("run --verbose tea.txt", "btc run: there's no option '--verbose'\nRun 'btc help run' for help.\n"),
         ("tea.txt --xyz", "btc run: there's no option '--xyz'\nRun 'btc help run' for help.\n"),
         ("robot stpo", "btc robot: there's no act 'stpo'\nDid you mean: btc robot stop\n"),
         ("robot halt", "btc robot: there's no act 'halt'\nDid you mean: btc robot stop\n"),
@@ -94,10 +100,12 @@ def test_stop_alone_is_refused_while_a_robot_is_up(
     assert typed("go to the lab, then stop", *RUN) == 0
 
 
-def test_no_word_stands_for_two_acts() -> None:
+def test_no_word_stands_for_two_acts_or_verbs() -> None:
     for verb in VERBS.values():
         words = [*verb.acts, *(word for act in verb.acts.values() for word in act.also)]
         assert len(words) == len(set(words))
+    words = [*VERBS, *(word for verb in VERBS.values() for word in verb.also)]
+    assert len(words) == len(set(words))
 
 
 def test_a_word_that_is_neither_is_read_as_a_mission(capsys: pytest.CaptureFixture[str]) -> None:
@@ -228,6 +236,16 @@ def test_examples_of_a_verb_are_commands(verb: str, capsys: pytest.CaptureFixtur
         assert parse_arguments(shlex.split(command)[1:]).verb == verb
 
 
+@pytest.mark.parametrize(
+    "page", sorted(Path(shipped("examples")).resolve().rglob("*.md")), ids=lambda page: page.parent.name
+)
+def test_commands_of_the_pages_of_examples_are_known(page: Path) -> None:
+    shown = re.findall(r"^ {4}btc (.+)$|`btc ([^`]+)`", page.read_text(encoding="utf-8"), re.MULTILINE)
+    assert len(shown) > 1
+    for line in map("".join, shown):
+        assert parse_arguments(shlex.split(line)).verb == line.split()[0]
+
+
 def test_names_of_another_world_that_ships(capsys: pytest.CaptureFixture[str]) -> None:
     assert typed("check", "-c", "go to the reception, then go to room 1") == 2
     [advice] = [line for line in capsys.readouterr().err.splitlines() if line.startswith("A world that ships")]
@@ -238,6 +256,19 @@ def test_names_of_another_world_that_ships(capsys: pytest.CaptureFixture[str]) -
     assert "A world that ships" not in capsys.readouterr().err
     assert typed("check", "-c", "go to the reception", "--world", str(Path(world).with_name("museum.toml"))) == 2
     assert "A world that ships" not in capsys.readouterr().err
+
+
+def test_worlds_of_an_installed_package_are_found(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    worlds = tmp_path / "btlang" / "_resources" / "examples" / "worlds"
+    worlds.parent.mkdir(parents=True)
+    worlds.symlink_to(Path(shipped("examples", "worlds")).resolve())
+    (tmp_path / "keywords").symlink_to(Path(shipped("keywords")).resolve())
+    monkeypatch.setattr("btlang.vocabulary.shipped.PACKAGE", str(tmp_path / "btlang"))
+    monkeypatch.setattr("btlang.cli.missions.shipped", shipped.__wrapped__)
+    assert typed("check", "-c", "go to the mummy") == 2
+    assert f"To use it, add: --world {worlds / 'museum.toml'}\n" in capsys.readouterr().err
 
 
 def test_the_world_that_ships_is_listed(capsys: pytest.CaptureFixture[str]) -> None:

@@ -85,7 +85,7 @@ def _advice_on_world(error: MissionError, source: Source, options: argparse.Name
     from glob import glob
     from shlex import quote
 
-    for path in sorted(glob(shipped("examples", "worlds", "*.toml"))):
+    for path in sorted(glob(os.path.join(shipped("examples", "worlds"), "*.toml"))):
         with open(path, encoding="utf-8") as file:
             text = file.read().lower()
         if all(f'"{words.lower()}"' in text for words in lacking):
@@ -121,5 +121,4 @@ def hint_at_text(subject: str, verb: str) -> Iterator[None]:
         has_mistakes = " " in subject.strip() and not looks_like_path(subject)
         if os.path.exists(subject) or not (has_mistakes or reads_as_mission(subject)):
             raise
-        advice = ("help", f"To give a mission as text: btc {verb} -c {quote_mission(subject)}")
-        raise MissionError([p.replace(arguments=(*p.arguments, advice)) for p in error.diagnostics]) from None
+        raise error.advising(f"To give a mission as text: btc {verb} -c {quote_mission(subject)}") from None

@@ -74,7 +74,7 @@ class Verb(Record):
 
     A handler gets the options that argparse read, and returns the exit code. `usual_act` is the act of a command line
     that names none. With `mixed`, options may stand between the arguments. `examples` are commands, each with what it
-    does.
+    does. `also` is as in VerbAct.
     """
 
     name: str
@@ -87,6 +87,7 @@ class Verb(Record):
     usual_act: str = ""
     mixed: bool = False
     usage: str | None = None
+    also: tuple[str, ...] = ()
 
 
 PLATFORMS = tuple(ROBOTS)

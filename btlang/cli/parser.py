@@ -61,9 +61,9 @@ class OptionParser(argparse.ArgumentParser):
         """Refuse an option that doesn't exist, before its value is taken for a file."""
         known = [option for action in self._actions for option in action.option_strings]
         if not any(option.startswith(name) for option in known):
-            from btlang.text.spelling import nearest
+            from btlang.text.spelling import misspelt
 
-            near = nearest(name, known, 1)
+            near = misspelt(name, known)
             self.refuse(f"there's no option '{name}'", f"Did you mean: {near[0]}" if near else "")
 
     def error(self, message: str) -> NoReturn:
@@ -199,7 +199,7 @@ def _with_verb(words: list[str]) -> list[str]:
         return [first, *words[1:]]
     if first in ("-", "-c") or os.path.exists(first):
         return ["run", *words]
-    near = _near_verbs(first) or [f"{verb.name} {first}" for verb in VERBS.values() if first in verb.acts]
+    near = _near_verbs(first) or _acts_called(first)
     if first.isidentifier() and import_module("btlang.cli.examples").path_of(first):
         near = [f"run {first}"]
     is_alone = len(words) == 1 or words[1].startswith("-")
@@ -240,9 +240,18 @@ def _only_stops(text: str) -> bool:
 
 
 def _near_verbs(word: str) -> list[str]:
+    """List verbs that somebody may mean, the likeliest first: another word for it, a plural, a misspelling."""
     from btlang.text.spelling import respellings
 
-    return [verb for verb in respellings(word, VERBS) if verb in VERBS]
+    found = [name for name, verb in VERBS.items() if word in verb.also or word == f"{name}s"]
+    return found + [verb for verb in respellings(word, VERBS) if verb in VERBS]
+
+
+def _acts_called(word: str) -> list[str]:
+    """List the acts of this name, then those for which it is another word, each with its verb."""
+    acts = [(verb.name, name, act) for verb in VERBS.values() for name, act in verb.acts.items()]
+    found = [f"{verb} {name}" for verb, name, _ in acts if name == word]
+    return found + [f"{verb} {name}" for verb, name, act in acts if word in act.also]
 
 
 def looks_like_path(text: str) -> bool:

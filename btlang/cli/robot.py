@@ -13,6 +13,7 @@ from functools import partial
 
 from btlang.cli.parser import check_act, check_count
 from btlang.cli.robot_log import RobotLog
+from btlang.cli.robots import note_silent_voice
 from btlang.cli.task import ask
 from btlang.components.words import words_of
 from btlang.diagnostics.diagnostic import MissionError
@@ -145,6 +146,7 @@ def _up(options: argparse.Namespace) -> int:
         require_companions(options)
         kept = layer_options(options, name)
         robot, world = _from_library(options, kept)
+        note_silent_voice(robot)
         if options.speed != "real" and runs_in_real_time(robot.body, robot.over, options.simulate):
             options.refuse(f"the robot runs in real time over {robot.over}, so it takes no --speed")
         words = [] if options.robot.startswith(_LIBRARY) else words_of(robot.body)

@@ -7,7 +7,9 @@ from contextlib import closing
 
 from btlang.diagnostics.diagnostic import render
 from btlang.passes.lint.allow import not_allowed, not_silenced
+from btlang.robots.bodies.speech_tables import engine_of
 from btlang.robots.registry import connector, runs_in_real_time, runs_on
+from btlang.speech.engine import MissingEngine, SpeechError
 from btlang.text.formatting import TextTable
 from btlang.text.output import has_colour, show
 
@@ -50,6 +52,18 @@ def platform_of(options: Namespace) -> str:
         how = f"--robot {over}" if options.robot == over else f"--robot {options.robot} over {over}"
         options.refuse(f"{how} runs in real time, so it takes no --speed")
     return over
+
+
+def note_silent_voice(robot: Connector) -> None:
+    """Say that a simulated robot has to do without the engine of its voice, if that isn't installed."""
+    if robot.over != "simulated":
+        return
+    try:
+        engine_of(robot.body)
+    except MissingEngine as missing:
+        show(f"note: The voice is silent and its times are estimated, because {missing}", sys.stderr)
+    except SpeechError:
+        pass  # the run says so
 
 
 def print_preflight(tree: Tree, vocabulary: Lexicon, world: World, robot: Any) -> bool:

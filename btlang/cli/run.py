@@ -13,7 +13,7 @@ from functools import partial
 
 from btlang.api import Mission
 from btlang.cli.missions import mission_of
-from btlang.cli.robots import choose_robot, print_preflight
+from btlang.cli.robots import choose_robot, note_silent_voice, print_preflight
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.files import unwritable
 from btlang.pictures.files import check_picture
@@ -50,6 +50,8 @@ def run(options: argparse.Namespace) -> int:
         return _SUCCESS if ready else _FAILED
     if options.text is not None and robot.over == "simulated":
         _note_robots_up()
+    if not options.quiet:
+        note_silent_voice(robot)
     if not options.watch:
         return _run_shown(options, mission, robot)
     from btlang.server.page.watching import open_monitor

@@ -85,17 +85,17 @@ def _change(options: argparse.Namespace, accounts: Accounts) -> str:
     act, name, item = options.act, options.name, options.item
     if act == "add":
         _check_name(name)
-        accounts.add(name, _role(options.role, act), hash_password(_ask_password(name)))
-        return f"'{one_line(name)}' may come in as {options.role}."
+        accounts.add(name, _role(options.role, act), hash_password(_ask_password(name, act)))
+        return f"'{one_line(name)}' can log in, with the role {options.role}."
     if act == "passwd":
-        accounts.set_password(name, hash_password(_ask_password(name)))
-        return f"'{one_line(name)}' has another password, and is logged out everywhere."
+        accounts.set_password(name, hash_password(_ask_password(name, act)))
+        return f"The password of '{one_line(name)}' is changed, and all their sessions are ended."
     if act == "role":
         accounts.set_role(name, _role(item or options.role, act))
-        return f"'{one_line(name)}' is {item or options.role}."
+        return f"'{one_line(name)}' now has the role {item or options.role}."
     if act == "remove":
         accounts.remove(name)
-        return f"'{one_line(name)}' may no longer come in."
+        return f"'{one_line(name)}' is removed, and all their sessions and tokens are ended."
     if act == "logout":
         accounts.log_out(name)
         return f"'{one_line(name)}' is logged out everywhere."
@@ -119,19 +119,19 @@ def _role(role: str, act: str) -> UserRole:
     return choose_member(UserRole, role, "role", act)
 
 
-def _ask_password(name: str) -> str:
+def _ask_password(name: str, act: str) -> str:
     """Ask for a password: twice at a terminal, else a line of standard input."""
     from btlang.server.accounts.passwords import problem
 
     if sys.stdin is not None and sys.stdin.isatty():
         password = getpass.getpass("Password: ")
         if getpass.getpass("Again: ") != password:
-            raise wrong("password", "the two aren't the same")
+            raise wrong(act, "the two passwords aren't the same")
     else:
         password = sys.stdin.readline().rstrip("\n") if sys.stdin is not None else ""
     reason = problem(password, name)
     if reason:
-        raise wrong("password", reason)
+        raise wrong(act, reason)
     return password
 
 

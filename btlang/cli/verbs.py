@@ -78,6 +78,7 @@ _TABLE = (
         "repl", RUN, "start the prompt, as `btc` alone does", "btlang.cli.mission_verbs:start_prompt",
         (*READING, SPEED, *body_options(*PLATFORMS)),
         examples=(("btc repl --language es", "missions in Spanish"),),
+        also=("prompt", "shell", "console"),
     ),
     Verb(
         "run", RUN, "run a mission on the simulated robot, or a ROS 2 robot", "btlang.cli.run:run",
@@ -127,6 +128,7 @@ _TABLE = (
             ("btc run examples/patrol.txt --speed max --picture patrol.svg", "with a picture of the run"),
             ("btc run examples/tea_service.txt --speed max --record tea.mcap", "recorded, for btc replay and btc why"),
         ),
+        also=("simulate", "play", "execute", "launch"),
     ),
     Verb(
         "examples", RUN, "list, print or copy the example missions", "btlang.cli.mission_verbs:show_examples",
@@ -138,6 +140,7 @@ _TABLE = (
             ("btc examples", "all of them; btc run greeter runs one"),
             ("btc examples --copy missions", "copies them to the folder missions, with their worlds"),
         ),
+        also=("missions", "samples", "demo", "demos"),
     ),
     Verb(
         "replay", RUN, "replay a run", "btlang.cli.recordings:replay",
@@ -167,6 +170,7 @@ _TABLE = (
     Verb(
         "watch", RUN, "show a run in the browser, as it was", "btlang.cli.recordings:watch", (BROWSER, *RECORDING),
         examples=(("btc watch", "the latest run"), ("btc watch 3", "task 3 of the robot that is up")),
+        also=("view", "browser", "page", "gui"),
     ),
     Verb(
         "why", RUN, "explain what happened in a run or a task, and why it failed",
@@ -176,6 +180,7 @@ _TABLE = (
             ("btc why", "what happened in the latest run, command by command"),
             ("btc why tea.mcap", "what happened in a recorded run"),
         ),
+        also=("debug",),
     ),
     Verb(
         "check", WRITE, "report mistakes in missions and trees", "btlang.cli.check:check_files",
@@ -209,6 +214,7 @@ _TABLE = (
             ("btc check examples/hello.txt", "a file"),
             ('btc check -c "move forward 1 m then say done"', "text instead of a file; - is standard input"),
         ),
+        also=("lint", "validate", "verify"),
     ),
     Verb(
         "tree", WRITE, "print the behavior tree of a mission", "btlang.cli.mission_verbs:show_tree",
@@ -225,6 +231,7 @@ _TABLE = (
             ("btc tree examples/hello.txt", "the tree, drawn with lines"),
             ("btc tree examples/hello.txt --plain", "one line per node, for programs and diffs"),
         ),
+        also=("draw", "plan", "graph"),
     ),
     Verb(
         "explain", WRITE, "show how a mission is understood, or explain a message code",
@@ -263,6 +270,7 @@ _TABLE = (
             ("btc words wave", "what has to do with waving"),
             ("btc words --all", "everything, with examples"),
         ),
+        also=("vocabulary", "commands", "phrases"),
     ),
     Verb(
         "format", WRITE, "format missions: indentation, spaces, empty lines", "btlang.cli.mission_verbs:format_files",
@@ -317,6 +325,7 @@ _TABLE = (
             ROBOT_WORDS,
         ),
         examples=(("btc diff examples/hello.txt examples/patrol.txt", "two missions"),),
+        also=("compare",),
     ),
     Verb(
         "edit", WRITE, "write a mission in the browser", "btlang.cli.mission_verbs:edit",
@@ -549,6 +558,7 @@ _TABLE = (
             ),
         ),
         examples=(("btc serve --port 9443", "port 8443 without the option"),),
+        also=("web", "dashboard"),
     ),
     Verb(
         "user", KEEP_UP, "manage the users of btc serve", "btlang.cli.users:run_act",
@@ -576,6 +586,7 @@ _TABLE = (
             "backup": VerbAct("copies the accounts into a file: btc user backup users.json"),
             "restore": VerbAct("restores the accounts on a server without users: btc user restore users.json"),
         },
+        also=("login", "account"),
     ),
     Verb(
         "world", BUILD, "check, draw, import and export world files", "btlang.cli.world:run_act",
@@ -615,6 +626,7 @@ _TABLE = (
             "       btc world import FILE ... -o OUT [--start X,Y[,FACING]]\n"
             "       btc world export FILE --to nav2|json|yaml -o OUT"
         ),
+        also=("map", "places"),
     ),
     Verb(
         "gesture", BUILD, "play, check, draw and record gestures of a robot", "btlang.cli.gesture:run_act",
@@ -663,6 +675,7 @@ _TABLE = (
             ("btc new robot rover", "the folder rover, whose README.md says how to go on"),
             ("btc new robot cart --from cart.urdf --waypoints points.json", "of what you have; --map takes a map"),
         ),
+        also=("create", "init"),
     ),
     Verb(
         "compile", SHARE, "write the tree of a mission as XML, English, JSON, a picture ...",
@@ -692,6 +705,7 @@ _TABLE = (
             ("btc compile examples/patrol.txt -o patrol.xml", "XML of BehaviorTree.CPP"),
             ("btc compile examples/patrol.txt --to dot", "to standard output"),
         ),
+        also=("convert", "build", "translate"),
     ),
     Verb(
         "grammar", SHARE, "write a grammar of missions, for language models", "btlang.cli.mission_verbs:write_grammar",
@@ -786,6 +800,7 @@ _TABLE = (
         "help", OWN, "show this help, or that of a verb", "btlang.cli.parser:print_help",
         (Option("subject", nargs="?", metavar="VERB", help="verb whose options to list"),),
         examples=(("btc help run", "the options of btc run"),),
+        also=("man",),
     ),
     Verb(
         "completion", OWN, "print a script that completes btc in a shell", "btlang.cli.completion:print_script",

@@ -183,6 +183,10 @@ class MissionError(Exception):
     def __str__(self) -> str:
         return "\n\n".join(render(d) for d in self.diagnostics)
 
+    def advising(self, advice: str) -> MissionError:
+        """Return the same error with a further hint below each diagnostic."""
+        return MissionError([each.replace(arguments=(*each.arguments, ("help", advice))) for each in self.diagnostics])
+
 
 def sort_diagnostics(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
     """Sort diagnostics by file, place, code and text, each once."""

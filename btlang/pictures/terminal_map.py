@@ -1,4 +1,4 @@
-"""The world from above in the cells of a terminal: walls, places, people, the robot and the way that it has come.
+"""The world from above in the cells of a terminal: walls, zones, places, people, the robot and the way that it came.
 
 Each cell has two by four dots of Braille, or one character where the terminal has no others.
 """
@@ -31,6 +31,9 @@ _ARROWS, _PLAIN_ARROWS = "→↗↑↖←↙↓↘", ">/^\\</v\\"
 _ROUND = 0.3  # metres around everything
 _STEP = 0.05  # metres between points of the way that are kept
 _ROBOT, _PERSON, _PLACE, _THING, _WALL, _WAY = "bold cyan", "bold magenta", "bold", "yellow", "dim", "green"
+_CLOSED, _SLOW = "red", "yellow"
+_DASH = 3  # dots of an outline, and of the gap after them
+_SIGNS = {_WALL: "#", _WAY: ".", _CLOSED: "x", _SLOW: "~"}
 LEAST_WIDTH, LEAST_HEIGHT = 16, 5
 """The cells in which a map is of use."""
 
@@ -40,6 +43,7 @@ class TerminalMap:
 
     def __init__(self, world: World, unicode: bool) -> None:
         self._world, self._unicode = world, unicode
+        self._zones = [zone for zone in world.zones if zone.is_closed or zone.is_slow]
         self._lines = [*world.walls, *(((a, b), (c, d)) for box in world.boxes for a, b, c, d in box.edges())]
         points = [point for line in self._lines for point in line]
         points += [(world.start.x, world.start.y), *((place.x, place.y) for place in world.places)]
@@ -77,15 +81,21 @@ class TerminalMap:
         if dots is None or dots.size != (width, height):
             dots = self._dots = _Dots(width, height)
             self._drawn = 0
+            for zone in self._zones:
+                outline = [at(*point) for point in (*zone.points, zone.points[0])]
+                dots.line(outline, _CLOSED if zone.is_closed else _SLOW, _DASH)
             for line in self._lines:
-                dots.line([at(*point) for point in line])
+                dots.line([at(*point) for point in line], _WALL)
         for point in self._way[self._drawn :]:
-            dots.dot(*at(*point), is_way=True)
+            dots.dot(*at(*point), _WAY)
         self._drawn = len(self._way)
         letters = _Letters(width, height)
         moved = {name: (x, y) for name, x, y, _ in (robot.things if robot is not None else ())}
         for place in self._world.places:
             letters.name(*at(place.x, place.y), place.name, _PLACE)
+        for zone in self._zones:
+            middle = (sum(values) / len(values) for values in zip(*zone.points, strict=True))
+            letters.name(*at(*middle), zone.name, _CLOSED if zone.is_closed else _SLOW)
         things = [(each, _THING) for each in self._world.objects]
         for thing, style in (*things, *((each, _PERSON) for each in self._world.people)):
             x, y = moved.get(thing.name, (thing.x, thing.y))
@@ -116,37 +126,40 @@ class TerminalMap:
         return tuple(("".join(text for text, _ in group), style) for style, group in groups)
 
     def _cell(self, dots: _Dots, row: int, column: int) -> tuple[str, str]:
-        found, is_way = dots.cells[row][column], (row, column) in dots.way
+        found, style = dots.cells[row][column], dots.styles.get((row, column), "")
         if not found:
             return " ", ""
-        sign = chr(_BRAILLE + found) if self._unicode else "." if is_way else "#"
-        return sign, _WAY if is_way else _WALL
+        return chr(_BRAILLE + found) if self._unicode else _SIGNS[style], style
 
 
 class _Dots:
-    """The cells with dots, and which of them the way is in."""
+    """The cells with dots, each in the style of its latest one."""
 
     def __init__(self, width: int, height: int) -> None:
         self.size = width, height
         self.cells = [[0] * width for _ in range(height)]
-        self.way: set[tuple[int, int]] = set()
+        self.styles: dict[tuple[int, int], str] = {}
 
-    def dot(self, x: float, y: float, *, is_way: bool = False) -> None:
+    def dot(self, x: float, y: float, style: str) -> None:
         column, row = int(x) // _ACROSS, int(y) // _DOWN
         if 0 <= column < self.size[0] and 0 <= row < self.size[1]:
             self.cells[row][column] |= _BITS[int(y) % _DOWN][int(x) % _ACROSS]
-            if is_way:
-                self.way.add((row, column))
+            self.styles[row, column] = style
 
-    def line(self, points: Sequence[tuple[float, float]]) -> None:
+    def line(self, points: Sequence[tuple[float, float]], style: str, dash: int = 0) -> None:
+        """Draw a line through points; with `dash` so many dots, then as many left out."""
         for (x, y), (to_x, to_y) in pairwise(points):
             steps = max(int(max(abs(to_x - x), abs(to_y - y))), 1)
             for step in range(steps + 1):
-                self.dot(x + (to_x - x) * step / steps, y + (to_y - y) * step / steps)
+                if not dash or step // dash % 2 == 0:
+                    self.dot(x + (to_x - x) * step / steps, y + (to_y - y) * step / steps, style)
 
 
 class _Letters:
-    """The cells with letters. Where a name would touch another one, only its first letter stands at its point."""
+    """The cells with letters. A name that would touch another one is written above or below its point.
+
+    Where there is no room for it either, only its first letter is written, if that hides no other name.
+    """
 
     def __init__(self, width: int, height: int) -> None:
         self._width, self._height = width, height
@@ -155,14 +168,16 @@ class _Letters:
     def name(self, x: float, y: float, text: str, style: str) -> None:
         """Write a name whose middle is at a point."""
         said = one_line(text)
-        row, first = int(y) // _DOWN, int(x) // _ACROSS - len(said) // 2
+        own, first = int(y) // _DOWN, int(x) // _ACROSS - len(said) // 2
         first = max(min(first, self._width - len(said)), 0)
-        around = [(row, column) for column in range(first - 1, first + len(said) + 1)]
-        fits = len(said) <= self._width and cell_len(said) == len(said) and 0 <= row < self._height
-        if not fits or any(cell in self.cells for cell in around):
+        fits = len(said) <= self._width and cell_len(said) == len(said)
+        for row in (own, own - 1, own + 1) if fits else ():
+            around = [(row, column) for column in range(first - 1, first + len(said) + 1)]
+            if 0 <= row < self._height and not any(cell in self.cells for cell in around):
+                self.cells.update((cell, (letter, style)) for cell, letter in zip(around[1:-1], said, strict=True))
+                return
+        if (own, int(x) // _ACROSS) not in self.cells:
             self.mark(x, y, said[:1] if said.isascii() else "*", style)
-            return
-        self.cells.update((cell, (letter, style)) for cell, letter in zip(around[1:-1], said, strict=True))
 
     def mark(self, x: float, y: float, sign: str, style: str) -> None:
         cell = int(y) // _DOWN, int(x) // _ACROSS

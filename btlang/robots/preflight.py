@@ -92,7 +92,7 @@ def check_languages(body: Body, tree: Tree, vocabulary: Lexicon) -> None:
     problems = []
     for language, node in leaves.items():
         try:
-            engine_of(body, language)
+            engine_of(body, language, may_estimate=True)  # what the run needs of it is found when it connects
         except SpeechError:
             problems.append(lack(body, [f'voice for the language "{language}"'], node))
     if problems:

@@ -27,16 +27,19 @@ _PIECE = 1 << 16
 
 
 class Synthesizer:
-    """The engine of a body's voice, in one language at a time. Raises MissionError (BT071) if it can't be used."""
+    """The engine of a body's voice, in one language at a time. Raises MissionError (BT071) if it can't be used.
 
-    def __init__(self, body: Body) -> None:
-        self._body = body
+    With `may_estimate` an engine that isn't installed is replaced by one without sound.
+    """
+
+    def __init__(self, body: Body, may_estimate: bool = False) -> None:
+        self._body, self._may_estimate = body, may_estimate
         self._own = (body.voice or VoiceSettings(Settings())).settings.language
         self.language = self._own
         """The language, such as "en"."""
         self._last: tuple[str, Utterance] | None = None  # gestures ask for the times of what is said next
         try:
-            self._engine = engine_of(body)
+            self._engine = engine_of(body, may_estimate=may_estimate)
         except SpeechError as problem:
             from btlang.robots.bodies.body_file import unusable_robot
 
@@ -48,7 +51,7 @@ class Synthesizer:
         if wanted == self.language:
             return
         try:
-            self._engine = engine_of(self._body, wanted)
+            self._engine = engine_of(self._body, wanted, self._may_estimate)
         except SpeechError as problem:
             raise RobotError(str(problem)) from None
         self.language, self._last = wanted, None
@@ -66,11 +69,16 @@ class Synthesizer:
 
 class TimedVoice:
     """A voice that speaks one text at a time, for as long as the engine of its body says. `move_joints` moves its
-    mouth.
+    mouth. With `may_estimate` it is silent if that engine isn't installed.
     """
 
-    def __init__(self, body: Body, move_joints: Callable[[Mapping[str, float]], object] = lambda angles: None) -> None:
-        self._synthesizer = Synthesizer(body) if body.voice is not None else None
+    def __init__(
+        self,
+        body: Body,
+        move_joints: Callable[[Mapping[str, float]], object] = lambda angles: None,
+        may_estimate: bool = False,
+    ) -> None:
+        self._synthesizer = Synthesizer(body, may_estimate) if body.voice is not None else None
         self._mouth = body.mouth
         joint = body.joint(body.mouth.joint) if body.mouth is not None else None
         self._joint, self._move_joints = joint, move_joints
@@ -154,6 +162,7 @@ def voice_track(path: str | None, body: Body) -> Iterator[list[Sink]]:
         return
     if body.voice is None or not body.voice.engine:
         raise unusable_robot(SpeechError('--voice needs a voice with an engine; write engine = "espeak" in [voice]'))
+    Synthesizer(body)  # a simulated robot also runs without its engine
     try:
         with open(path, "wb") as file, wave.open(file) as sound:
             sound.setnchannels(1)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping
+from itertools import islice
 from time import time
 
-from btlang.engine.status import FAILURE, IDLE, SUCCESS
+from btlang.engine.status import FAILURE, IDLE, NAMES, SUCCESS
 from btlang.support.record import Record
 from btlang.tree.node import Node
 
@@ -71,6 +72,17 @@ class Event(Record):
     number: int
     wall: float
 
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.t:.2f} s{', ' * bool(said := self._brief())}{said}>"
+
+    def _brief(self) -> str:
+        """Return its line, or its own fields that are texts or numbers, for its repr."""
+        own = ((name, getattr(self, name)) for name in self.fields[len(Event.fields) :])
+        said = [(name, value) for name, value in own if isinstance(value, str | int | float) and value != ""]
+        return self.words or ", ".join(
+            f"{name}={value:.2f}" if isinstance(value, float) else f"{name}={value!r}" for name, value in said
+        )
+
     @property
     def words(self) -> str:
         """Return its line in plain English, "" if it has none."""
@@ -128,6 +140,11 @@ class StatusesChanged(Event):
     def count(self) -> int:
         """The number of changes."""
         return len(self.changes)
+
+    def _brief(self) -> str:
+        first = islice(((index, status) for index, status, _, _ in self.changes), 3)
+        said = ", ".join(f"{self.nodes.node(index).id} {NAMES[status]}" for index, status in first)
+        return said + ", ..." * (len(self.changes) > 3)
 
     def without_paths(self) -> Iterator[tuple[int, int, int, str]]:
         """Yield index, new status, status before and reason of each change. Paths cost more than all the rest."""

@@ -67,18 +67,18 @@ SUSPENDED, EMERGENCY = "suspended", "emergency stop"
 
 
 class Outcome(Record, uncompared=("why", "statuses", "exceptions")):
-    """The outcome of a run, which `print(outcome)` says as `btc run` does.
+    """The outcome of a run. `print(outcome)` prints the same as `btc run` at its end.
 
-    `why()` is why it failed, as `btc run` says it, "" where it did not; `statuses()` are those of the nodes at the end,
-    by their words. `exceptions` are those that leaves have raised, except ActionFailed: the latest of each leaf, also
-    where the mission went on; `caught` says, in a sentence each, those that didn't end it.
+    `why()` explains why the run failed, and is "" if it didn't. `statuses()` returns the final status of each node, by
+    its words. `exceptions` has the latest exception of each leaf, except ActionFailed, even if the mission went on.
+    `caught` describes those that didn't end it, a sentence each. `unanswered` has a sentence for each rule that did
+    nothing, because its condition was never known.
 
-    `unanswered` says, in a sentence each, which conditions of rules were never known: these rules have done nothing.
-
-    `stopped` is "" where the tree completed, else (status IDLE) "time limit", "interrupted", "suspended" (it can go on
-    in another run) or "emergency stop". `seconds` are those of the mission, without the time in which the robot came to
-    rest. `overruns` are the ticks that took too long, `worst` the slowest leaf in one and its seconds; None where no
-    leaf was to blame, or nobody looked. `standstill` says whether the robot came to rest.
+    `stopped` is "" if the tree completed. Otherwise the status is IDLE, and `stopped` is "time limit", "interrupted",
+    "suspended" (another run can continue it) or "emergency stop". `seconds` is the mission time, without the time in
+    which the robot came to rest. `overruns` counts the ticks that took too long. `worst` is the slowest leaf in one of
+    them with its seconds, None if no leaf was to blame or nothing was measured. `standstill` says whether the robot
+    came to rest.
     """
 
     status: Status

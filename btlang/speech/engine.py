@@ -35,6 +35,10 @@ class SpeechError(Exception):
     """The reason why an engine can't be used, or can't speak a text."""
 
 
+class MissingEngine(SpeechError):
+    """The package that an engine needs, which isn't installed."""
+
+
 class Settings(Record):
     """The settings of a voice: a `language` such as "en", a `variant`, words a minute, and a pitch from 0 to 100.
 

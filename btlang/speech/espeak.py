@@ -13,7 +13,7 @@ from functools import lru_cache
 from importlib.util import find_spec
 from threading import Lock
 
-from btlang.speech.engine import Phoneme, Settings, SpeechError, Utterance, words_at
+from btlang.speech.engine import MissingEngine, Phoneme, Settings, SpeechError, Utterance, words_at
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ class Espeak:
     def __init__(self, settings: Settings) -> None:
         if find_spec("espeakng_loader") is None:
             needs = "it needs the Python package espeakng-loader, which isn't installed"
-            raise SpeechError(f"{needs}: pip install 'btlang[voice]'")
+            raise MissingEngine(f"{needs}: pip install 'btlang[voice]'")
         self._settings = settings
         with _LOCK, _library() as library:
             _set_up(library, settings)

@@ -236,6 +236,10 @@ def _over(robot: str | Connect, over: str | None) -> str:
 LABEL = "robot file"
 """The label of schedules that a file of schedules has made, and their person."""
 _ENDING = ".txt"
+_HOW_TO_SCHEDULE = (
+    "Bring the robot up without --schedules and add the mission: btc task put NAME FILE. "
+    'Or name its folder in the robot file: missions = "missions"'
+)
 
 
 class ScheduleFileError(DataFileError):
@@ -284,8 +288,11 @@ def _fill_library(layer: TaskLayer, missions: str, wanted: list[AddSchedule]) ->
             _do(layer, RemoveSchedule(known.id))
         else:
             wanted.remove(same)  # it goes on, with what it has missed
-    for command in wanted:
-        _do(layer, command)
+    try:
+        for command in wanted:
+            _do(layer, command)
+    except MissionError as error:
+        raise error.advising(_HOW_TO_SCHEDULE) from None
 
 
 def _do(layer: TaskLayer, command: Command) -> None:

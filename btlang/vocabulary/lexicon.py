@@ -462,7 +462,12 @@ class Lexicon:
         unknown = [slot for slot in entry.slots if slot.type not in self.types]
         for slot in unknown:
             known = ", ".join(sorted(self.types))
-            self._wrong(entry, f"the slot {{{slot.name}}} has no type '{slot.type}'; known are {known}")
+            how = (
+                "annotate it with int, float, str or btlang.Length ..."
+                if callable(entry.call)
+                else f"known are {known}"
+            )
+            self._wrong(entry, f"the slot {{{slot.name}}} has no type '{slot.type}'; {how}")
         if unknown:
             return None
         verbs, said = self._with_roles(entry)

@@ -84,6 +84,19 @@ def test_a_text_may_be_a_condition() -> None:
         fallback("the battery is purple", "dock").mission()
 
 
+@btlang.quantity("the noise here", type="number")
+def noise() -> float:
+    return 7.0
+
+
+def test_a_text_may_use_functions_of_the_script_that_are_no_leaves() -> None:
+    tree = sequence("if the noise here is above 5, wave", shout)
+    assert tree.run(speed="max").succeeded
+    with pytest.raises(btlang.MissionError, match=r"BT010.*fly") as caught:
+        sequence("if the noise here is above 5, fly").mission()
+    assert len(caught.value.diagnostics) == 1
+
+
 def test_ports_are_texts_in_the_tree() -> None:
     tree = timeout(parallel("wave", "nod", success_count=1, name="both"), msec=1500, _skipIf="x > 3")
     assert dict(tree.ports) == {"msec": "1500", "_skipIf": "x > 3"}

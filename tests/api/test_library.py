@@ -6,7 +6,7 @@ import math
 import os
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -147,6 +147,16 @@ def test_one_exception_holds_all_diagnostics() -> None:
         ("BT013", "<text>:3:11"),
     ]
     assert str(caught.value).count("error") == 3
+
+
+@pytest.mark.parametrize("read", [btlang.parse_tree, btlang.Session().run])
+def test_the_name_of_a_file_as_a_mission(read: Callable[[str], object]) -> None:
+    with pytest.raises(btlang.MissionError, match=r"btlang\.parse_file\('patrol\.txt'\)"):
+        read("patrol.txt")
+    for text in ("fly", "fly to a.txt", "fly."):
+        with pytest.raises(btlang.MissionError) as caught:
+            read(text)
+        assert "parse_file" not in str(caught.value)
 
 
 def test_every_run_starts_in_a_fresh_world_and_is_the_same() -> None:

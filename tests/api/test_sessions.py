@@ -159,8 +159,16 @@ def test_each_repr_is_short() -> None:
         assert repr(session) == "<Session on SimulatedRobot>"
         run = session.prepare(mission, speed="max")
         assert repr(run) == f"<Run {run.id[:8]}, not started, 0.0 s>"
+        assert not run.succeeded
         outcome = run.execute()
+        assert run.succeeded
         assert repr(run) == f"<Run {run.id[:8]}, ended: SUCCESS after {outcome.seconds:.1f} s>"
+    events = [repr(event) for event in run.events()]
+    assert events[0] == "<StatusesChanged 0.00 s, Say RUNNING>"
+    assert events[1] == '<Said 0.00 s, says "hello">'
+    assert events[-1].startswith("<Ended ")
+    assert "outcome='SUCCESS', seconds=" in events[-1]
+    assert max(map(len, events)) < 130
     assert repr(outcome) == f"<Outcome SUCCESS after {outcome.seconds:.1f} s, 1 exception caught>"
     assert [repr(error) for error in outcome.exceptions] == ["ZeroDivisionError('over a stone')"]
     with pytest.raises(btlang.MissionError) as caught:

@@ -275,3 +275,8 @@ def test_zones_need_no_robot() -> None:
     root = to_py_trees(Tree(n("KeepOut", n("AlwaysSuccess"), zones="lab")), btlang.parse_tree("wave").vocabulary,
                        services={"robot": Zoned()})  # fmt: skip
     assert plain(btlang.from_py_trees(root).mission().tree) == "KeepOut zones=lab\n  AlwaysSuccess"
+
+
+def test_a_behaviour_among_the_children_of_a_node() -> None:
+    with pytest.raises(TypeError, match=r"a Success can't be .*; write btlang.from_py_trees\(...\) round"):
+        btlang.sequence("wave", behaviours.Success("done"))  # type: ignore[arg-type]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from btlang import action
 from btlang.api import parse_tree
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError
 
@@ -30,6 +31,17 @@ def test_a_part_of_a_sentence(text: str, code: str, message: str) -> None:
     assert (problem.code, problem.message if message else "") == (code, message)
     for example in dict(problem.arguments)["example"].split(", or: "):
         parse_tree(f"if {example}, wave" if text.startswith("if") else example)
+
+
+def test_the_example_of_a_phrase_that_goes_on_behind_its_value_is_whole() -> None:
+    @action("vent the fan {times} times", slots={"times": "count"})
+    def vent(times: int) -> None:
+        """Do nothing."""
+
+    with pytest.raises(MissionError) as refused:
+        parse_tree("vent the fan", keywords=[vent])
+    assert refused.value.diagnostics[0].hint == "Write for example: vent the fan 3 times"
+    parse_tree("vent the fan 3 times", keywords=[vent])
 
 
 @pytest.mark.parametrize("text", ["stop waving", "wave. Stop turning left.", "go to the lab then halt nodding"])

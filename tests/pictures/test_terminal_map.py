@@ -56,10 +56,42 @@ def test_who_is_elsewhere_is_shown_there_and_who_is_gone_is_not(world: World) ->
     assert not any("Zoë" in line for line in drawn(shown, RobotState(things=(("Zoë", None, None, False),))))
 
 
-def test_a_name_that_would_touch_another_one_is_a_letter(world: World) -> None:
-    text = "\n".join(drawn(TerminalMap(world, unicode=True), None))
-    assert "kitchen" in text  # the letter of the cup is its c
-    assert "cup" not in text
+def test_a_name_that_would_touch_another_one_is_above_or_below_it(world: World) -> None:
+    lines = drawn(TerminalMap(world, unicode=True), None)
+    [kitchen] = [at for at, line in enumerate(lines) if "kitchen" in line]
+    [cup] = [at for at, line in enumerate(lines) if "cup" in line]
+    assert abs(kitchen - cup) == 1
+
+
+def test_a_name_without_room_is_a_letter_that_hides_no_other_name() -> None:
+    places = (("one", 3), ("two", 3), ("hidden", 3), ("wide name", 4.3))
+    objects = ",".join(f'{{ name = "{name}", x = {x}, y = 4 }}' for name, x in places)
+    text = f"{WORLD.split('objects')[0]}objects = [{objects}]"
+    lines = "\n".join(drawn(TerminalMap(read_world(Source(text, "world.toml")), unicode=True), None))
+    assert all(name in lines for name in ("kitchen", "one", "two"))
+    assert "hidden" not in lines
+    assert "kitchen w" in lines
+
+
+def test_zones_have_an_outline_and_a_name() -> None:
+    zones = """[[zones]]
+name = "stairs"
+kind = "keep out"
+points = [[3, 2.5], [9, 2.5], [9, 4], [3, 4]]
+[[zones]]
+name = "hall"
+kind = "area"
+points = [[0, 0], [1, 0], [1, 1]]
+"""
+    world = f"start = {{ x = 1, y = 1 }}\nwalls = [[[0, 0], [10, 0], [10, 5], [0, 5], [0, 0]]]\n{zones}"
+    shown = TerminalMap(read_world(Source(world, "world.toml")), unicode=False)
+    lines = drawn(shown, None)
+    assert "\n".join(lines).count("x") > 20
+    assert any("stairs" in line for line in lines)
+    assert not any("hall" in line for line in lines)
+    columns, rows = shown.size(40, 12)
+    styles = {style for line in shown.lines(None, columns, rows) for text, style in line if "x" in text}
+    assert styles == {"red"}
 
 
 @pytest.mark.parametrize(("width", "height"), [(15, 30), (80, 4), (0, 0)])
@@ -79,7 +111,7 @@ def test_it_keeps_to_its_room_in_any_size(world: World) -> None:
 
 MAP = """\
  ######################################
- #                                    #
+ #         cup                        #
  #       kitchen              Zoë     #
  #                                    #
  #                     #              #

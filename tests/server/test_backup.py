@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import sqlite3
 import stat
@@ -200,3 +201,19 @@ def test_users_of_an_older_btlang_stay(tmp_path: Path, monkeypatch: pytest.Monke
             assert newer.identity(session) is not None
             newer.log("ann", "::1", "look", "ok")
         assert older.entries()[0].what == "look"
+
+
+def test_what_changes_about_a_user_is_said(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))
+    monkeypatch.setattr("sys.stdin", io.StringIO("short\na long password\n"))
+    assert main(["user", "add", "ann"]) == 2
+    assert "The command 'add' can't be read: a password must have 8 to 4096 characters." in capsys.readouterr().err
+    for act in (["add", "ann"], ["role", "ann", "operator"], ["remove", "ann"]):
+        assert main(["user", *act]) == 0
+    assert capsys.readouterr().out.splitlines() == [
+        "'ann' can log in, with the role viewer.",
+        "'ann' now has the role operator.",
+        "'ann' is removed, and all their sessions and tokens are ended.",
+    ]

@@ -8,6 +8,7 @@ from threading import Thread
 
 import pytest
 
+from btlang.cli import main
 from btlang.robots.bodies.body import Body
 from btlang.robots.bodies.body_file import BodyError, load_body
 from btlang.robots.bodies.speech_tables import engine_of
@@ -157,3 +158,19 @@ def test_without_the_package_it_says_what_to_install(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr("btlang.speech.espeak.find_spec", lambda name: None)
     with pytest.raises(SpeechError, match=r"pip install 'btlang\[voice\]'"):
         engine_of(load('[voice]\nengine = "espeak"\n'))
+
+
+def test_in_simulation_it_runs_without_the_package(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("btlang.speech.espeak.find_spec", lambda name: None)
+    robot = tmp_path / "robot.toml"
+    robot.write_text(HEAD + '[voice]\nengine = "espeak"\ntext = 1\ncharacter = 0\n')
+    run = ["run", "-c", 'speak Spanish and say "hola"', "--robot", str(robot), "--speed", "max"]
+    assert main(run) == 0
+    said = capsys.readouterr()
+    assert "1.00  done   say hola" in said.out
+    assert "note: The voice is silent and its times are estimated, because it needs the Python package" in said.err
+    assert main([*run, "--voice", str(tmp_path / "said.wav")]) == 2
+    assert "BT071" in capsys.readouterr().err
+    assert not (tmp_path / "said.wav").exists()

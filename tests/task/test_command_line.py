@@ -100,6 +100,7 @@ def test_a_robot_comes_up_with_what_its_library_has(
         code, text = btc(*up, f"--{kind}", "library:nosuch")
         assert code == 2
         assert text.startswith(f"btc: error BT187: The {called} 'nosuch' isn't in the library.\n")
+        assert f"\n  To put it there: btc task put nosuch FILE --kind {kind}\n" in text
     made: list[tuple[Any, Any]] = []
 
     def layer(robot: Any, reader: Any, **_: Any) -> None:
@@ -188,7 +189,7 @@ def test_options_may_stand_anywhere(robot: TaskLayer, btc: Btc) -> None:
     said = list[str]()
     robot.session.robot.say = said.append
     assert btc("robot", "say", "--json", "hi", "there")[0] == 0
-    assert btc("robot", "say", "--", "--json")[0] == 0
+    assert btc("robot", "say", "--", "--json") == (0, 'The robot says "--json".\n')
     assert said == ["hi there", "--json"]
 
 
@@ -266,6 +267,14 @@ def test_what_is_not_there_is_called_so(robot: TaskLayer, btc: Btc) -> None:
     assert btc("task", "list", "--limit", huge) == (0, "There are no tasks.\n")
     assert btc("task", "library") == (0, "The library is empty.\n")
     assert "isn't the number of a task" in btc("task", "show", "9" * 5000)[1]
+
+
+def test_a_schedule_of_a_file_whose_mission_is_not_there(tmp_path: Path, btc: Btc) -> None:
+    (tmp_path / "week.toml").write_text('[[schedule]]\nmission = "rounds"\nevery = "every day at 9:00"\n')
+    code, text = btc("robot", "up", "--name", "other", "--schedules", str(tmp_path / "week.toml"))
+    assert code == 2
+    assert "The mission 'rounds' isn't in the library.\n" in text
+    assert "Or name its folder in the robot file: missions =" in text
 
 
 def test_a_mission_in_quotes_is_a_task_unless_it_is_a_name(robot: TaskLayer, btc: Btc) -> None:

@@ -65,11 +65,15 @@ class Markers:
     def _check_name(self, name: str, span: Span | None) -> None:
         self._sound.add(name)
         if not is_xml_name(name.replace(":", "")):
-            self.wrong(name, why_no_port(name), span)
+            self.wrong_port(name, span)
 
-    def wrong(self, words: str, reason: str, span: Span | None) -> None:
+    def wrong_port(self, name: str, span: Span | None) -> None:
+        """Report a port whose name no attribute can have (BT129)."""
+        self.wrong(name, why_no_port(name), span, "Give this slot or parameter another name.")
+
+    def wrong(self, words: str, reason: str, span: Span | None, help: str = "") -> None:
         """Report words that no XML file can hold (BT129)."""
-        self.problems.append(diagnostic("BT129", span or NOWHERE, words=words, reason=reason))
+        self.problems.append(diagnostic("BT129", span or NOWHERE, words=words, reason=reason, help=help))
 
     def finish(self) -> None:
         """Raise MissionError if something was wrong."""

@@ -10,7 +10,6 @@ from btlang.backends.btcpp.typed import give_types
 from btlang.frontends.btcpp.dialect import dialect_of_shapes
 from btlang.frontends.btcpp.file import SPOKEN_NAME
 from btlang.frontends.btcpp.kept import Kept, kept_in
-from btlang.frontends.btcpp.models import why_no_port
 from btlang.frontends.btcpp.origin import Element, Markup, TreeOrigin, XmlOrigin
 from btlang.frontends.btcpp.spelling import MAIN_TREE, SPELL, spelled_3
 from btlang.text.source import Source
@@ -58,7 +57,7 @@ class _Writer:
             tree = tree.replace(models=(*self._kept.models, *tree.models))
             self._uses = Uses(tree, vocabulary, dialect)
             for node in self._uses.misnamed:
-                self._markers.wrong("name", why_no_port("name"), node.span)
+                self._markers.wrong_port("name", node.span)
             self._kind = self._uses.kind
             self._ids = tree_ids(tree, self._uses.ids, dialect)
             if dialect == 4:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from btlang.robots.bodies.body import EarsSpec, Mouth, VoiceSpec
 from btlang.robots.files import class_of
-from btlang.speech.engine import Settings, SpeechError
+from btlang.speech.engine import Estimate, MissingEngine, Settings, SpeechError
 from btlang.speech.recogniser import RecogniserError, RecogniserSettings
 
 TYPE_CHECKING = False
@@ -52,21 +52,24 @@ def read_mouth(top: Table, body: Body) -> Mouth | None:
     return table.finish(Mouth(joint, display))
 
 
-def engine_of(body: Body, language: str = "") -> SpeechEngine:
-    """Return the engine that a body's voice names, or one without sound; by default in its own language.
+def engine_of(body: Body, language: str = "", may_estimate: bool = False) -> SpeechEngine:
+    """Return the engine that a body's voice names, by default in its own language.
 
-    Raises SpeechError.
+    Without an engine, or with `may_estimate` if it isn't installed, it is one without sound. Raises SpeechError.
     """
     voice = body.voice or VoiceSpec(Settings())
     settings = voice.settings.replace(language=language) if language else voice.settings
     if not voice.engine:
-        from btlang.speech.engine import Estimate
-
         return Estimate(settings)
     if voice.engine == ESPEAK:
         from btlang.speech.espeak import Espeak
 
-        return Espeak(settings)
+        try:
+            return Espeak(settings)
+        except MissingEngine:
+            if not may_estimate:
+                raise
+            return Estimate(settings)
     try:
         make = class_of(voice.engine, "btlang.speech", body.folder, "an engine of speech", "my_voice:Voice")
     except ValueError as problem:

@@ -254,7 +254,7 @@ def make_simulated_parts(world: World, obstacles: Obstacles, body: Body) -> Part
     base, power = SimulatedBase(world.start, obstacles, body), SimulatedPower(world.battery, world.all_docks, body)
     joints = make_joints(body)
     hands = SimulatedHands(obstacles, world.names.objects, body)
-    return Parts(base, power, scan, joints, hands, TimedVoice(body, joints.move), sensors)
+    return Parts(base, power, scan, joints, hands, TimedVoice(body, joints.move, may_estimate=True), sensors)
 
 
 def make_joints(body: Body) -> JointsPart:

@@ -340,8 +340,7 @@ class Accounts:
         return None if user is None else Identity(user.name, user.role, id, is_session, user.generation)
 
     def _keep_an_administrator(self, name: str) -> None:
-        others = [user for user in self.users() if user.role is UserRole.ADMINISTRATOR and user.name != name]
-        if not others and self.user(name) is not None:
+        if [user.name for user in self.users() if user.role is UserRole.ADMINISTRATOR] == [name]:
             raise refusal_error(f"The user '{name}'", "is the only administrator")
 
     def _change(self, name: str, sql: str, *values: object) -> None:

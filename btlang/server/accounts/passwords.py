@@ -54,8 +54,8 @@ def fits(password: str, kept: str) -> bool:
 def problem(password: str, name: str) -> str:
     """Return why it can't be the password of a user, "" if it can."""
     if not SHORTEST <= len(password) <= LONGEST:
-        return f"it must have from {SHORTEST} to {LONGEST} characters"
-    return "it must not be the name" if password.casefold() == name.casefold() else ""
+        return f"a password must have {SHORTEST} to {LONGEST} characters"
+    return "a password must not be the name" if password.casefold() == name.casefold() else ""
 
 
 def random_password() -> str:

@@ -206,7 +206,7 @@ def say_where(page: LocalPage, what: str, browser: bool) -> None:
         show(f"{what} in the browser at {page.place}. If none opens, use --no-browser.")
     else:
         show(f"{what} at {page.address}")
-        show(f"The address is good once, within {OPEN:.0f} s.")
+        show(f"The address works once, within {OPEN:.0f} s.")
 
 
 class _OwnAddress:

@@ -172,7 +172,7 @@ def open_monitor(mission: Mission, name: str, body: Body, is_simulated: bool, br
     robots = LocalRobots(monitor.feed)
     with local_page(lambda accounts, port, _: WatchApi(accounts, port, ("robots", name), robots)) as page:
         say_where(page, f"Watch {one_line(name)}", browser)
-        show(f"The run begins when the page is there, or after {_PATIENCE:.0f} s.")
+        show(f"The run begins when the page is open, or after {_PATIENCE:.0f} s.")
         monitor.page = page
         yield monitor
 

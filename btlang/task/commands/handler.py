@@ -196,7 +196,7 @@ class Handler:
         if resumed is None:
             raise refusal_error(task.id, "has changed meanwhile")
         self._executor.wake()
-        return Answer(True, f"Task {task.id} goes on when it's its turn.", {"task": self._reader.data(resumed)})
+        return Answer(True, f"Task {task.id} continues when its turn comes.", {"task": self._reader.data(resumed)})
 
     def _skip(self, command: messages.Skip, person: str) -> Answer:
         task, now = self._open(command.task), self._now()
@@ -296,7 +296,7 @@ class Handler:
             run.call(call)
         else:
             call()
-        return Answer(True, "It says that.", {})
+        return Answer(True, f'The robot says "{one_line(command.text)}".', {})
 
     def _end_all(self, command: messages.Down, person: str) -> Answer:
         self._down()

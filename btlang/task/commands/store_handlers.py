@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
+from shlex import quote
 
 from btlang.api import Mission
 from btlang.robots.bodies.body_file import read_body
@@ -134,7 +135,9 @@ def latest_text(store: TaskStore, name: str, kind: LibraryKind) -> Source:
 
 def unknown_text_error(name: str, kind: LibraryKind = LibraryKind.MISSION) -> MissionError:
     """Make the error BT187: there's no such text."""
-    return refusal_error(f"The {_CALLED[kind]} '{name}'", "isn't in the library")
+    of_kind = "" if kind is LibraryKind.MISSION else f" --kind {kind.value}"
+    error = refusal_error(f"The {_CALLED[kind]} '{name}'", "isn't in the library")
+    return error.advising(f"To put it there: btc task put {quote(one_line(name))} FILE{of_kind}")
 
 
 class ScheduleHandler:

@@ -10,27 +10,31 @@ from btlang.vocabulary.entry import MANNER, RECIPIENT, UNMARKED, VIA
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import TrieNode
 from btlang.vocabulary.verbs import Frame, is_no_way
-from btlang.vocabulary.word_tree import NO_WORDS, SLOTS, VERBS
+from btlang.vocabulary.word_tree import END, NO_WORDS, SLOTS, VERBS
 
 
 class Misfit(Record):
-    """A slot without a value of its type: the word where it is, the type, and the words that may follow the value."""
+    """A slot without a value of its type: the word where it is, the type, and the words that may follow the value.
+
+    `ending` are words that complete the phrase, "" where it may end with the value.
+    """
 
     at: int
     kind: str
     following: frozenset[str]
+    ending: str = ""
 
 
 def misfits_of(text: Words, at: int, roots: Iterable[TrieNode], context: ReadingContext) -> Iterator[Misfit]:
     """The slots that a phrase would have at the furthest word that its own words reach."""
     furthest = at
-    found: dict[str, set[str]] = {}
+    found: dict[str, TrieNode] = {}
     paths: list[tuple[TrieNode, int]] = [(root, at) for root in roots]
     while paths:
         node, i = paths.pop()
         for kind, last in _empty_roles(node.get(VERBS, ()), text, i, context) if i > at else ():
             if last >= furthest and context.read(kind, text, last) is None:
-                found = {**(found if last == furthest else {}), kind: set()}
+                found = {**(found if last == furthest else {}), kind: {END: None}}
                 furthest = last
         for name, kind, child in node.get(SLOTS, ()):
             value = context.read(kind, text, i)
@@ -39,13 +43,22 @@ def misfits_of(text: Words, at: int, roots: Iterable[TrieNode], context: Reading
             elif context.types[kind].names and any(word not in NO_WORDS for word in node):
                 continue  # one of a few names would be an addition to the words that are missing
             elif i > furthest:
-                furthest, found = i, {kind: set(child)}
+                furthest, found = i, {kind: child}
             elif i == furthest and i > at:
-                found.setdefault(kind, set()).update(child)
+                found[kind] = {**found.get(kind, {}), **child}
         child = node.get(text.words[i])
         if child is not None:
             paths.append((child, i + 1))
-    yield from (Misfit(furthest, kind, frozenset(following)) for kind, following in found.items())
+    yield from (Misfit(furthest, kind, frozenset(following), _ending(following)) for kind, following in found.items())
+
+
+def _ending(node: TrieNode) -> str:
+    """Return the first words that lead from there to the end of a phrase, "" if none are needed or a slot follows."""
+    words: list[str] = []
+    while not NO_WORDS & node.keys():
+        word, node = next(iter(node.items()))
+        words.append(word)
+    return " ".join(words) if END in node else ""
 
 
 def _empty_roles(

@@ -123,7 +123,7 @@ def _misfit(
     names = [KIND_NAMES.get(kind.name, kind.name.replace("_", " ")) for kind in types]
     wanted = joined([f"{_article(name)} {name}" for name in names], "or")
     head = text.span(first, at).text
-    example = f"{head} {value_example(types[0], vocabulary)}"
+    example = f"{head} {value_example(types[0], vocabulary)} {misfits[0].ending}".rstrip()
     if text.words[at] == "(" and end > at and any(kind.name == PLACE for kind in types):
         point = vocabulary.values.point_text("3", "4", "90")
         return diagnostic("BT036", text.span(at, end), example=f"{head} {point}")
