@@ -46,12 +46,21 @@ def exact_block(node: ast.Exact, printer: Printer) -> Iterator[tuple[Fragments, 
 def node_head(node: ast.Exact, printer: Printer) -> str:
     """Print the node with its name and its ports, without its children."""
     ports = dict(node.ports)
-    said = _form(node, ports, printer) if node.items else ""
-    if said and is_one_piece(node.name):
+    said = (_form(node, ports, printer) if node.items else "") or _head(node, ports, printer)
+    if node.items and is_one_piece(node.name):
         label = quote(node.name, printer.vocabulary)
         is_alone = node.id == SEQUENCE and not ports
         return label if is_alone else f"{label}, {said}" + _details(node.replace(name=""), ports, printer)
-    return (said or _head(node, ports, printer)) + _details(node, ports, printer)
+    return said + _details(node, ports, printer)
+
+
+def split_label(node: ast.Ast, printer: Printer) -> tuple[str, ast.Ast]:
+    """Return the name of a leaf that is a statement, as it stands before it, "" if it doesn't; and the leaf without it."""
+    leaf = node.condition if isinstance(node, ast.Check) else node
+    if not isinstance(leaf, ast.Exact | ast.Phrase) or not is_one_piece(leaf.name) or ast.parts(leaf):
+        return "", node
+    bare: ast.Ast = leaf.replace(name="")
+    return f"{quote(leaf.name, printer.vocabulary)}: ", node.replace(condition=bare) if leaf is not node else bare
 
 
 def _form(node: ast.Exact, ports: dict[str, str], printer: Printer) -> str:
@@ -81,10 +90,7 @@ def _details(node: ast.Exact | ast.Phrase, ports: dict[str, str], printer: Print
         behind = said + behind
         ports.popitem()
     gives = {key: ports.pop(key) for key in node.outputs if _KEY.fullmatch(ports.get(key, ""))}
-    head += _ports("with", ports, printer)
-    if [f"{{{key}}}" for key in gives] == [*gives.values()] and len(gives) == 1:
-        return f"{head} {vocabulary.word('giving')} {''.join(gives.values())}{behind}"
-    return head + _ports("giving", gives, printer) + behind
+    return head + _ports("with", ports, printer) + _ports("giving", gives, printer) + behind
 
 
 def _detail(port: str, text: str, vocabulary: Lexicon) -> str:
@@ -131,13 +137,14 @@ def _in_words(node_id: str, subtree: str, role: str, printer: Printer) -> str:
 
 
 def _ports(role: str, ports: Mapping[str, str], printer: Printer) -> str:
-    """Print `with width 0.05, speed 2`; the word again if a name behind a comma would be read as a command."""
+    """Print `with width 0.05, {path}`; the word again if a name behind a comma would be read as a command."""
     vocabulary, said = printer.vocabulary, ""
     for name, text in ports.items():
-        key = _key(name, vocabulary)
-        value = _value(text, vocabulary)
-        is_free = said and _is_free(key, value, printer)
-        said += f", {key} {value}" if is_free else f" {vocabulary.word(role)} {key} {value}"
+        key, value = _key(name, vocabulary), _value(text, vocabulary)
+        is_short = value == f"{{{name}}}"  # said without its name
+        is_free = said and (is_short or _is_free(key, value, printer))
+        port = value if is_short else f"{key} {value}"
+        said += f", {port}" if is_free else f" {vocabulary.word(role)} {port}"
     return said
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator
 
-from btlang.printer.exact import exact_block, quote
+from btlang.printer.exact import exact_block, quote, split_label
 from btlang.printer.fragments import COLON, COMMA, is_longer, mark
 from btlang.printer.printer import THEN, Doc, Printer
 from btlang.printer.sentence import (
@@ -61,12 +61,17 @@ def lines_of(
         if kept:
             found += (f"{INDENT * depth}{line}" if line else "" for line in kept)
             continue
+        label, leaf = split_label(item, printer)
+        if label:
+            found += (f"{INDENT * depth}# {text}" for text in printer.comments(item, whole=True))
+            stack.append((depth, label + printer.statement(leaf), ""))
+            continue
         said, room = printer.say(item), width - len(INDENT) * depth
         line = "" if is_longer(said.fragments, room) else printer.line(item, said, among)
         too_long = not line or len(line) > room
         unclear = printer.is_clear and said.is_mixed
         needs_block = said.in_lines or ((too_long or unclear) and room >= least)
-        sections = _sections(item, said, among, unclear) if needs_block else _none
+        sections = _sections(item, said, among, unclear, too_long) if needs_block else _none
         below: list[tuple[int, ast.Ast | str, str]] = []
         for head, body in sections(item, printer):
             if isinstance(body, ast.Ast):
@@ -95,10 +100,12 @@ def _wrap(line: str, margin: str, width: float, printer: Printer) -> Iterator[st
     yield head + line[begin:]
 
 
-def _sections(node: ast.Ast, said: Doc, among: str, unclear: bool) -> Callable[[Any, Printer], Iterator[Section]]:
+def _sections(
+    node: ast.Ast, said: Doc, among: str, unclear: bool, too_long: bool
+) -> Callable[[Any, Printer], Iterator[Section]]:
     """Return how a statement is a block, which is one of a chain or of `children`."""
     if isinstance(node, ast.Chain):
-        if node.operator == "sequence" and (among == "children" or (unclear and not said.can_skip)):
+        if node.operator == "sequence" and (among == "children" or ((unclear or too_long) and not said.can_skip)):
             return _sequence_node
         if node.operator == "fallback" and unclear and _is_try(node):
             return _try_otherwise

@@ -150,8 +150,8 @@ def test_ports_stand_behind_one_with_and_outputs_last() -> None:
                 + models)  # fmt: skip
     assert text == [
         '"Other" means do plan giving {path}',
-        'do plan with goal {goal} with say "x", place "a, b", map {map} giving {path}',
-        "do plan giving cost {c}, path {path}",
+        'do plan with {goal} with say "x", place "a, b", {map} giving {path}',
+        "do plan giving cost {c}, {path}",
         "do plan giving path {route}",
         'do plan with path "p"',
     ]
@@ -164,7 +164,7 @@ PORTS_LIKE_WORDS = [
     ('is_open="true" door_is_open="{k}"', 'with is_open "true", door_is_open {k}'),
     ('is="{is}" means="{means}"', 'with "is" "{is}", "means" "{means}"'),
     ('increase_rate="2" rate="{decrease}"', 'with increase_rate 2, rate "{decrease}"'),
-    ('then="{then}" called="{k}" giving="4"', "with then {then}, called {k}, giving 4"),
+    ('then="{then}" called="{k}" giving="4"', "with {then}, called {k}, giving 4"),
 ]
 
 

@@ -181,6 +181,18 @@ class Token:
         return f"{self.kind}({self.role or self.value or ''})"
 
 
+def name_node(token: Token, name: str) -> bool:
+    """Give the node of an operand a name; False if it is none, or has one."""
+    said = token.value
+    if isinstance(said, Called) and token.kind in ("command", "condition"):
+        details = said.details or NodeCall("", (), "")
+        token.value = said.replace(details=details.replace(name=name))
+        return not details.name
+    if isinstance(said, NodeCall):
+        token.value = said.replace(name=name)
+    return isinstance(said, NodeCall) and not said.name
+
+
 def go_on(tokens: list[Token]) -> None:
     """The stops at the end become one token "stop", if they end something: the next word goes on with it."""
     kept = run_start(tokens, len(tokens), ("newline", "semi"))

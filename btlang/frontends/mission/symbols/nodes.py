@@ -18,7 +18,7 @@ from btlang.tree.catalogue import SEQUENCE, SUBTREE
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.node_forms import node_details, node_forms, node_forms_by_start
-from btlang.vocabulary.node_words import is_port, read_id, role_end, subtree_named
+from btlang.vocabulary.node_words import ends_id, is_port, read_id, role_end, subtree_named
 from btlang.vocabulary.trie import TrieNode
 
 _MOST_WORDS = 12  # of the name of a port
@@ -103,6 +103,15 @@ def read_form(text: Words, at: int, vocabulary: Lexicon, names: TrieNode | None 
     except Unreadable:
         pass
     return None
+
+
+def read_label(text: Words, at: int, vocabulary: Lexicon) -> tuple[str, int] | None:
+    """The name of a node in quotes that stands before it: `"first try": go to the lab`; and where the node begins."""
+    if text.words[at][0] != '"':
+        return None
+    name, end = _Reader(text, vocabulary).text(at)
+    is_label = text.words[end] in (":", ",") and text.words[end + 1] not in (END_OF_STATEMENT, END_OF_TEXT)
+    return (name, end + 1) if is_label else None
 
 
 def _details(reader: _Reader, at: int, node_id: str, ports: dict[str, str]) -> tuple[NodeCall, int]:
@@ -254,12 +263,8 @@ class _Reader:
                 if another is None:
                     return outputs, at
                 following, key, value, at = another
-            elif giving_at and self._text.words[following] == "{":
-                value, at = self.text(following)
-                key = value[1:-1].strip()
             else:
-                key, value_at = self.key(following)
-                value, at = self.text(value_at)
+                key, _, value, at = self.port(following)
             begins, gives = True, bool(giving_at) or (gives and not with_at)
             if key in ports:
                 raise GivenTwice(following, f"another port than {key}")
@@ -283,12 +288,22 @@ class _Reader:
         behind = self.word("with", at + 1)
         following = behind or at + 1
         try:
-            key, value_at = self.key(following)
-            value, end = self.text(value_at)
+            key, value_at, value, end = self.port(following)
         except Unreadable:
             return None
-        is_one = behind or is_port(self._text, following, value_at, self._vocabulary, self._names)
-        return (following, key, value, end) if is_one else None
+        if value_at == following:  # `{limit} is more than 3` is a condition
+            is_one = self._text.words[end] in _BEHIND_ID or ends_id(self._text, end, self._vocabulary)
+        else:
+            is_one = is_port(self._text, following, value_at, self._vocabulary, self._names)
+        return (following, key, value, end) if behind or is_one else None
+
+    def port(self, at: int) -> tuple[str, int, str, int]:
+        """The name of a port, where its text begins, the text and where it ends; `{path}` is the port of that name."""
+        if self._text.words[at] == "{":
+            value, end = self.text(at)
+            return value[1:-1].strip(), at, value, end
+        key, value_at = self.key(at)
+        return key, value_at, *self.text(value_at)
 
     def key(self, at: int) -> tuple[str, int]:
         """The name of a port, in quotes or as words: `number of retries`; and where its text begins."""

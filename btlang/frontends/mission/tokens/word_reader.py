@@ -10,7 +10,7 @@ from bisect import bisect_right
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.symbols.includes import ROLE as INCLUDE
 from btlang.frontends.mission.symbols.names import Names
-from btlang.frontends.mission.symbols.nodes import Unreadable, read_form, read_node, unreadable
+from btlang.frontends.mission.symbols.nodes import Unreadable, read_form, read_label, read_node, unreadable
 from btlang.frontends.mission.symbols.prefixes import SEPARATORS, Prefix, span_of
 from btlang.frontends.mission.token import (
     BEFORE_CONDITIONS,
@@ -19,6 +19,7 @@ from btlang.frontends.mission.token import (
     Token,
     constraint_of,
     go_on,
+    name_node,
     statement_start,
 )
 from btlang.frontends.mission.tokens.calls import NEGATED, Calls
@@ -149,7 +150,7 @@ class WordReader:
 
     def _phrase(self, at: int, last: int) -> int:
         """What begins at a word, known or unknown."""
-        form = self._form(at)
+        form = self._form(at) or self._label(at, last)
         if form:
             return form
         match = self._without_measure(self._requests.with_name(self._match(at), at), at)
@@ -473,6 +474,22 @@ class WordReader:
             return 0
         tokens.append(Token("node", text.starts[at], text.ends[read[1] - 1], read[0]))
         return read[1]
+
+    def _label(self, at: int, last: int) -> int:
+        """A node with its name before it, at the start of a statement. Returns where to go on, or 0."""
+        tokens, text = self._tokens, self._text
+        label = read_label(text, at, self._vocabulary) if begins(tokens) else None
+        if label is None:
+            return 0
+        (name, end), first = label, len(tokens)
+        while end < last and len(tokens) == first + [token.kind for token in tokens[first:]].count("check"):
+            end = self._phrase(end, last)
+        is_whole = text.words[end] in (END_OF_STATEMENT, END_OF_TEXT, ":") and len(tokens) > first
+        if not is_whole or (tokens[-1].kind != "unknown" and not name_node(tokens[-1], name)):
+            self._problems.append(unreadable(text, at, Unreadable(label[1] - 1, "one node behind its name")))
+        if len(tokens) > first:
+            tokens[first].start = text.starts[at]
+        return end
 
     def _node(self, head: Match, at: int) -> int:
         """A node that is said by its id. Returns where to go on, 0 where the words are no such node."""
