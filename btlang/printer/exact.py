@@ -14,7 +14,7 @@ from btlang.printer.printer import WHOLE, Doc, Printer
 from btlang.text.source import Source
 from btlang.text.words import split
 from btlang.tree import ast
-from btlang.tree.catalogue import SEQUENCE, SUBTREE
+from btlang.tree.catalogue import SEQUENCE, SUBTREE, takes_one_child
 from btlang.vocabulary.language_tables import CHANGING
 from btlang.vocabulary.lexicon import DEFINING, Lexicon
 from btlang.vocabulary.node_forms import node_details, node_forms
@@ -40,7 +40,16 @@ def exact(node: ast.Exact, _parts: list[Doc], printer: Printer) -> Doc:
 def exact_block(node: ast.Exact, printer: Printer) -> Iterator[tuple[Fragments, Iterator[tuple[ast.Ast, str]]]]:
     """Yield its words, and its children as the lines below it."""
     if node.items:
-        yield (mark(node_head(node, printer)),), ((item, "children") for item in node.items)
+        steps = _steps(node.items[0]) if takes_one_child(node.id) and len(node.items) == 1 else []
+        items = steps if len(steps) > 1 else node.items
+        yield (mark(node_head(node, printer)),), ((item, "children") for item in items)
+
+
+def _steps(item: ast.Ast) -> list[ast.Ast]:
+    """Return the items of a sequence that is said without words of its own, as the lines below a decorator are."""
+    is_chain = isinstance(item, ast.Chain) and item.operator == "sequence"
+    is_plain = isinstance(item, ast.Exact) and item.id == SEQUENCE and not item.ports and not item.name
+    return ast.parts(item) if is_chain or is_plain else []
 
 
 def node_head(node: ast.Exact, printer: Printer) -> str:
@@ -54,22 +63,26 @@ def node_head(node: ast.Exact, printer: Printer) -> str:
     return said + _details(node, ports, printer)
 
 
-def split_label(node: ast.Ast, printer: Printer) -> tuple[str, ast.Ast]:
-    """Return the name of a leaf that is a statement, as it stands before it, "" if it doesn't; and the leaf without it."""
+def split_label(node: ast.Ast) -> tuple[str, ast.Ast]:
+    """Return the name that stands before a statement, "" if none does, and the statement without it."""
+    if isinstance(node, ast.Named):
+        return node.name, node.body
     leaf = node.condition if isinstance(node, ast.Check) else node
     if not isinstance(leaf, ast.Exact | ast.Phrase) or not is_one_piece(leaf.name) or ast.parts(leaf):
         return "", node
     bare: ast.Ast = leaf.replace(name="")
-    return f"{quote(leaf.name, printer.vocabulary)}: ", node.replace(condition=bare) if leaf is not node else bare
+    return leaf.name, node.replace(condition=bare) if leaf is not node else bare
 
 
 def _form(node: ast.Exact, ports: dict[str, str], printer: Printer) -> str:
-    """Print the form that says a node with the children below it, "" if it has none; its port is taken out."""
+    """Print the form that says a node with the children below it, "" if it has none; its ports are taken out."""
     for form in node_forms(printer.vocabulary):
-        if form.id != node.id or (form.port and form.port not in ports):
-            continue
-        if form.value is None or ports[form.port] == form.value:
-            return form.say(_value(ports.pop(form.port), printer.vocabulary) if form.port else "")
+        said = [each.name for each in form.ports if each.value is None]
+        fixed = {each.name: each.value for each in form.ports if each.value is not None}
+        if form.id == node.id and ports.keys() >= {*said} and fixed.items() <= ports.items():
+            for name in fixed:
+                del ports[name]
+            return form.say([_value(ports.pop(name), printer.vocabulary) for name in said])
     return ""
 
 
@@ -110,15 +123,15 @@ def _head(node: ast.Exact, ports: dict[str, str], printer: Printer) -> str:
     if node.id == SUBTREE and "ID" in ports and words is not None:
         name = ports.pop("ID")
         said = _in_words(id_of_name(name), name, role, printer)
-        if name in subtrees:
-            return f"{word} {said or quote(name, vocabulary)}"
+        if name in subtrees or (" " in name and not node.items):
+            return f"{word} {(name in subtrees and said) or quote(name, vocabulary)}"
         return f"{word} {words} {quote(name, vocabulary)}"
     if words is not None and node.id != SUBTREE:
         return f"{word} {words}"
     said = _in_words(node.id, "", role, printer)
     if said:
         return f"{word} {said}"
-    if not node.is_condition and node.id in subtrees:
+    if not node.is_condition and (node.id in subtrees or " " in node.id):
         return f"{word} {vocabulary.word('node')} {quote(node.id, vocabulary)}"
     return f"{word} {quote(node.id, vocabulary)}"
 

@@ -295,6 +295,12 @@ def never_ends(node_id: str, ports: Sequence[tuple[str, str]], endless: Sequence
     return kind.again == ON_SUCCESS and kind.is_endless(ports)
 
 
+def takes_one_child(node_id: str) -> bool:
+    """Whether a node of this kind has exactly one child, so that several can only be one sequence."""
+    kind = CATALOGUE.get(node_id)
+    return kind is not None and kind.most == 1
+
+
 def port_content(node_id: str, port: str) -> str:
     """Return what the text of a port is: SCRIPT, KEY, or "" for a value or a reference."""
     if port in PRE_CONDITIONS or port in POST_CONDITIONS:

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from functools import lru_cache
 
 from btlang.support.record import Record
@@ -12,7 +13,7 @@ from btlang.text.source import Source
 from btlang.text.words import split
 from btlang.vocabulary.lexicon import Lexicon
 
-_PORT = re.compile(r"\s*\{(\w+)(?:=([^{}]*))?\}")
+_PORT = re.compile(r"(\s*)\{(\w+)(?:=([^{}]*))?\}")
 
 
 class NodeDetail(Record):
@@ -24,23 +25,29 @@ class NodeDetail(Record):
     value: str | None = None
 
 
-class NodeForm(Record):
-    """The words around a port, as they are written and as a text has them: without articles.
+class FormPort(Record):
+    """A port of a form. If it has a `value`, that isn't said."""
 
-    `port` is "" if the node is said without one. If it has a `value`, that isn't said.
-    """
+    name: str
+    value: str | None = None
+
+
+class NodeForm(Record):
+    """The words and ports of a form, as it is written, and as `parts` of a text: without articles."""
 
     id: str
     pattern: str
-    before: tuple[str, ...]
-    port: str = ""
-    value: str | None = None
-    after: tuple[str, ...] = ()
+    parts: tuple[str | FormPort, ...]
 
-    def say(self, value: str) -> str:
-        """Return the form with this value of its port, as it is written."""
-        text = self.pattern if self.value is None else _PORT.sub("", self.pattern)
-        return text.replace(f"{{{self.port}}}", value)
+    @property
+    def ports(self) -> tuple[FormPort, ...]:
+        """Return the ports alone."""
+        return tuple(part for part in self.parts if isinstance(part, FormPort))
+
+    def say(self, values: Iterable[str]) -> str:
+        """Return the form with the values of the ports that are said, as it is written."""
+        left = iter(values)
+        return _PORT.sub(lambda port: "" if port[3] is not None else port[1] + next(left), self.pattern)
 
 
 @lru_cache(maxsize=8)
@@ -65,18 +72,18 @@ def node_forms_by_start(vocabulary: Lexicon) -> dict[str, list[NodeForm]]:
     """The forms by their first words."""
     found: dict[str, list[NodeForm]] = {}
     for form in node_forms(vocabulary):
-        if not form.before:  # all of them are articles
-            continue
-        found.setdefault(form.before[0], []).append(form)
+        if form.parts and isinstance(form.parts[0], str):  # else all of them are articles
+            found.setdefault(form.parts[0], []).append(form)
     return found
 
 
 def _form(node_id: str, pattern: str, vocabulary: Lexicon) -> NodeForm:
-    slot = _PORT.search(pattern)
-    if slot is None:
-        return NodeForm(node_id, pattern, _words(pattern, vocabulary))
-    before, after = _words(pattern[: slot.start()], vocabulary), _words(pattern[slot.end() :], vocabulary)
-    return NodeForm(node_id, pattern, before, slot[1], slot[2], after)
+    parts: list[str | FormPort] = []
+    at = 0
+    for slot in _PORT.finditer(pattern):
+        parts += (*_words(pattern[at : slot.start()], vocabulary), FormPort(slot[2], slot[3]))
+        at = slot.end()
+    return NodeForm(node_id, pattern, (*parts, *_words(pattern[at:], vocabulary)))
 
 
 def _words(text: str, vocabulary: Lexicon) -> tuple[str, ...]:

@@ -189,15 +189,17 @@ def test_a_subtree_whose_name_would_change_a_value_is_said_in_quotes() -> None:
 
 def test_a_subtree_is_said_by_its_name() -> None:
     text = said(
-        '<Sequence><SubTree ID="Approach Shelf" n="1"/><SubTree ID="move_arm"/><SubTree ID="Else"/>'
+        '<Sequence><SubTree ID="Back off"/><SubTree ID="Approach Shelf" n="1"/><SubTree ID="move_arm"/>'
+        '<SubTree ID="Else"/>'
         '<Action ID="Move arm"/><Action ID="ApproachShelf"/><Action ID="move_arm"/></Sequence></BehaviorTree>'
         '<BehaviorTree ID="Approach Shelf"><Wave/></BehaviorTree><BehaviorTree ID="move_arm"><Nod/>'
     )  # fmt: skip
-    assert text[-6:] == [
+    assert text[-7:] == [
+        'do "Back off"',
         "do approach shelf with n 1",
         'do "move_arm"',
         'do subtree "Else"',
-        'do "Move arm"',
+        'do node "Move arm"',
         'do "ApproachShelf"',
         'do node "move_arm"',
     ]

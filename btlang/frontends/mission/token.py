@@ -17,7 +17,7 @@ grouped tokens, which need no look-ahead any more:
     AFTER_FORM cond [ELSE body] END        the same after one command, and `provided that`
     LOOP head DO body END                  before, after, while, if with a command as their head: `after waving, nod`
     LOOP body [STOP cond] END              repeat, every, after 5 s, for each, and try: LOOP body [ELSE body] END;
-                                           also a node that is said by its id with its children
+                                           also a node that is said by its id with its children, and a name before one
     TEST cond END                          check, wait until
 """
 
@@ -179,18 +179,6 @@ class Token:
 
     def __repr__(self) -> str:
         return f"{self.kind}({self.role or self.value or ''})"
-
-
-def name_node(token: Token, name: str) -> bool:
-    """Give the node of an operand a name; False if it is none, or has one."""
-    said = token.value
-    if isinstance(said, Called) and token.kind in ("command", "condition"):
-        details = said.details or NodeCall("", (), "")
-        token.value = said.replace(details=details.replace(name=name))
-        return not details.name
-    if isinstance(said, NodeCall):
-        token.value = said.replace(name=name)
-    return isinstance(said, NodeCall) and not said.name
 
 
 def go_on(tokens: list[Token]) -> None:

@@ -17,7 +17,7 @@ from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, statements
 from btlang.tree.catalogue import SEQUENCE, SUBTREE
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.lexicon import Lexicon
-from btlang.vocabulary.node_forms import node_details, node_forms, node_forms_by_start
+from btlang.vocabulary.node_forms import NodeForm, node_details, node_forms, node_forms_by_start
 from btlang.vocabulary.node_words import ends_id, is_port, read_id, role_end, subtree_named
 from btlang.vocabulary.trie import TrieNode
 
@@ -63,6 +63,9 @@ def read_node(
             return None
         node_id, at, way = found
         is_named = meaning.role == "do" and way != "node"
+        if is_named and " " in node_id and node_id not in subtrees:  # no tag of XML has such a name
+            call, end = _details(reader, at, SUBTREE, {"ID": node_id})
+            return (call, end) if text.words[end] != ":" else _details(reader, at, node_id, ports)
         subtree = subtree_named(node_id, subtrees, in_words=way == "words") if is_named else ""
         if subtree:
             node_id, ports["ID"] = SUBTREE, subtree
@@ -79,29 +82,21 @@ def read_form(text: Words, at: int, vocabulary: Lexicon, names: TrieNode | None 
     with a name before it, or, if it is a sequence, by its name alone: `"say hello":`. None for other words.
     """
     reader, words, name = _Reader(text, vocabulary, names), text.words, ""
-    try:
-        if words[at][0] == '"':
-            name, at = reader.text(at)
-            if words[at] == ":" and words[at + 1] in (END_OF_STATEMENT, END_OF_TEXT):
-                return NodeCall(SEQUENCE, (), name), at
-            if words[at] != ",":
-                return None
-            at += 1
-        for form in node_forms_by_start(vocabulary).get(words[at], ()):
-            end, ports = at + len(form.before), dict[str, str]()
-            if tuple(words[at:end]) != form.before:
-                continue
-            if form.value is not None:
-                ports[form.port] = form.value
-            elif form.port:
-                ports[form.port], end = reader.text(end)
-            behind = end + len(form.after)
-            if tuple(words[end:behind]) == form.after:
-                call, end = _details(reader, behind, form.id, ports)
-                if words[end] == ":" and not (name and call.name):
-                    return call.replace(name=name or call.name), end
-    except Unreadable:
-        pass
+    if words[at][0] == '"':
+        name, at = reader.text(at)
+        if words[at] == ":" and words[at + 1] in (END_OF_STATEMENT, END_OF_TEXT):
+            return NodeCall(SEQUENCE, (), name), at
+        if words[at] != ",":
+            return None
+        at += 1
+    for form in node_forms_by_start(vocabulary).get(words[at], ()):
+        try:
+            found = reader.form(at, form)
+            call, end = _details(reader, found[1], form.id, found[0]) if found is not None else (None, at)
+        except Unreadable:
+            continue
+        if call is not None and words[end] == ":" and not (name and call.name):
+            return call.replace(name=name or call.name), end
     return None
 
 
@@ -211,9 +206,9 @@ def misread_form(text: Words, at: int, vocabulary: Lexicon) -> tuple[Span, list[
     if words[last] != ":" or last == at:
         return None
     span = text.span(at, last)
-    number = _NUMBER.search(span.text)
-    value = number[0] if number else ""
-    said = [form.say(value) for form in node_forms(vocabulary) if (form.port and form.value is None) == bool(value)]
+    values = _NUMBER.findall(span.text)
+    forms = node_forms(vocabulary)
+    said = [each.say(values) for each in forms if sum(port.value is None for port in each.ports) == len(values)]
     near = respellings(span.text.lower(), said)
     return (span, near) if near else None
 
@@ -241,6 +236,20 @@ class _Reader:
                 return *found, way
         words = read_id(self._text, at, self._vocabulary)
         return (*words, "words") if words is not None else None
+
+    def form(self, at: int, form: NodeForm) -> tuple[dict[str, str], int] | None:
+        """The ports that a form says, and where it ends; None for other words. Raises Unreadable."""
+        ports: dict[str, str] = {}
+        for part in form.parts:
+            if isinstance(part, str):
+                if self._text.words[at] != part:
+                    return None
+                at += 1
+            elif part.value is not None:
+                ports[part.name] = part.value
+            else:
+                ports[part.name], at = self.text(at)
+        return ports, at
 
     def ports(self, at: int, ports: dict[str, str]) -> tuple[list[str], int]:
         """Reads `with width 0.05, speed 2 giving {path} unless "x > 1"` into `ports`; those behind `giving`, and where

@@ -19,7 +19,6 @@ from btlang.frontends.mission.token import (
     Token,
     constraint_of,
     go_on,
-    name_node,
     statement_start,
 )
 from btlang.frontends.mission.tokens.calls import NEGATED, Calls
@@ -150,7 +149,7 @@ class WordReader:
 
     def _phrase(self, at: int, last: int) -> int:
         """What begins at a word, known or unknown."""
-        form = self._form(at) or self._label(at, last)
+        form = self._form(at) or self._label(at)
         if form:
             return form
         match = self._without_measure(self._requests.with_name(self._match(at), at), at)
@@ -475,20 +474,13 @@ class WordReader:
         tokens.append(Token("node", text.starts[at], text.ends[read[1] - 1], read[0]))
         return read[1]
 
-    def _label(self, at: int, last: int) -> int:
-        """A node with its name before it, at the start of a statement. Returns where to go on, or 0."""
-        tokens, text = self._tokens, self._text
-        label = read_label(text, at, self._vocabulary) if begins(tokens) else None
+    def _label(self, at: int) -> int:
+        """The name of a node before it, at the start of a statement. Returns where to go on, or 0."""
+        label = read_label(self._text, at, self._vocabulary) if begins(self._tokens) else None
         if label is None:
             return 0
-        (name, end), first = label, len(tokens)
-        while end < last and len(tokens) == first + [token.kind for token in tokens[first:]].count("check"):
-            end = self._phrase(end, last)
-        is_whole = text.words[end] in (END_OF_STATEMENT, END_OF_TEXT, ":") and len(tokens) > first
-        if not is_whole or (tokens[-1].kind != "unknown" and not name_node(tokens[-1], name)):
-            self._problems.append(unreadable(text, at, Unreadable(label[1] - 1, "one node behind its name")))
-        if len(tokens) > first:
-            tokens[first].start = text.starts[at]
+        name, end = label
+        self._tokens.append(Token("label", self._text.starts[at], self._text.ends[end - 1], name))
         return end
 
     def _node(self, head: Match, at: int) -> int:
