@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
         _failureIf: str
         _successIf: str
+        _onlyIf: str
         _skipIf: str
         _while: str
         _onSuccess: str

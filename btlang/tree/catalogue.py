@@ -24,10 +24,14 @@ BEHAVIOR_TREE_CPP, NAV2, BTLANG = "BehaviorTree.CPP", "Nav2", "btlang"
 PRE_CONDITIONS = {
     "_failureIf": (True, ON_FAILURE),
     "_successIf": (True, ON_SUCCESS),
+    "_onlyIf": (False, ON_SKIPPED),
     "_skipIf": (True, ON_SKIPPED),
     "_while": (False, ON_SKIPPED),
 }
-"""Scripts that every node may have, in the order in which they are asked: which answer decides, and the status then."""
+"""Scripts that every node may have, in the order in which they are asked: which answer decides, and the status then.
+
+Some programs add `_onlyIf` to BehaviorTree.CPP, which doesn't know it.
+"""
 POST_CONDITIONS = ("_onSuccess", "_onFailure", "_onHalted", "_post")
 """Scripts in ports that every node may have."""
 SCRIPT, KEY = "script", "key"

@@ -59,6 +59,10 @@ CASES = {
         "<ForceFailure><Sequence><Wave/><Nod/></Sequence></ForceFailure>",
         ["failing in any case:", "  wave", "  nod"],
     ),
+    "a condition of other programs": (
+        '<Wave name="hi" _onlyIf="x &gt; 1"/>',
+        ['"hi": wave only if "x > 1"'],
+    ),
     "thresholds of a parallel": (
         '<Parallel success_count="1" failure_count="2"><Wave/><Nod/></Parallel>',
         ["at the same time, until 1 succeeded or 2 failed:", "  wave", "  nod"],

@@ -28,7 +28,7 @@ SUBTREES = st.fixed_dictionaries(
     },
 )
 CONDITIONS = st.one_of(
-    st.tuples(st.sampled_from(("_failureIf", "_successIf", "_skipIf", "_while")), ASKED),
+    st.tuples(st.sampled_from(("_failureIf", "_successIf", "_onlyIf", "_skipIf", "_while")), ASKED),
     st.tuples(st.sampled_from(("_onSuccess", "_onFailure", "_onHalted", "_post")), DONE),
 )
 

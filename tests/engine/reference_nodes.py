@@ -44,7 +44,7 @@ class MoreNodes(ReferenceNode):
                     return FAILURE
                 if self.asked("_successIf"):
                     return SUCCESS
-                if self.asked("_skipIf"):
+                if self.asked("_onlyIf") is False or self.asked("_skipIf"):
                     return SKIPPED
             return SKIPPED if self.asked("_while") is False else IDLE
         except ScriptFailed:
