@@ -14,7 +14,8 @@ LONG = " ".join(f'{name}="{name} of the cell"' for name in ("shelf", "tray", "gr
 
 CASES = {
     "a name before a leaf": (
-        f'<Sequence><DetectTags name="first look" {PORTS}/><Wave name="hi"/><Sleep name="settle" msec="500"/></Sequence>',
+        f'<Sequence><DetectTags name="first look" {PORTS}/><Wave name="hi"/>'
+        '<Sleep name="settle" msec="500"/></Sequence>',
         ['"first look": do detect tags with {goal}, planner "Smac"', '"hi": wave', '"settle": wait 0.5 s'],
     ),
     "a name before a condition": (
