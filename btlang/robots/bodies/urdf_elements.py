@@ -48,21 +48,14 @@ class UrdfElement:
 
 
 class UrdfFile:
-    """The root tag of a URDF file, or of an MJCF file as one, and the values of its tags.
-
-    All methods raise BodyError with a line.
-    """
+    """The root tag of a URDF or MJCF file, and the values of its tags. All methods raise BodyError with a line."""
 
     def __init__(self, source: Source) -> None:
         self._source = source
         self.has_expressions = False
         """Whether names had expressions of xacro, which are left out."""
         self.root = self._parse()
-        if self.root.tag == "mujoco":
-            from btlang.robots.bodies.mjcf import robot_of_mjcf  # few files are MJCF
-
-            self.root = robot_of_mjcf(self.root, self.wrong)
-        if self.root.tag != "robot":
+        if self.root.tag not in ("robot", "mujoco"):
             other = f"this isn't URDF: it begins with <{self.root.tag}>, not with <robot>"
             raise self.wrong(self.root, _OTHERS.get(self.root.tag, other))
 
