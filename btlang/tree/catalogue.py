@@ -202,6 +202,10 @@ CATALOGUE: dict[str, NodeKind] = {
             "RecoveryNode", 2, 2, ports={"number_of_retries": Port("int", "1", 0, _INT)}, waits=True, again=ON_FAILURE,
             rounds="number_of_retries", skipped="first", origin=NAV2,
         ),
+        _control(
+            "PauseResumeController", 1, 4, skipped="never", origin=NAV2,
+            ports={"pause_service_name": Port("std::string", ""), "resume_service_name": Port("std::string", "")},
+        ),
         *(_switch(cases) for cases in range(2, 7)),
         _decorator("Inverter", waits=True, turns=(("SUCCESS", "FAILURE"), ("FAILURE", "SUCCESS")), symbol="¬",
                    tags_3=("Inverter",)),

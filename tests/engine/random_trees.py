@@ -87,6 +87,7 @@ def _more_parents(children: st.SearchStrategy[Node]) -> list[st.SearchStrategy[N
             lambda many: st.just(n(many.id, n("SingleTrigger", many.children[0]), *many.children[1:]))
         ),
         around("SingleTrigger"),
+        several("PauseResumeController", 1, 4),
         several("PersistentSequence", 1, 4, current_child_idx="{x}"),
         around("GoalUpdater", input_goal=st.just("{x}"), output_goal=st.just("{y}")),
         around("GoalUpdatedController", goal=st.just("{x}")),

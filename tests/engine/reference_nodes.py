@@ -279,6 +279,12 @@ class MoreNodes(ReferenceNode):
             return FAILURE
         return SUCCESS if SUCCESS in results else SKIPPED
 
+    def PauseResumeController(self) -> int:
+        result = self.children[0].execute()
+        if result != RUNNING:
+            self.reset_children()
+        return SUCCESS if result == SKIPPED else result
+
     def SingleTrigger(self) -> int:
         if self.status in (IDLE, SKIPPED):
             self.triggered = False
