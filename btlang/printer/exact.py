@@ -103,7 +103,8 @@ def _details(node: ast.Exact | ast.Phrase, ports: dict[str, str], printer: Print
         behind = said + behind
         ports.popitem()
     gives = {key: ports.pop(key) for key in node.outputs if _KEY.fullmatch(ports.get(key, ""))}
-    return head + _ports("with", ports, printer) + _ports("giving", gives, printer) + behind
+    is_command = isinstance(node, ast.Phrase)
+    return head + _ports("with", ports, printer, is_command) + _ports("giving", gives, printer) + behind
 
 
 def _detail(port: str, text: str, vocabulary: Lexicon) -> str:
@@ -149,12 +150,15 @@ def _in_words(node_id: str, subtree: str, role: str, printer: Printer) -> str:
     return said if all(longest(names, text, at, context) is None for at in places) else ""
 
 
-def _ports(role: str, ports: Mapping[str, str], printer: Printer) -> str:
-    """Print `with width 0.05, {path}`; the word again if a name behind a comma would be read as a command."""
+def _ports(role: str, ports: Mapping[str, str], printer: Printer, is_command: bool = False) -> str:
+    """Print `with width 0.05, {path}`; the word again if a name behind a comma would be read as a command.
+
+    `go to the lab with {person}` may be a command of its own, so a command's first port has its name.
+    """
     vocabulary, said = printer.vocabulary, ""
     for name, text in ports.items():
         key, value = _key(name, vocabulary), _value(text, vocabulary)
-        is_short = value == f"{{{name}}}"  # said without its name
+        is_short = value == f"{{{name}}}" and (said != "" or not is_command)  # said without its name
         is_free = said and (is_short or _is_free(key, value, printer))
         port = value if is_short else f"{key} {value}"
         said += f", {port}" if is_free else f" {vocabulary.word(role)} {port}"
