@@ -260,6 +260,7 @@ _SECTIONS: dict[type[ast.Ast], Callable[[Any, Printer], Iterator[Section]]] = {
     ast.Every: _every,
     ast.Apart: _apart,
     ast.Delay: _timed("delay"),
+    ast.Within: _timed("within"),
     ast.ForEach: _for_each,
     ast.Definition: _definition,
     ast.Exact: exact_block,

@@ -58,8 +58,8 @@ CASES = [
     (inverter(sequence(WAVE, parallel(NOD, TURN))), "inverting the result:\n  wave\n  nod and turn left"),
     (inverter(sequence(WAVE, times(NOD))), "inverting the result:\n  wave\n  nod 3 times"),
     (inverter(sequence(times(WAVE), NOD)), "inverting the result:\n  wave 3 times\n  nod"),
-    # `within` has no block, and a sequence that can be skipped is no `step by step:` below `try in order:`
-    (within(sequence(WAVE, fallback(NOD, TURN))), "(wave then (nod or turn left)) within 9 s"),
+    (within(sequence(WAVE, fallback(NOD, TURN))), "within 9 s:\n  wave\n  nod or turn left"),
+    # a sequence that can be skipped is no `step by step:` below `try in order:`
     (fallback(WAVE, NOD, sequence(when(LOW, WAVE), fallback(NOD, TURN))),
      "try in order:\n  wave\n  nod\n  (if battery is low, wave) then (nod or turn left)"),
 ]  # fmt: skip

@@ -56,6 +56,15 @@ CASES = {
             "  wave",
         ],
     ),
+    "a time limit of something long": (
+        f'<Timeout msec="2500"><Sequence><Wave/><DetectTags {LONG}/></Sequence></Timeout>',
+        [
+            "within 2.5 s:",
+            "  wave",
+            '  do detect tags with shelf "shelf of the cell", tray "tray of the cell",',
+            '      gripper "gripper of the cell", camera "camera of the cell", approach "approach of the cell"',
+        ],
+    ),
     "a decorator of a sequence": (
         "<ForceFailure><Sequence><Wave/><Nod/></Sequence></ForceFailure>",
         ["failing in any case:", "  wave", "  nod"],

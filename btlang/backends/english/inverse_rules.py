@@ -240,7 +240,7 @@ def _fallback(node: Node, children: tuple[Candidate, ...], checked: Checked) -> 
 
 
 def _within(node: Node, children: tuple[Candidate, ...], checked: Checked) -> Iterator[ast.Ast]:
-    part = _round(children[0], checked) if len(children) == 1 and not children[0].in_lines else None
+    part = _round(children[0], checked) if len(children) == 1 else None
     if part is not None:
         yield from (ast.Within(seconds, part, NOWHERE) for seconds in _seconds(node.port("msec"), checked))
 

@@ -62,7 +62,7 @@ _OPERAND: dict[str, Callable[[Scan, Token], None]] = {
         operands.loop,
     ),
     "label": operands.label,
-    **dict.fromkeys(("for", "up_to"), operands.front_amount),
+    **dict.fromkeys(("for", "up_to", "within"), operands.front_amount),
     **dict.fromkeys(("whenever", "first_time"), operands.rule),
     "not": operands.negation,
     "never": problems.prohibition,

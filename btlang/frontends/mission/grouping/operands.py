@@ -144,7 +144,7 @@ def label(scan: Scan, token: Token) -> None:
 
 
 def front_amount(scan: Scan, token: Token) -> None:
-    """`for 10 min, A`: as behind the command."""
+    """`for 10 min, A`, `within 10 s: A`: as behind the command."""
     (loop if scan.raw[scan.at + 1].kind in ("comma", "colon") else no_operand)(scan, token)
 
 
