@@ -17,7 +17,7 @@ from btlang.tree import ast
 from btlang.tree.catalogue import SEQUENCE, SUBTREE, takes_one_child
 from btlang.vocabulary.language_tables import CHANGING
 from btlang.vocabulary.lexicon import DEFINING, Lexicon
-from btlang.vocabulary.node_forms import node_details, node_forms
+from btlang.vocabulary.node_forms import is_negative, node_details, node_forms, opposite_script
 from btlang.vocabulary.node_words import id_of_name, is_port, said_id, subtree_named
 from btlang.vocabulary.trie import longest
 
@@ -109,10 +109,12 @@ def _details(node: ast.Exact | ast.Phrase, ports: dict[str, str], printer: Print
 
 def _detail(port: str, text: str, vocabulary: Lexicon) -> str:
     """Print a port that all nodes may have in words of its own, "" if it has none."""
+    opposite = opposite_script(text) if is_negative(text) else None
     for details in node_details(vocabulary).values():
         for detail in details:
-            if detail.port == port and detail.value in (None, text):
-                return f" {detail.said}" + (f" {quote(text, vocabulary)}" if detail.value is None else "")
+            said = opposite if detail.opposite else text
+            if detail.port == port and said is not None and detail.value in (None, text):
+                return f" {detail.said}" + (f" {quote(said, vocabulary)}" if detail.value is None else "")
     return ""
 
 

@@ -13,16 +13,24 @@ from btlang.text.source import Source
 from btlang.text.words import split
 from btlang.vocabulary.lexicon import Lexicon
 
+_OPPOSITE = "!"
+_COMPARISON = re.compile(r"(\w+\s*)([=!<>]=|[<>])(\s*(?:-?[\w.]+|'[^']*'))", re.ASCII)
+_FLAG = re.compile(r"(!?)([A-Za-z_]\w*)", re.ASCII)
+_OPPOSITES = {"==": "!=", "!=": "==", "<": ">=", ">=": "<", ">": "<=", "<=": ">"}
 _PORT = re.compile(r"(\s*)\{(\w+)(?:=([^{}]*))?\}")
 
 
 class NodeDetail(Record):
-    """The words that say a port of any node, and its text, None if that follows in quotes."""
+    """The words that say a port of any node, and its text, None if that follows in quotes.
+
+    What follows the words of an `opposite` is the opposite of the script in the port.
+    """
 
     port: str
     said: str
     words: tuple[str, ...]
     value: str | None = None
+    opposite: bool = False
 
 
 class FormPort(Record):
@@ -57,8 +65,23 @@ def node_details(vocabulary: Lexicon) -> dict[str, list[NodeDetail]]:
     for port, pattern in vocabulary.node_details.items():
         said, _, value = pattern.rstrip("}").partition(" {=")
         words = _words(said, vocabulary)
-        found.setdefault(words[0], []).append(NodeDetail(port, said, words, value or None))
+        detail = NodeDetail(port.lstrip(_OPPOSITE), said, words, value or None, port[:1] == _OPPOSITE)
+        found.setdefault(words[0], []).append(detail)
     return found
+
+
+def opposite_script(script: str) -> str | None:
+    """Return the script that is true where a simple one is false, and the other way round: `x != 6` for `x == 6`."""
+    compared = _COMPARISON.fullmatch(script)
+    if compared is not None:
+        return f"{compared[1]}{_OPPOSITES[compared[2]]}{compared[3]}"
+    flag = _FLAG.fullmatch(script)
+    return (flag[2] if flag[1] else f"!{flag[2]}") if flag is not None else None
+
+
+def is_negative(script: str) -> bool:
+    """Whether a simple script says what isn't: `x != 6`, `!done`."""
+    return opposite_script(script) is not None and "!" in script
 
 
 @lru_cache(maxsize=8)

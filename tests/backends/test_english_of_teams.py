@@ -73,6 +73,11 @@ CASES = {
         '<Wave name="hi" _onlyIf="x &gt; 1"/>',
         ['"hi": wave only if "x > 1"'],
     ),
+    "a script that says what isn't": (
+        "<Sequence><Wave _skipIf=\"mode != 'a b'\"/><Nod _skipIf='!done'/>"
+        "<Wave _skipIf='a != 1 &amp;&amp; b'/></Sequence>",
+        ["wave if \"mode == 'a b'\"", 'nod if "done"', 'wave unless "a != 1 && b"'],
+    ),
     "thresholds of a parallel": (
         '<Parallel success_count="1" failure_count="2"><Wave/><Nod/></Parallel>',
         ["at the same time, until 1 succeeded or 2 failed:", "  wave", "  nod"],

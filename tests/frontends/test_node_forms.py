@@ -84,6 +84,7 @@ def test_elsewhere_these_are_no_forms(text: str) -> None:
         ('"a": wave with speed 2 while "x < 3"', {"speed": "2", "_while": "x < 3"}),
         ('do plan motion with width 2 giving {cup} succeeding if "a == 1" failing if "b"',
          {"width": "2", "cup": "{cup}", "_successIf": "a == 1", "_failureIf": "b"}),
+        ('wave if "x == 6"', {"_skipIf": "x != 6"}),
         ('do subtree "Dock" with all values', {"ID": "Dock", "_autoremap": "true"}),
         ('do subtree "Dock" with _autoremap "false"', {"ID": "Dock", "_autoremap": "false"}),
         ('wave with _skipIf "x", speed 2', {"_skipIf": "x", "speed": "2"}),
@@ -97,7 +98,9 @@ def test_preconditions_in_words(said: str, ports: dict[str, str], parser: str) -
     assert english(read, world_vocabulary()).strip() == said
 
 
-@pytest.mark.parametrize("text", ['wave unless "x" unless "y"', "wave unless x", 'wave while "x" with _while "y"'])
+@pytest.mark.parametrize(
+    "text", ['wave if "a and b"', 'wave unless "x" unless "y"', "wave unless x", 'wave while "x" with _while "y"']
+)
 def test_preconditions_that_cannot_be_read(text: str) -> None:
     with pytest.raises(MissionError):
         btlang.parse_tree(text)

@@ -17,7 +17,7 @@ from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, statements
 from btlang.tree.catalogue import SEQUENCE, SUBTREE
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.lexicon import Lexicon
-from btlang.vocabulary.node_forms import NodeForm, node_details, node_forms, node_forms_by_start
+from btlang.vocabulary.node_forms import NodeForm, node_details, node_forms, node_forms_by_start, opposite_script
 from btlang.vocabulary.node_words import ends_id, is_port, read_id, role_end, subtree_named
 from btlang.vocabulary.trie import TrieNode
 
@@ -286,8 +286,9 @@ class _Reader:
             end = at + len(detail.words)
             if tuple(self._text.words[at:end]) == detail.words:
                 found = (detail.value, end) if detail.value is not None else self.quoted(end)
-                if found is not None:
-                    return detail.port, *found
+                text = opposite_script(found[0]) if found is not None and detail.opposite else found and found[0]
+                if found is not None and text is not None:
+                    return detail.port, text, found[1]
         return None
 
     def _another(self, at: int) -> tuple[int, str, str, int] | None:
