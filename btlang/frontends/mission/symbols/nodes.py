@@ -101,9 +101,7 @@ def read_form(text: Words, at: int, vocabulary: Lexicon, names: TrieNode | None 
 
 
 def read_label(text: Words, at: int, vocabulary: Lexicon) -> tuple[str, int] | None:
-    """The name of a node in quotes that stands before it: `"first try": go to the lab`; and where the node begins."""
-    if text.words[at][0] != '"':
-        return None
+    """The name in quotes that stands before a node: `"first try": go to the lab`; and where the node begins."""
     name, end = _Reader(text, vocabulary).text(at)
     is_label = text.words[end] in (":", ",") and text.words[end + 1] not in (END_OF_STATEMENT, END_OF_TEXT)
     return (name, end + 1) if is_label else None

@@ -149,8 +149,7 @@ class WordReader:
 
     def _phrase(self, at: int, last: int) -> int:
         """What begins at a word, known or unknown."""
-        form = self._form(at) or self._label(at)
-        if form:
+        if form := self._form(at) or (self._label(at) if self._text.words[at][0] == '"' else 0):
             return form
         match = self._without_measure(self._requests.with_name(self._match(at), at), at)
         if match is not None and match.meaning.role in NODE_ROLES:
