@@ -256,7 +256,9 @@ class _Check:
         """Return a problem with the place of the model, and the other models of the same nodes."""
         models = self._project.described[uses.model.id]
         place = next(place for each, place in models if each is uses.model)
-        return uses.replace(place=place, others=tuple(other for other in models if other[0] is not uses.model))  # type: ignore[no-any-return]
+        others = [other for other in models if other[0] is not uses.model]
+        others += ((model, NOWHERE) for model in nav2_models([uses.model.id], left_out="").values())
+        return uses.replace(place=place, others=tuple(others))  # type: ignore[no-any-return]
 
     def _with_sources(self, uses: DescribedUses) -> DescribedUses:
         """Return the models with what C++ says of the nodes, too."""

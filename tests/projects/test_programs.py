@@ -76,6 +76,22 @@ def test_what_a_package_installs_belongs_together(
     assert [problem["code"] for problem in problems(capsys, str(tmp_path)) if problem["code"] != "BT236"] == found
 
 
+def test_ports_of_nav2_that_may_be_left_out(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Nav2's own models have no defaults for them, and neither have copies in the repositories of teams."""
+    ports = {
+        "Wait": ("wait_duration", "server_name", "server_timeout"),
+        "GoalUpdated": ("goal", "goals"),
+        "GetCurrentPose": ("global_frame", "robot_base_frame"),
+        "FollowPath": ("path", "controller_id"),
+    }
+    listed = {node: "".join(f'<input_port name="{name}"/>' for name in names) for node, names in ports.items()}
+    models = "".join(f'<Action ID="{node}">{inner}</Action>' for node, inner in listed.items())
+    tree = '<Sequence><Wait wait_duration="1"/><GoalUpdated/><GetCurrentPose/><FollowPath/></Sequence>'
+    write(tmp_path, "tree.xml", TREE.format("MainTree", tree), models=models)
+    found = [problem["message"] for problem in problems(capsys, str(tmp_path))]
+    assert found == ["The port path of FollowPath is missing."]
+
+
 def test_an_installed_file_is_the_one_in_its_package(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     write(tmp_path, "src/dock_trees/trees/dock.xml", TREE.format("Dock", "<Nod/>"))
     for name, include in (
