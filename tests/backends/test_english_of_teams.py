@@ -99,6 +99,12 @@ def test_what_a_team_reads(tree: str, lines: list[str], parser: str) -> None:
     assert parse_tree(text, parser=parser).to("xml", onto=Source(xml)) == xml
 
 
+def test_a_text_without_its_command_is_no_name() -> None:
+    with pytest.raises(MissionError) as error:
+        parse_tree('"Good morning", then wave')
+    assert "BT019" in [problem.code for problem in error.value.diagnostics]
+
+
 @pytest.mark.parametrize("text", ['"x": wave called "y"', '"x": check test is door open called "y"'])
 def test_a_node_has_one_name(text: str) -> None:
     with pytest.raises(MissionError) as error:

@@ -15,7 +15,12 @@ from btlang.diagnostics.files import read_source
 
 _COMMENT = re.compile(r"#[^\n]*")
 _INSTALL = re.compile(r"\binstall\s*\(\s*(FILES|DIRECTORY)\s+([^()]*)\)", re.IGNORECASE)
-_END = re.compile(r"[A-Z_]{4,}")  # DESTINATION, PATTERN, COMPONENT ...: behind it are no files
+_ENDS = frozenset((
+    "TYPE", "DESTINATION", "PERMISSIONS", "FILE_PERMISSIONS", "DIRECTORY_PERMISSIONS", "USE_SOURCE_PERMISSIONS",
+    "CONFIGURATIONS", "COMPONENT", "RENAME", "OPTIONAL", "MESSAGE_NEVER", "EXCLUDE_FROM_ALL", "FILES_MATCHING",
+    "PATTERN", "REGEX",
+))  # fmt: skip
+"""Behind these words are no files."""
 _HERE = re.compile(r"\$\{(?:CMAKE_CURRENT_SOURCE_DIR|CMAKE_CURRENT_LIST_DIR|PROJECT_SOURCE_DIR|CMAKE_SOURCE_DIR)\}/")
 
 
@@ -44,7 +49,7 @@ def _installed(folder: str) -> tuple[str, ...]:
     found: list[str] = []
     for entries in _INSTALL.findall(text):
         for entry in entries[1].split():
-            if _END.fullmatch(entry):
+            if entry in _ENDS:
                 break
             entry = _HERE.sub("", entry.strip('"'), count=1)
             if "$" not in entry and "*" not in entry:

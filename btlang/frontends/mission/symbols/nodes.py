@@ -101,9 +101,14 @@ def read_form(text: Words, at: int, vocabulary: Lexicon, names: TrieNode | None 
 
 
 def read_label(text: Words, at: int, vocabulary: Lexicon) -> tuple[str, int] | None:
-    """The name in quotes that stands before a node: `"first try": go to the lab`; and where the node begins."""
+    """The name in quotes that stands before a node: `"first try": go to the lab`; and where the node begins.
+
+    A comma is behind it only before a block, `"first try", retry twice:`, as `"hello", then wave` lacks a command.
+    """
     name, end = _Reader(text, vocabulary).text(at)
-    is_label = text.words[end] in (":", ",") and text.words[end + 1] not in (END_OF_STATEMENT, END_OF_TEXT)
+    last = next(place for place in range(end, len(text.words)) if text.words[place] in (END_OF_STATEMENT, END_OF_TEXT))
+    is_block = text.words[end] == "," and text.words[last - 1] == ":"
+    is_label = is_block or (text.words[end] == ":" and last > end + 1)
     return (name, end + 1) if is_label else None
 
 
