@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
         _failureIf: str
         _successIf: str
+        _onlyIf: str
         _skipIf: str
         _while: str
         _onSuccess: str
@@ -49,6 +50,7 @@ __all__ = [
     "nonblocking_sequence",
     "parallel",
     "parallel_all",
+    "pause_resume_controller",
     "persistent_sequence",
     "pipeline_sequence",
     "precondition",
@@ -204,6 +206,23 @@ def recovery_node(
 ) -> Behavior:
     """Make the node RecoveryNode of Nav2."""
     return built("RecoveryNode", children, {"number_of_retries": number_of_retries}, name, scripts)
+
+
+def pause_resume_controller(
+    *children: Child,
+    pause_service_name: Value | None = None,
+    resume_service_name: Value | None = None,
+    name: str = "",
+    **scripts: Unpack[Scripts],
+) -> Behavior:
+    """Make the node PauseResumeController of Nav2."""
+    return built(
+        "PauseResumeController",
+        children,
+        {"pause_service_name": pause_service_name, "resume_service_name": resume_service_name},
+        name,
+        scripts,
+    )
 
 
 def switch_2(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from btlang.support.record import Record
 
@@ -22,6 +22,14 @@ _STATES = (
     "false", "running", "broken", "held", "shut",
 )  # fmt: skip
 _STATE_ENDINGS = ("ed", "able", "ible")
+_PARTS = {
+    **dict.fromkeys(("goal", "goal_pose", "target", "target_pose", "destination"), "to"),
+    **dict.fromkeys(("start", "start_pose", "source"), "from"),
+    **dict.fromkeys(("topic", "topic_name"), "on"),
+    **dict.fromkeys(("frame", "frame_id", "frame_name"), "in frame"),
+    **dict.fromkeys(("speed", "velocity"), "at speed"),
+}
+"""The words before what a port gives to a verb, by the name of the port."""
 
 
 class SpokenPorts(Record):
@@ -59,6 +67,7 @@ def phrases(node_id: str, ports: SpokenPorts, articles: Collection[str], *, is_c
     if not is_condition:
         starts: list[list[str]] = [[], ["run"], ["run", "node"]]
         for start in starts if set(words) - set(articles) else starts[2:]:
+            yield " ".join([*start, *words, *_slots(words, ports, articles, _PARTS)])
             yield " ".join([*start, *words, *_slots(words, ports, articles)])
         return
     state = _state(words)
@@ -94,20 +103,32 @@ def _state(words: list[str]) -> tuple[list[str], list[str]] | None:
     return subject, ["are" if is_plural else "is", last]
 
 
-def _slots(words: list[str], ports: SpokenPorts, articles: Collection[str]) -> Iterator[str]:
+def _slots(
+    words: list[str], ports: SpokenPorts, articles: Collection[str], parts: Mapping[str, str] = {}
+) -> Iterator[str]:
     """Yield the slots behind words. One needs no name: the one that the words end with, or a text that is the only
-    one.
+    one. Those with a part in what is done are said by its word, each word once, and none that the verb has.
     """
+    said = {*words}
+
+    def label(port: str) -> str:
+        part = parts.get(port, "")
+        if not part or part.split()[0] in said:
+            return _label(port, words, articles)
+        said.add(part.split()[0])
+        return part
+
     bare = _find_last_port(words, ports.required)
     if not bare and len(ports.required) == 1 and ports.required[0] in ports.texts:
-        [bare] = ports.required
+        [only] = ports.required
+        bare = only if parts.get(only, words[-1]).split()[0] in said else ""
     if bare:
         yield f"{{{bare}}}"
     for port in ports.required:
         if port != bare:
-            yield f"{_label(port, words, articles)} {{{port}}}"
+            yield f"{label(port)} {{{port}}}"
     for port in ports.optional:
-        yield f"[{_label(port, words, articles)} {{{port}}}]"
+        yield f"[{label(port)} {{{port}}}]"
     for at, port in enumerate(ports.outputs):
         yield f"[{_label(port, words, articles) if at else 'giving'} {{{port}}}]"
 

@@ -400,7 +400,7 @@ _TABLE = (
             "check": VerbAct("checks a robot file: btc robot check museum.toml", ()),
             "show": VerbAct("shows the body of a robot: btc robot show museum.toml", ()),
             "urdf": VerbAct("prints the body of a robot as URDF: btc robot urdf museum.toml", ()),
-            "import": VerbAct("converts a URDF to a robot file: btc robot import museum.urdf", ()),
+            "import": VerbAct("converts a URDF or MJCF file to a robot file: btc robot import museum.urdf", ()),
             "backup": VerbAct("copies the store into a file: btc robot backup monday.db", ("store",)),
             "restore": VerbAct("fills an empty store from a backup: btc robot restore monday.db", ("store",)),
             "invite": VerbAct("lets a robot on another computer join a server here: btc robot invite lobby", ()),
@@ -666,7 +666,7 @@ _TABLE = (
                 "kind", choices=("component", "device", "robot"), metavar="KIND", help="component, device or robot"
             ),
             Option("name", type=project_name, metavar="NAME", help="name of the project and of its folder"),
-            Option("--from", dest="urdf", metavar="URDF", help="for a robot: the file that describes it"),
+            Option("--from", dest="urdf", metavar="URDF", help="for a robot: the URDF or MJCF file that describes it"),
             Option("--map", metavar="YAML", help="for a robot: the map of ROS where it works"),
             Option("--waypoints", metavar="FILE", help="for a robot: way points in JSON or YAML, which become places"),
             START, ORIGIN,

@@ -295,6 +295,8 @@ _ALL = (
     Code("BT246", "'{key}' is a text, but the port {port} of {id} is of type {type}.",
          "This works only if the text is a value of that type: use another entry, or let its node set one.", "warning",
          "text as a number"),
+    Code("BT247", "BehaviorTree.CPP ignores _onlyIf, which only some programs know.",
+         "If yours doesn't, write: _skipIf=\"{script}\"", "warning", "unknown condition"),
     Code("BT250", "'{sign}' isn't a word.", "Write comparisons in words."),
 )  # fmt: skip
 

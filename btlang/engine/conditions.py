@@ -1,14 +1,15 @@
 """Pre- and post-conditions: scripts in ports that every node may have, as in tree_node.cpp of BehaviorTree.CPP 4.10.
 
-Before a node starts, in this order: `_failureIf` FAILURE, `_successIf` SUCCESS, `_skipIf` SKIPPED where it holds, and
-`_while` SKIPPED where it does not; the node is then not ticked. While it is RUNNING only `_while` is asked, and where
-it does not hold the node is halted: SKIPPED. When it has completed, also by a pre-condition, `_onSuccess` or
-`_onFailure` runs, then `_post`. `_onHalted` runs after the node was halted while RUNNING. The scripts of a SubTree see
-the blackboard around it.
+Before a node starts, in this order: `_failureIf` FAILURE, `_successIf` SUCCESS where it holds, `_onlyIf` SKIPPED where
+it does not, `_skipIf` SKIPPED where it holds, and `_while` SKIPPED where it does not; the node is then not ticked.
+While it is RUNNING only `_while` is asked, and where it does not hold the node is halted: SKIPPED. When it has
+completed, also by a pre-condition, `_onSuccess` or `_onFailure` runs, then `_post`. `_onHalted` runs after the node was
+halted while RUNNING. The scripts of a SubTree see the blackboard around it.
 
 A suspended node has started: what is asked before a start is not asked again, and `_onHalted` waits for a real halt.
 
 Differences:
+- `_onlyIf` is there only with a change that some programs make;
 - a script that cannot go on makes the node fail with its reason; there it raises an exception out of the tick;
 - a node that returned SKIPPED has not started: its pre-conditions are asked again, and halting it runs no `_onHalted`.
   There this holds for leaves only;

@@ -77,7 +77,7 @@ class _Level:
         return number(vertex[0], where), number(vertex[1], where)
 
     def _metres(self, point: Point) -> Point:
-        return round(point[0] * self._scale_x, 4), round(point[1] * self._scale_y, 4)
+        return round(point[0] * self._scale_x, 4) + 0.0, round(point[1] * self._scale_y, 4) + 0.0  # no -0
 
     def _edges(self, key: str) -> Iterator[tuple[int, int, Mapping[str, Any]]]:
         """Yield the numbers of two vertices and the properties of each edge."""

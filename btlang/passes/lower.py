@@ -247,6 +247,11 @@ def _provided(item: ast.Provided, done: list[Lowered], _scope: LoweringScope) ->
     return Lowered(new_node("ReactiveSequence", [part.node for part in done], item.span), False, done[1].endless)
 
 
+def _named(item: ast.Named, done: list[Lowered], _scope: LoweringScope) -> Lowered:
+    made: Lowered = done[0].replace(node=done[0].node.replace(name=item.name))
+    return made
+
+
 def _repeat(item: ast.Repeat, done: list[Lowered], _scope: LoweringScope) -> Lowered:
     endless = item.rounds == "-1" or done[0].endless
     return Lowered(new_node("Repeat", [new_round(done[0])], item.span, num_cycles=item.rounds), False, endless)
@@ -296,6 +301,7 @@ _LOWER: dict[type[ast.Ast], Callable[[Any, list[Lowered], LoweringScope], Lowere
     ast.While: _while,
     ast.Whenever: _whenever,
     ast.Provided: _provided,
+    ast.Named: _named,
     ast.IfWorks: _if_works,
     ast.StopWhen: _stop_when,
     ast.Repeat: _repeat,

@@ -14,10 +14,10 @@ from btlang.printer.printer import WHOLE, Doc, Printer
 from btlang.text.source import Source
 from btlang.text.words import split
 from btlang.tree import ast
-from btlang.tree.catalogue import SEQUENCE, SUBTREE
+from btlang.tree.catalogue import SEQUENCE, SUBTREE, takes_one_child
 from btlang.vocabulary.language_tables import CHANGING
 from btlang.vocabulary.lexicon import DEFINING, Lexicon
-from btlang.vocabulary.node_forms import node_details, node_forms
+from btlang.vocabulary.node_forms import is_negative, node_details, node_forms, opposite_script
 from btlang.vocabulary.node_words import id_of_name, is_port, said_id, subtree_named
 from btlang.vocabulary.trie import longest
 
@@ -40,27 +40,49 @@ def exact(node: ast.Exact, _parts: list[Doc], printer: Printer) -> Doc:
 def exact_block(node: ast.Exact, printer: Printer) -> Iterator[tuple[Fragments, Iterator[tuple[ast.Ast, str]]]]:
     """Yield its words, and its children as the lines below it."""
     if node.items:
-        yield (mark(node_head(node, printer)),), ((item, "children") for item in node.items)
+        steps = _steps(node.items[0]) if takes_one_child(node.id) and len(node.items) == 1 else []
+        items = steps if len(steps) > 1 else node.items
+        yield (mark(node_head(node, printer)),), ((item, "children") for item in items)
+
+
+def _steps(item: ast.Ast) -> list[ast.Ast]:
+    """Return the items of a sequence that is said without words of its own, as the lines below a decorator are."""
+    is_chain = isinstance(item, ast.Chain) and item.operator == "sequence"
+    is_plain = isinstance(item, ast.Exact) and item.id == SEQUENCE and not item.ports and not item.name
+    return ast.parts(item) if is_chain or is_plain else []
 
 
 def node_head(node: ast.Exact, printer: Printer) -> str:
     """Print the node with its name and its ports, without its children."""
     ports = dict(node.ports)
-    said = _form(node, ports, printer) if node.items else ""
-    if said and is_one_piece(node.name):
+    said = (_form(node, ports, printer) if node.items else "") or _head(node, ports, printer)
+    if node.items and is_one_piece(node.name):
         label = quote(node.name, printer.vocabulary)
         is_alone = node.id == SEQUENCE and not ports
         return label if is_alone else f"{label}, {said}" + _details(node.replace(name=""), ports, printer)
-    return (said or _head(node, ports, printer)) + _details(node, ports, printer)
+    return said + _details(node, ports, printer)
+
+
+def split_label(node: ast.Ast) -> tuple[str, ast.Ast]:
+    """Return the name that stands before a statement, "" if none does, and the statement without it."""
+    if isinstance(node, ast.Named):
+        return node.name, node.body
+    leaf = node.condition if isinstance(node, ast.Check) else node
+    if not isinstance(leaf, ast.Exact | ast.Phrase) or not is_one_piece(leaf.name) or ast.parts(leaf):
+        return "", node
+    bare: ast.Ast = leaf.replace(name="")
+    return leaf.name, node.replace(condition=bare) if leaf is not node else bare
 
 
 def _form(node: ast.Exact, ports: dict[str, str], printer: Printer) -> str:
-    """Print the form that says a node with the children below it, "" if it has none; its port is taken out."""
+    """Print the form that says a node with the children below it, "" if it has none; its ports are taken out."""
     for form in node_forms(printer.vocabulary):
-        if form.id != node.id or (form.port and form.port not in ports):
-            continue
-        if form.value is None or ports[form.port] == form.value:
-            return form.say(_value(ports.pop(form.port), printer.vocabulary) if form.port else "")
+        said = [each.name for each in form.ports if each.value is None]
+        fixed = {each.name: each.value for each in form.ports if each.value is not None}
+        if form.id == node.id and ports.keys() >= {*said} and fixed.items() <= ports.items():
+            for name in fixed:
+                del ports[name]
+            return form.say([_value(ports.pop(name), printer.vocabulary) for name in said])
     return ""
 
 
@@ -81,18 +103,18 @@ def _details(node: ast.Exact | ast.Phrase, ports: dict[str, str], printer: Print
         behind = said + behind
         ports.popitem()
     gives = {key: ports.pop(key) for key in node.outputs if _KEY.fullmatch(ports.get(key, ""))}
-    head += _ports("with", ports, printer)
-    if [f"{{{key}}}" for key in gives] == [*gives.values()] and len(gives) == 1:
-        return f"{head} {vocabulary.word('giving')} {''.join(gives.values())}{behind}"
-    return head + _ports("giving", gives, printer) + behind
+    is_command = isinstance(node, ast.Phrase)
+    return head + _ports("with", ports, printer, is_command) + _ports("giving", gives, printer) + behind
 
 
 def _detail(port: str, text: str, vocabulary: Lexicon) -> str:
     """Print a port that all nodes may have in words of its own, "" if it has none."""
+    opposite = opposite_script(text) if is_negative(text) else None
     for details in node_details(vocabulary).values():
         for detail in details:
-            if detail.port == port and detail.value in (None, text):
-                return f" {detail.said}" + (f" {quote(text, vocabulary)}" if detail.value is None else "")
+            said = opposite if detail.opposite else text
+            if detail.port == port and said is not None and detail.value in (None, text):
+                return f" {detail.said}" + (f" {quote(said, vocabulary)}" if detail.value is None else "")
     return ""
 
 
@@ -104,15 +126,15 @@ def _head(node: ast.Exact, ports: dict[str, str], printer: Printer) -> str:
     if node.id == SUBTREE and "ID" in ports and words is not None:
         name = ports.pop("ID")
         said = _in_words(id_of_name(name), name, role, printer)
-        if name in subtrees:
-            return f"{word} {said or quote(name, vocabulary)}"
+        if name in subtrees or (" " in name and not node.items):
+            return f"{word} {(name in subtrees and said) or quote(name, vocabulary)}"
         return f"{word} {words} {quote(name, vocabulary)}"
     if words is not None and node.id != SUBTREE:
         return f"{word} {words}"
     said = _in_words(node.id, "", role, printer)
     if said:
         return f"{word} {said}"
-    if not node.is_condition and node.id in subtrees:
+    if not node.is_condition and (node.id in subtrees or " " in node.id):
         return f"{word} {vocabulary.word('node')} {quote(node.id, vocabulary)}"
     return f"{word} {quote(node.id, vocabulary)}"
 
@@ -130,14 +152,18 @@ def _in_words(node_id: str, subtree: str, role: str, printer: Printer) -> str:
     return said if all(longest(names, text, at, context) is None for at in places) else ""
 
 
-def _ports(role: str, ports: Mapping[str, str], printer: Printer) -> str:
-    """Print `with width 0.05, speed 2`; the word again if a name behind a comma would be read as a command."""
+def _ports(role: str, ports: Mapping[str, str], printer: Printer, is_command: bool = False) -> str:
+    """Print `with width 0.05, {path}`; the word again if a name behind a comma would be read as a command.
+
+    `go to the lab with {person}` may be a command of its own, so a command's first port has its name.
+    """
     vocabulary, said = printer.vocabulary, ""
     for name, text in ports.items():
-        key = _key(name, vocabulary)
-        value = _value(text, vocabulary)
-        is_free = said and _is_free(key, value, printer)
-        said += f", {key} {value}" if is_free else f" {vocabulary.word(role)} {key} {value}"
+        key, value = _key(name, vocabulary), _value(text, vocabulary)
+        is_short = value == f"{{{name}}}" and (said != "" or not is_command)  # said without its name
+        is_free = said and (is_short or _is_free(key, value, printer))
+        port = value if is_short else f"{key} {value}"
+        said += f", {port}" if is_free else f" {vocabulary.word(role)} {port}"
     return said
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator
 
-from btlang.printer.exact import exact_block, quote
+from btlang.printer.exact import exact_block, quote, split_label
 from btlang.printer.fragments import COLON, COMMA, is_longer, mark
 from btlang.printer.printer import THEN, Doc, Printer
 from btlang.printer.sentence import (
@@ -51,9 +51,9 @@ def lines_of(
     With brackets "clear" those that people could misread are blocks, too.
     """
     found: list[str] = []
-    stack: list[tuple[int, ast.Ast | str, str]] = [(0, node, joined)]
+    stack: list[tuple[int, ast.Ast | str, str, str]] = [(0, node, joined, "")]  # with the name before it
     while stack:
-        depth, item, among = stack.pop()
+        depth, item, among, name = stack.pop()
         if isinstance(item, str):
             found += _wrap(INDENT * depth + item, INDENT * (depth + 2), width, printer)
             continue
@@ -61,21 +61,28 @@ def lines_of(
         if kept:
             found += (f"{INDENT * depth}{line}" if line else "" for line in kept)
             continue
-        said, room = printer.say(item), width - len(INDENT) * depth
+        label, bare = split_label(item)
+        if label and not name:
+            found += (f"{INDENT * depth}# {text}" for text in printer.comments(item, whole=False))
+            stack.append((depth, bare, among, quote(label, printer.vocabulary)))
+            continue
+        said, room = printer.say(item), width - len(INDENT) * depth - len(name)
         line = "" if is_longer(said.fragments, room) else printer.line(item, said, among)
         too_long = not line or len(line) > room
         unclear = printer.is_clear and said.is_mixed
         needs_block = said.in_lines or ((too_long or unclear) and room >= least)
-        sections = _sections(item, said, among, unclear) if needs_block else _none
-        below: list[tuple[int, ast.Ast | str, str]] = []
+        sections = _sections(item, said, among, unclear, too_long) if needs_block else _none
+        below: list[tuple[int, ast.Ast | str, str, str]] = []
         for head, body in sections(item, printer):
             if isinstance(body, ast.Ast):
-                below.append((depth, printer.text((head, printer.say(body).fragments)), ""))
+                below.append((depth, printer.text((head, printer.say(body).fragments)), "", ""))
                 continue
-            below.append((depth, printer.text((head, mark(COLON))), ""))
-            below += [(depth + 1, part, joint) for part, joint in body]
+            before = f"{name}, " if name and not below else ""
+            below.append((depth, before + printer.text((head, mark(COLON))), "", ""))
+            below += [(depth + 1, part, joint, "") for part, joint in body]
         found += (f"{INDENT * depth}# {text}" for text in printer.comments(item, whole=not below))
-        stack.extend(reversed(below or [(depth, line or printer.line(item, said, among), "")]))
+        before = f"{name}: " if name else ""
+        stack.extend(reversed(below or [(depth, before + (line or printer.line(item, said, among)), "", "")]))
     return found
 
 
@@ -95,10 +102,12 @@ def _wrap(line: str, margin: str, width: float, printer: Printer) -> Iterator[st
     yield head + line[begin:]
 
 
-def _sections(node: ast.Ast, said: Doc, among: str, unclear: bool) -> Callable[[Any, Printer], Iterator[Section]]:
+def _sections(
+    node: ast.Ast, said: Doc, among: str, unclear: bool, too_long: bool
+) -> Callable[[Any, Printer], Iterator[Section]]:
     """Return how a statement is a block, which is one of a chain or of `children`."""
     if isinstance(node, ast.Chain):
-        if node.operator == "sequence" and (among == "children" or (unclear and not said.can_skip)):
+        if node.operator == "sequence" and (among == "children" or ((unclear or too_long) and not said.can_skip)):
             return _sequence_node
         if node.operator == "fallback" and unclear and _is_try(node):
             return _try_otherwise
@@ -175,6 +184,11 @@ def _sequence(node: ast.Chain, printer: Printer) -> Iterator[Section]:
         yield (head if i else (*inner, head)), body
 
 
+def _provided(node: ast.Provided, printer: Printer) -> Iterator[Section]:
+    condition = printer.condition(printer.say(node.condition))
+    yield (printer.word("provided"), condition.fragments), statements(node.body)
+
+
 def _repeat(node: ast.Repeat, printer: Printer) -> Iterator[Section]:
     yield (printer.word("repeat"), printer.rounds(node.rounds)), statements(node.body)
 
@@ -238,6 +252,7 @@ _SECTIONS: dict[type[ast.Ast], Callable[[Any, Printer], Iterator[Section]]] = {
     ast.While: _branching("while", "until"),
     ast.Whenever: _whenever,
     ast.Try: _try,
+    ast.Provided: _provided,
     ast.Repeat: _repeat,
     ast.Retry: _retry,
     ast.For: _timed("repeat", "for"),
@@ -245,6 +260,7 @@ _SECTIONS: dict[type[ast.Ast], Callable[[Any, Printer], Iterator[Section]]] = {
     ast.Every: _every,
     ast.Apart: _apart,
     ast.Delay: _timed("delay"),
+    ast.Within: _timed("within"),
     ast.ForEach: _for_each,
     ast.Definition: _definition,
     ast.Exact: exact_block,

@@ -126,6 +126,11 @@ def _provided(_node: ast.Provided, parts: list[Doc], printer: Printer) -> Doc:
     return printer.behind(parts[1], printer.word("provided"), printer.condition(parts[0]).fragments)
 
 
+def _named(node: ast.Named, parts: list[Doc], printer: Printer) -> Doc:
+    """Print a name before its command, which only a statement can have."""
+    return Doc((mark(quote(node.name, printer.vocabulary)), mark(COLON), parts[0].fragments), LOOSE, in_lines=True)
+
+
 def _stop_when(_node: ast.StopWhen, parts: list[Doc], printer: Printer) -> Doc:
     return printer.behind(parts[1], printer.word("stop_when"), printer.condition(parts[0]).fragments)
 
@@ -349,6 +354,7 @@ PRINTERS: dict[type[ast.Ast], Callable[[Any, list[Doc], Printer], Doc]] = {
     ast.While: _branching("while", "until"),
     ast.Whenever: _whenever,
     ast.Provided: _provided,
+    ast.Named: _named,
     ast.IfWorks: _if_works,
     ast.StopWhen: _stop_when,
     ast.Repeat: _repeat,

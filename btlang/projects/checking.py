@@ -33,7 +33,7 @@ from btlang.projects.ports import (
     subtree_problems,
     wrong_children,
 )
-from btlang.projects.restarts import double_quotes, may_be_repeated, restarted_actions
+from btlang.projects.restarts import conditions_of_others, double_quotes, may_be_repeated, restarted_actions
 from btlang.projects.unused import (
     count_times,
     keys_read,
@@ -118,6 +118,7 @@ class _Check:
         yield from unknown_nodes(self._nodes, self._described, self._words, self._project.dialects)
         yield from self._wrong_ports()
         yield from unused_trees(self._project)
+        yield from conditions_of_others(self._nodes)
         yield from double_quotes(node for node in self._nodes if self._dialect(node) == 4)
         yield from broken_references(self._nodes, {*CATALOGUE, *self._vocabulary.entries, *self._nav2})
         yield from restarted_actions(self._nodes, self._sort)
@@ -255,7 +256,9 @@ class _Check:
         """Return a problem with the place of the model, and the other models of the same nodes."""
         models = self._project.described[uses.model.id]
         place = next(place for each, place in models if each is uses.model)
-        return uses.replace(place=place, others=tuple(other for other in models if other[0] is not uses.model))  # type: ignore[no-any-return]
+        others = [other for other in models if other[0] is not uses.model]
+        others += ((model, NOWHERE) for model in nav2_models([uses.model.id], left_out="").values())
+        return uses.replace(place=place, others=tuple(others))  # type: ignore[no-any-return]
 
     def _with_sources(self, uses: DescribedUses) -> DescribedUses:
         """Return the models with what C++ says of the nodes, too."""

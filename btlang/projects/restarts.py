@@ -1,4 +1,6 @@
-"""Actions that start again at each tick (BT243), and scripts as they were before BehaviorTree.CPP 4.10 (BT242)."""
+"""Actions that start again at each tick (BT243), and scripts that BehaviorTree.CPP 4.10 refuses or ignores (BT242,
+BT247).
+"""
 
 from __future__ import annotations
 
@@ -48,6 +50,15 @@ def double_quotes(nodes: Iterable[Node]) -> Iterator[Diagnostic]:
             text = _double_quoted(code) if '"' in code and port_content(node.id, port) == SCRIPT else ""
             if text:
                 yield diagnostic("BT242", attribute_value(node, port), text=text[1:-1])
+
+
+def conditions_of_others(nodes: Iterable[Node]) -> Iterator[Diagnostic]:
+    """Report BT247 for pre-conditions that BehaviorTree.CPP doesn't know."""
+    for node in nodes:
+        code = node.port("_onlyIf").strip()
+        if code:
+            script = f"!{code}" if code.isidentifier() else f"!({code})"
+            yield diagnostic("BT247", attribute_value(node, "_onlyIf"), script=script)
 
 
 def _double_quoted(code: str) -> str:

@@ -26,6 +26,11 @@ if TYPE_CHECKING:
 
 _WORD = re.compile(r"[^\W\d]\w*")
 _FOR_NAVIGATOR = ("error_code_id", "error_msg")  # what these ports name, Nav2's navigator reads for its result
+_BY_NAV2 = frozenset((
+    "node", "tf_buffer", "bt_loop_duration", "server_timeout", "wait_for_service_timeout", "initial_pose_received",
+    "number_recoveries", "odom_smoother",
+))  # fmt: skip
+"""Entries that Nav2's nodes, and those that are derived from them, use without a port."""
 
 
 def keys_read(nodes: Iterable[Node], outputs_of: OutputsOf) -> frozenset[str]:
@@ -74,7 +79,8 @@ def unread_subtree_ports(nodes: Iterable[Node], trees: Mapping[str, Node]) -> It
         if used not in named:
             named[used] = _find_names(trees[used], trees)
         for name, _ in node.ports:
-            if name != "ID" and name[:1] != "_" and _WORD.fullmatch(name) and name not in named[used]:
+            is_named = name == "ID" or name in named[used] or name in _BY_NAV2
+            if name[:1] != "_" and _WORD.fullmatch(name) and not is_named:
                 yield diagnostic("BT235", attribute_value(node, name), key=name, port=name, id=used)
 
 

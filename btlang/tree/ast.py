@@ -2,7 +2,7 @@
 
 Commands: Phrase, Name, Chain, If, IfWorks, While, Provided, StopWhen, Repeat, Retry, Try, Within, For, UpTo, Every,
 UntilTime, Apart, Delay, Constrained, Wait, WaitUntil, WaitTime, WaitForever, Check, Nothing, Fail, Assign, Remember,
-ForEach, Exact; Whenever in a sequence.
+ForEach, Exact, Named; Whenever in a sequence.
 Conditions: Phrase, Name, Compared, Chain ("all", "any"), AtLeast, Not, Held, Exact. `parts` are fields with subtrees.
 Amounts and values are port texts in base units (seconds); they may refer to values of the mission: `{level}`, in a
 text also `it is {level} percent` (see btlang/vocabulary/references.py).
@@ -171,6 +171,15 @@ class Provided(Ast):
     body: Ast
     span: Span
     parts = ("condition", "body")
+
+
+class Named(Ast):
+    """A command whose node has a name. Phrases and nodes by their ids have theirs themselves."""
+
+    name: str
+    body: Ast
+    span: Span
+    parts = ("body",)
 
 
 class StopWhen(Ast):

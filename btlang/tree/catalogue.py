@@ -24,10 +24,14 @@ BEHAVIOR_TREE_CPP, NAV2, BTLANG = "BehaviorTree.CPP", "Nav2", "btlang"
 PRE_CONDITIONS = {
     "_failureIf": (True, ON_FAILURE),
     "_successIf": (True, ON_SUCCESS),
+    "_onlyIf": (False, ON_SKIPPED),
     "_skipIf": (True, ON_SKIPPED),
     "_while": (False, ON_SKIPPED),
 }
-"""Scripts that every node may have, in the order in which they are asked: which answer decides, and the status then."""
+"""Scripts that every node may have, in the order in which they are asked: which answer decides, and the status then.
+
+Some programs add `_onlyIf` to BehaviorTree.CPP, which doesn't know it.
+"""
 POST_CONDITIONS = ("_onSuccess", "_onFailure", "_onHalted", "_post")
 """Scripts in ports that every node may have."""
 SCRIPT, KEY = "script", "key"
@@ -198,6 +202,10 @@ CATALOGUE: dict[str, NodeKind] = {
             "RecoveryNode", 2, 2, ports={"number_of_retries": Port("int", "1", 0, _INT)}, waits=True, again=ON_FAILURE,
             rounds="number_of_retries", skipped="first", origin=NAV2,
         ),
+        _control(
+            "PauseResumeController", 1, 4, skipped="never", origin=NAV2,
+            ports={"pause_service_name": Port("std::string", ""), "resume_service_name": Port("std::string", "")},
+        ),
         *(_switch(cases) for cases in range(2, 7)),
         _decorator("Inverter", waits=True, turns=(("SUCCESS", "FAILURE"), ("FAILURE", "SUCCESS")), symbol="¬",
                    tags_3=("Inverter",)),
@@ -293,6 +301,12 @@ def never_ends(node_id: str, ports: Sequence[tuple[str, str]], endless: Sequence
     if kind.goes_on or kind.takes_time:
         return any(endless)
     return kind.again == ON_SUCCESS and kind.is_endless(ports)
+
+
+def takes_one_child(node_id: str) -> bool:
+    """Whether a node of this kind has exactly one child, so that several can only be one sequence."""
+    kind = CATALOGUE.get(node_id)
+    return kind is not None and kind.most == 1
 
 
 def port_content(node_id: str, port: str) -> str:

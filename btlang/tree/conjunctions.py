@@ -199,7 +199,7 @@ def _is_endless(node: ast.Ast, commands: Sequence[Traits]) -> bool:
         return node.rounds in ("", "-1")
     if isinstance(node, ast.Apart):
         return node.rounds == "-1" or last
-    if isinstance(node, ast.Delay | ast.Provided | ast.ForEach | ast.Constrained):
+    if isinstance(node, ast.Delay | ast.Provided | ast.ForEach | ast.Constrained | ast.Named):
         return last
     if isinstance(node, ast.Whenever):
         return True

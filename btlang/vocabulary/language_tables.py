@@ -122,7 +122,7 @@ WORD_LISTS = frozenset((
 
 
 _NODE_DETAIL = re.compile(r"[^\W\d][^{}]*(\{=[^{}]+\})?")
-_NODE_FORM = re.compile(r"[^\W\d][^{}]*(\{\w+(=[^{}]*)?\}[^{}]*)?")
+_NODE_FORM = re.compile(r"[^\W\d][^{}]*(\{\w+(=[^{}]*)?\}[^{}]*)*")
 
 
 def _words(value: object) -> bool:
@@ -214,7 +214,7 @@ TABLES: dict[str, tuple[Callable[[object], bool], str]] = {
     "meanings": (_between, "one of " + ", ".join(CONNECTIVES)),
     "nodes": (_is_text, "the words of a node"),
     "node_details": (_is_node_detail, "words, perhaps with a text that isn't said: {=text}"),
-    "node_forms": (_node_forms, "a list of words, each perhaps with one {port} or {port=text} behind a word"),
+    "node_forms": (_node_forms, "a list of words, each perhaps with {port} or {port=text} behind a word"),
     "contractions": (_is_contracted, "a word, or two"),
     "direct": (_patterns, "a list of patterns"),
     "perfect": (_is_text, "another verb"),

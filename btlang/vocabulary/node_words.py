@@ -48,6 +48,8 @@ def said_id(node_id: str, role: str, vocabulary: Lexicon) -> str:
     claiming = (*DEFINING, *CHANGING) if role == "do" else CHANGING
     if any(word in vocabulary.roles[claim] for claim in claiming for word in said.lower().split()):
         return ""
+    if role == "test" and said.split()[:1] == vocabulary.word("check").split()[:1]:
+        return ""  # `check test check lid` would say it twice
     text = split(Source(f"{vocabulary.word(role)} {said}"), vocabulary.orthography)
     head = longest(vocabulary.trie, text, 0, vocabulary.context)
     if not said or said.lower() in _phrases(vocabulary)[1]:
@@ -80,7 +82,7 @@ def read_id(text: Words, at: int, vocabulary: Lexicon) -> tuple[str, int] | None
     if not _WORD.fullmatch(words[at]) or role_end(text, at, BEHIND_ID, vocabulary):
         return None
     last = at + 1
-    while _WORD.fullmatch(words[last]) and not _ends(text, last, vocabulary):
+    while _WORD.fullmatch(words[last]) and not ends_id(text, last, vocabulary):
         last += 1
     written = [text.source.text[text.starts[place] : text.ends[place]] for place in range(at, last)]
     match = _phrase(text, at, vocabulary)
@@ -142,7 +144,7 @@ def _phrase(text: Words, at: int, vocabulary: Lexicon) -> Match | None:
     return longest(vocabulary.trie, text, at, _context(vocabulary))
 
 
-def _ends(text: Words, at: int, vocabulary: Lexicon) -> bool:
+def ends_id(text: Words, at: int, vocabulary: Lexicon) -> bool:
     """Whether what ends an id begins at a word: a connective, or what is said of the node."""
     match = _phrase(text, at, vocabulary)
     joins = match is not None and match.meaning.entry is None and match.meaning.role not in (*NODE_ROLES, *NOT_ALONE)

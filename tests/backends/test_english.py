@@ -150,8 +150,8 @@ def test_ports_stand_behind_one_with_and_outputs_last() -> None:
                 + models)  # fmt: skip
     assert text == [
         '"Other" means do plan giving {path}',
-        'do plan with goal {goal} with say "x", place "a, b", map {map} giving {path}',
-        "do plan giving cost {c}, path {path}",
+        'do plan with {goal} with say "x", place "a, b", {map} giving {path}',
+        "do plan giving cost {c}, {path}",
         "do plan giving path {route}",
         'do plan with path "p"',
     ]
@@ -164,7 +164,7 @@ PORTS_LIKE_WORDS = [
     ('is_open="true" door_is_open="{k}"', 'with is_open "true", door_is_open {k}'),
     ('is="{is}" means="{means}"', 'with "is" "{is}", "means" "{means}"'),
     ('increase_rate="2" rate="{decrease}"', 'with increase_rate 2, rate "{decrease}"'),
-    ('then="{then}" called="{k}" giving="4"', "with then {then}, called {k}, giving 4"),
+    ('then="{then}" called="{k}" giving="4"', "with {then}, called {k}, giving 4"),
 ]
 
 
@@ -189,15 +189,17 @@ def test_a_subtree_whose_name_would_change_a_value_is_said_in_quotes() -> None:
 
 def test_a_subtree_is_said_by_its_name() -> None:
     text = said(
-        '<Sequence><SubTree ID="Approach Shelf" n="1"/><SubTree ID="move_arm"/><SubTree ID="Else"/>'
+        '<Sequence><SubTree ID="Back off"/><SubTree ID="Approach Shelf" n="1"/><SubTree ID="move_arm"/>'
+        '<SubTree ID="Else"/>'
         '<Action ID="Move arm"/><Action ID="ApproachShelf"/><Action ID="move_arm"/></Sequence></BehaviorTree>'
         '<BehaviorTree ID="Approach Shelf"><Wave/></BehaviorTree><BehaviorTree ID="move_arm"><Nod/>'
     )  # fmt: skip
-    assert text[-6:] == [
+    assert text[-7:] == [
+        'do "Back off"',
         "do approach shelf with n 1",
         'do "move_arm"',
         'do subtree "Else"',
-        'do "Move arm"',
+        'do node "Move arm"',
         'do "ApproachShelf"',
         'do node "move_arm"',
     ]

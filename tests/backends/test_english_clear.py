@@ -44,7 +44,7 @@ def when(condition: Node, child: Node, otherwise: Node = SKIPPED) -> Node:
 CASES = [
     (
         inverter(sequence(WAVE, fallback(NOD, TURN, WAVE), NOD)),
-        "do inverter:\n  step by step:\n    wave\n    nod or turn left or wave\n    nod",
+        "inverting the result:\n  wave\n  nod or turn left or wave\n  nod",
     ),
     (fallback(sequence(WAVE, NOD), TURN), "try:\n  wave\n  nod\notherwise:\n  turn left"),
     (fallback(WAVE, sequence(NOD, TURN), WAVE), "try in order:\n  wave\n  nod then turn left\n  wave"),
@@ -55,11 +55,11 @@ CASES = [
     (when(LOW, when(LOW, WAVE, NOD)), "if battery is low, (if battery is low, wave otherwise nod)"),
     (when(fallback(sequence(LOW, LOW), LOW), WAVE),
      "if (battery is low and battery is low) or battery is low, wave"),
-    (inverter(sequence(WAVE, parallel(NOD, TURN))), "do inverter:\n  wave then (nod and turn left)"),
-    (inverter(sequence(WAVE, times(NOD))), "do inverter:\n  wave then (nod 3 times)"),
-    (inverter(sequence(times(WAVE), NOD)), "do inverter:\n  wave 3 times then nod"),
-    # `within` has no block, and a sequence that can be skipped is no `step by step:` below `try in order:`
-    (within(sequence(WAVE, fallback(NOD, TURN))), "(wave then (nod or turn left)) within 9 s"),
+    (inverter(sequence(WAVE, parallel(NOD, TURN))), "inverting the result:\n  wave\n  nod and turn left"),
+    (inverter(sequence(WAVE, times(NOD))), "inverting the result:\n  wave\n  nod 3 times"),
+    (inverter(sequence(times(WAVE), NOD)), "inverting the result:\n  wave 3 times\n  nod"),
+    (within(sequence(WAVE, fallback(NOD, TURN))), "within 9 s:\n  wave\n  nod or turn left"),
+    # a sequence that can be skipped is no `step by step:` below `try in order:`
     (fallback(WAVE, NOD, sequence(when(LOW, WAVE), fallback(NOD, TURN))),
      "try in order:\n  wave\n  nod\n  (if battery is low, wave) then (nod or turn left)"),
 ]  # fmt: skip

@@ -30,6 +30,7 @@ MISSIONS = sorted([*(ROOT / "examples").glob("*.txt"), *(ROOT / "tests" / "sampl
 NOT_ALL_NATURAL = {
     "nodes": "it is about nodes that no phrase says",
     "given": "one of its nodes gives values",
+    "node_forms": "it has a tree of another file",
 }
 _BY_ID = re.compile(r'\b(do|test) ("|subtree|script|sequence|set blackboard|recovery|reactive|pipeline)')
 

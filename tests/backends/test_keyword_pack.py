@@ -147,7 +147,7 @@ def test_types_of_slots_follow_from_the_model() -> None:
     }  # fmt: skip
     assert entry.outputs == ("found",)
     assert entry.help == "Finds it. x; grasp: top|side; place: it's where"
-    assert entry.phrases[0].endswith("place {place} [speed {speed}] [giving {found}]")
+    assert entry.phrases[0].endswith("place {place} [at speed {speed}] [giving {found}]")
     assert '# Ports that aren\'t in the phrase: "a-b"' in pack.text
 
 
@@ -163,6 +163,21 @@ def test_all_nodes_of_nav2_can_be_said() -> None:
 def test_a_subject_takes_its_value() -> None:
     found = phrases("IsPathValid", SpokenPorts(("path", "cost")), (), is_condition=True)
     assert next(found) == "path {path} is valid cost {cost}"
+
+
+@pytest.mark.parametrize(
+    ("node_id", "ports", "phrase"),
+    [
+        ("Navigate", SpokenPorts(("goal",), texts=frozenset({"goal"})), "navigate to {goal}"),
+        ("GoTo", SpokenPorts(("goal",), texts=frozenset({"goal"})), "go to {goal}"),
+        ("PathToPose", SpokenPorts(("goal",), texts=frozenset({"goal"})), "path to pose {goal}"),
+        ("PathToPose", SpokenPorts(("goal", "start")), "path to pose goal {goal} from {start}"),
+        ("PublishTwist", SpokenPorts(("v_x",), ("topic",)), "publish twist v x {v_x} [on {topic}]"),
+        ("Fly", SpokenPorts(("goal", "target"), ("speed",)), "fly to {goal} target {target} [at speed {speed}]"),
+    ],
+)
+def test_ports_are_said_by_their_part_in_what_is_done(node_id: str, ports: SpokenPorts, phrase: str) -> None:
+    assert next(phrases(node_id, ports, (), is_condition=False)) == phrase
 
 
 def test_a_comment_silences_the_warning(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

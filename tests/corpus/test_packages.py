@@ -40,3 +40,26 @@ def test_those_who_may_not_read_files_see_no_line_of_a_package(prefix: Path) -> 
     said = problem("trees", "tree.xml")
     assert "tree.xml" in said
     assert "Secret" not in said
+
+
+@pytest.mark.parametrize(
+    "include", ['path="install/rover/share/rover/trees/dock.xml"', 'ros_pkg="rover" path="trees/dock.xml"']
+)
+def test_what_the_own_package_installs_is_in_its_folder(tmp_path: Path, include: str) -> None:
+    """It needn't be built and installed to read, draw or edit its trees."""
+    (tmp_path / "package.xml").write_text("<package><name>rover</name></package>", "utf-8")
+    (tmp_path / "trees").mkdir()
+    (tmp_path / "trees" / "dock.xml").write_text("<root><BehaviorTree ID='Dock'><Nod/></BehaviorTree></root>", "utf-8")
+    tree = '<BehaviorTree ID="M"><SubTree ID="Dock"/></BehaviorTree>'
+    text = f'<root BTCPP_format="4" main_tree_to_execute="M"><include {include}/>{tree}</root>'
+    read = read_xml(Source(text, "main.xml", str(tmp_path / "trees"), (str(tmp_path / "trees"),)))
+    assert [name for name, _ in read.subtrees] == ["Dock"]
+
+
+def test_a_package_is_no_way_up(tmp_path: Path) -> None:
+    (tmp_path / "secret.xml").write_text("<root><BehaviorTree ID='T'><Secret/></BehaviorTree></root>", "utf-8")
+    trees = tmp_path / "rover" / "trees"
+    trees.mkdir(parents=True)
+    (tmp_path / "rover" / "package.xml").write_text("<package><name>rover</name></package>", "utf-8")
+    with pytest.raises(MissionError, match="BT128"):
+        read_xml(Source(MISSION.format("rover", "../secret.xml"), "main.xml", str(trees), (str(trees),)))

@@ -32,6 +32,7 @@ RUNS: dict[str, tuple[str, dict[str, str]]] = {
     "DistanceController": ("R", {}),
     "GoalUpdatedController": ("R", {}),
     "GoalUpdater": ("R", {"input_goal": "{x}", "output_goal": "{y}"}),
+    "PauseResumeController": ("R s s s", {}),
     "RecoveryNode": ("f R", {}),
     "RoundRobin": ("f R", {}),
     "Inverter": ("R", {}),

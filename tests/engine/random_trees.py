@@ -28,7 +28,7 @@ SUBTREES = st.fixed_dictionaries(
     },
 )
 CONDITIONS = st.one_of(
-    st.tuples(st.sampled_from(("_failureIf", "_successIf", "_skipIf", "_while")), ASKED),
+    st.tuples(st.sampled_from(("_failureIf", "_successIf", "_onlyIf", "_skipIf", "_while")), ASKED),
     st.tuples(st.sampled_from(("_onSuccess", "_onFailure", "_onHalted", "_post")), DONE),
 )
 
@@ -87,6 +87,7 @@ def _more_parents(children: st.SearchStrategy[Node]) -> list[st.SearchStrategy[N
             lambda many: st.just(n(many.id, n("SingleTrigger", many.children[0]), *many.children[1:]))
         ),
         around("SingleTrigger"),
+        several("PauseResumeController", 1, 4),
         several("PersistentSequence", 1, 4, current_child_idx="{x}"),
         around("GoalUpdater", input_goal=st.just("{x}"), output_goal=st.just("{y}")),
         around("GoalUpdatedController", goal=st.just("{x}")),

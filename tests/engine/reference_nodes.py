@@ -44,7 +44,7 @@ class MoreNodes(ReferenceNode):
                     return FAILURE
                 if self.asked("_successIf"):
                     return SUCCESS
-                if self.asked("_skipIf"):
+                if self.asked("_onlyIf") is False or self.asked("_skipIf"):
                     return SKIPPED
             return SKIPPED if self.asked("_while") is False else IDLE
         except ScriptFailed:
@@ -278,6 +278,12 @@ class MoreNodes(ReferenceNode):
         if FAILURE in results:
             return FAILURE
         return SUCCESS if SUCCESS in results else SKIPPED
+
+    def PauseResumeController(self) -> int:
+        result = self.children[0].execute()
+        if result != RUNNING:
+            self.reset_children()
+        return SUCCESS if result == SKIPPED else result
 
     def SingleTrigger(self) -> int:
         if self.status in (IDLE, SKIPPED):

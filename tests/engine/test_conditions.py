@@ -18,7 +18,7 @@ def test_a_failure_by_a_pre_condition_says_which() -> None:
     assert (engine.failure.path, engine.failure.reason) == ("/0", "_failureIf holds: 1 < 2")
 
 
-@pytest.mark.parametrize("port", ["_failureIf", "_successIf", "_skipIf", "_while", "_onSuccess", "_post"])
+@pytest.mark.parametrize("port", ["_failureIf", "_successIf", "_onlyIf", "_skipIf", "_while", "_onSuccess", "_post"])
 def test_a_script_that_cannot_go_on_is_the_reason(port: str) -> None:
     engine = World().engine(n("AlwaysSuccess", **{port: "gone + 1"}))
     assert engine.tick() == FAILURE

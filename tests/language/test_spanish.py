@@ -51,6 +51,14 @@ TWINS = {
         "if the battery is not low and someone is near, say hola_a_todos, otherwise shake your head\n"
         "unless the path is clear, move backward 20 cm at 0.2 m/s",
     ),
+    "names, forms and ports of nodes": (
+        '"reparar", recuperando hasta 2 veces:\n  ve a la cocina\n  "pausa": espera 2 s\n'
+        'siempre y cuando la batería no esté baja:\n  saluda\n'
+        'haz plan route con {goal}, speed 2 a menos que "x > 1"',
+        '"reparar", recovering up to 2 times:\n  go to the kitchen\n  "pausa": wait 2 s\n'
+        'provided that the battery is not low:\n  wave\n'
+        'do plan route with {goal}, speed 2 unless "x > 1"',
+    ),
     "comparisons": (
         "espera hasta que la batería esté por encima del 30 %\n"
         "mientras la distancia por delante sea al menos 50 cm o la distancia a la cocina no sea menor que 2 m, "

@@ -36,6 +36,7 @@ def test_a_level_becomes_a_world(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     told = capsys.readouterr()
     assert told.out.splitlines()[0] == "lab.json: the level L1 of a building, with 3 places"
     assert told.err == "Warning: lab.json: the lanes (1) are left out: the robot finds ways of its own\n"
+    assert "-0]" not in Path("lab.toml").read_text()
     world = load_world("lab.toml", bounded=True)
     assert (world.start.x, world.start.y) == (7.5, -2.5)  # the drawing counts down, and is 5 cm a pixel
     assert world.docks == (Place("charger", 7.5, -2.5, 0.0),)

@@ -122,7 +122,7 @@ def test_equal_warnings_of_several_files_name_their_files(
 
 
 def test_a_tree_names_what_it_is_given(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    use = '<SubTree ID="Talk" what="hello" volume="3" out="{x}" deep="1" a-b="2"/>'
+    use = '<SubTree ID="Talk" what="hello" volume="3" out="{x}" deep="1" a-b="2" node="{node}" server_timeout="{t}"/>'
     script = "<Script code=\"out := 'said'\"/>"
     inner = '<SubTree ID="Deep" _autoremap="true"/>'
     trees = {

@@ -8,6 +8,7 @@ import pytest
 
 from tests.projects.trees import TREE, problems, write
 
+MOVE = '<Action ID="Move"><input_port name="to" type="double"/></Action>'
 WAREHOUSE = Path(__file__).parent / "warehouse"
 
 
@@ -48,6 +49,47 @@ def test_a_use_means_the_nearest_tree_and_model(tmp_path: Path, capsys: pytest.C
     assert problems(capsys, str(tmp_path)) == []
     write(tmp_path, "arm/trees/part.xml", TREE.format("Dock", '<Move pose="up"/>'))
     assert [problem["code"] for problem in problems(capsys, str(tmp_path))] == ["BT233"]
+
+
+@pytest.mark.parametrize(
+    ("installs", "found"),
+    [
+        ("install(FILES trees/main.xml library/dock.xml DESTINATION share)", []),
+        (
+            'install(DIRECTORY\n  trees/main.xml  # start\n  "${CMAKE_CURRENT_SOURCE_DIR}/library" DESTINATION x)',
+            [],
+        ),
+        ("install(DIRECTORY trees library DESTINATION share)", ["BT235"]),
+        ("install(FILES ${TREES} library/dock.xml DESTINATION share)", ["BT235"]),
+        ("# install(FILES trees/main.xml library/dock.xml DESTINATION share)", ["BT235"]),
+    ],
+)
+def test_what_a_package_installs_belongs_together(
+    installs: str, found: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A tree that the package leaves out is in a folder that is nearer, but isn't meant."""
+    (tmp_path / "CMakeLists.txt").write_text(installs, "utf-8")
+    use = '<Sequence><SetBlackboard output_key="p" value="1"/><SubTree ID="Dock" pose="{p}"/></Sequence>'
+    write(tmp_path, "trees/main.xml", TREE.format("MainTree", use))
+    write(tmp_path, "trees/old/dock.xml", TREE.format("Dock", "<Nod/>"))
+    write(tmp_path, "library/dock.xml", TREE.format("Dock", '<Move to="{pose}"/>'), models=MOVE)
+    assert [problem["code"] for problem in problems(capsys, str(tmp_path)) if problem["code"] != "BT236"] == found
+
+
+def test_ports_of_nav2_that_may_be_left_out(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Nav2's own models have no defaults for them, and neither have copies in the repositories of teams."""
+    ports = {
+        "Wait": ("wait_duration", "server_name", "server_timeout"),
+        "GoalUpdated": ("goal", "goals"),
+        "GetCurrentPose": ("global_frame", "robot_base_frame"),
+        "FollowPath": ("path", "controller_id"),
+    }
+    listed = {node: "".join(f'<input_port name="{name}"/>' for name in names) for node, names in ports.items()}
+    models = "".join(f'<Action ID="{node}">{inner}</Action>' for node, inner in listed.items())
+    tree = '<Sequence><Wait wait_duration="1"/><GoalUpdated/><GetCurrentPose/><FollowPath/></Sequence>'
+    write(tmp_path, "tree.xml", TREE.format("MainTree", tree), models=models)
+    found = [problem["message"] for problem in problems(capsys, str(tmp_path))]
+    assert found == ["The port path of FollowPath is missing."]
 
 
 def test_an_installed_file_is_the_one_in_its_package(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -128,8 +128,8 @@ def _stop_when(children: tuple[Candidate, ...]) -> Iterator[ast.Ast]:
 
 
 def _provided(_node: Node, children: tuple[Candidate, ...], _checked: Checked) -> Iterator[ast.Ast]:
-    if len(children) == 2 and children[0].condition is not None and not children[1].in_lines:
-        yield ast.Provided(children[0].condition, children[1].command, NOWHERE)
+    if len(children) == 2 and children[0].condition is not None:
+        yield ast.Provided(children[0].condition, children[1].part, NOWHERE)
 
 
 def propose_held(node: Node, children: tuple[Candidate, ...], checked: Checked) -> Iterator[ast.Ast]:
@@ -240,7 +240,7 @@ def _fallback(node: Node, children: tuple[Candidate, ...], checked: Checked) -> 
 
 
 def _within(node: Node, children: tuple[Candidate, ...], checked: Checked) -> Iterator[ast.Ast]:
-    part = _round(children[0], checked) if len(children) == 1 and not children[0].in_lines else None
+    part = _round(children[0], checked) if len(children) == 1 else None
     if part is not None:
         yield from (ast.Within(seconds, part, NOWHERE) for seconds in _seconds(node.port("msec"), checked))
 

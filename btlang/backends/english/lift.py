@@ -21,6 +21,7 @@ from btlang.backends.english.inverse_rules import INVERSE_RULES, propose_held
 from btlang.backends.english.names import SpokenNames
 from btlang.backends.english.type_inference import KnownTypes
 from btlang.passes.scope import Lowered, LoweringScope
+from btlang.printer.exact import is_one_piece
 from btlang.printer.phrase import leaf_words
 from btlang.printer.printer import Printer
 from btlang.printer.sentence import PRINTERS
@@ -39,6 +40,8 @@ _ASKING = frozenset((
     "Sequence", "Fallback", "ReactiveSequence", "ReactiveFallback", "IfThenElse", "WhileDoElse", "Whenever", "Inverter",
 ))  # fmt: skip
 """Nodes whose first child is a condition as a rule."""
+_NAMED_EXACTLY = frozenset(("Sequence", "Fallback", "Whenever", "KeepRunningUntilFailure"))
+"""Nodes whose names stand before what says them by their ids."""
 _QUESTION = re.compile(
     r"(?:[Ii]s|[Hh]as|[Cc]an|[Aa]re|[Ww]as|[Ww]ere|[Dd]oes|[Dd]id|[Ss]hould|[Ww]ould|[Cc]heck)(?=[A-Z0-9_ ])"
 )
@@ -129,8 +132,8 @@ class Lifter:
         is_condition = condition is not None and self._is_condition(made.node if made is not None else node, parts)
         natural, inner = self._natural_form(node, ways, condition if is_condition else None)
         is_condition = is_condition and not isinstance(natural, ast.Remember)
-        is_rule = natural is not None and node.id == "Whenever"
-        in_lines = any(part.in_lines for part in inner) or is_rule or (natural is None and bool(parts))
+        is_statement = natural is not None and (node.id == "Whenever" or isinstance(natural, ast.Named))
+        in_lines = any(part.in_lines for part in inner) or is_statement or (natural is None and bool(parts))
         self._note([node] if inner is parts else [node, *node.children], natural or exact, condition)
         if natural is None:
             return Candidate(node, exact, exact, condition, is_condition, in_lines, parts, held)
@@ -197,8 +200,9 @@ class Lifter:
         return None, children
 
     def _forms(self, node: Node, children: tuple[Candidate, ...], condition: ast.Ast | None) -> Iterator[ast.Ast]:
-        """Propose the commands that may say a node, the most natural first; only a phrase takes a name."""
+        """Propose the commands that may say a node, the most natural first. Only a phrase takes a name itself."""
         if node.name and (children or node.id not in self._vocabulary.entries):
+            yield from self._named(node, children, condition)
             return
         form = INVERSE_RULES.get(node.id)
         if form is not None:
@@ -217,6 +221,12 @@ class Lifter:
             yield from self._name(node)
         elif not children:
             yield from self._phrase(node, "action")
+
+    def _named(self, node: Node, children: tuple[Candidate, ...], condition: ast.Ast | None) -> Iterator[ast.Ast]:
+        """Propose forms behind the name of a node, unless it has one of its own that takes the name."""
+        if is_one_piece(node.name) and node.id not in _NAMED_EXACTLY:
+            for made in self._forms(node.replace(name=""), children, condition):
+                yield ast.Named(node.name, made, NOWHERE)
 
     def _condition(self, node: Node, ways: list[tuple[Computed, tuple[Candidate, ...]]]) -> ast.Ast | None:
         if self._natural and not (node.name and node.children):

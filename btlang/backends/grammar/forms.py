@@ -157,7 +157,7 @@ DEFINITIONS = {
     "fact": '"w1 " <fact> " (" value-number ", " value-number ")" (" " <facing> " " value-angle)? "\\n" <at-fact w1>',
     "exact-node": "exact-command | named-command | command-with-ports | exact-check",
     "exact-command": '<do> " " (<node> " ")? exact-action',
-    "named-command": '<do> " " exact-action " " <called> " `n3`"',
+    "named-command": '<do> " " exact-action " " <called> " `n3`" | "`n3`: " (action | <do> " " exact-action)',
     "command-with-ports": '<do> " " exact-ports',
     "exact-check": '<check> " " <test> " " exact-condition',
 }

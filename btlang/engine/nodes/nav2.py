@@ -4,6 +4,7 @@ Differences: a RecoveryNode whose recovery was SKIPPED fails and forgets its cou
 the count stays, and the next run has fewer retries; what resets it by distance or time is not here. A RoundRobin with
 wrap_around="false" succeeds with its last child; there it fails. A NonblockingSequence takes a child that was SKIPPED
 as one that succeeded; there it throws. A PersistentSequence halts a running child when its position is set elsewhere.
+A PauseResumeController has no services that could pause it.
 """
 
 from __future__ import annotations
@@ -217,6 +218,17 @@ def persistent_sequence(instance: NodeInstance, children: Sequence[Compiled]) ->
             running = -1
 
     return tick, halt
+
+
+def pause_resume_controller(_instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
+    """Run the first child, as while nothing asks its services to pause it (pause_resume_controller.cpp)."""
+    child, halt_child = children[0]
+
+    def tick() -> int:
+        status = child()
+        return SUCCESS if status == SKIPPED else status
+
+    return tick, halt_child
 
 
 def single_trigger(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:

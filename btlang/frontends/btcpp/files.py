@@ -187,6 +187,9 @@ class XmlFiles:
     def _include(self, attributes: dict[str, str], span: Span, within: tuple[str, ...], dialect: int) -> None:
         path, source = attributes["path"], span.source
         package = attributes.get("ros_pkg")
+        own = _in_own_package(path, package or "", source)
+        if own:
+            path, package = own, None
         _, real = included_path(path, source)
         if (package or real not in self._sources) and (beside := self._in_sources(path, package or "")):
             real = beside
@@ -225,10 +228,7 @@ class XmlFiles:
 
         An installed file is included as `install/PACKAGE/share/PACKAGE/trees/dock.xml`, or by the path in its package.
         """
-        folders = path.replace("\\", "/").split("/")
-        if not package and "share" in folders[:-2]:
-            share = len(folders) - 1 - folders[::-1].index("share")
-            package, folders = folders[share + 1], folders[share + 2 :]
+        package, folders = _split_installed(path, package)
         if not package:
             return ""
         paths = {real: real.split(os.sep) for real in self._sources}
@@ -238,6 +238,26 @@ class XmlFiles:
 
     def _not_included(self, span: Span, *, path: str, reason: str) -> None:
         self.problems.append(diagnostic(_NOT_INCLUDED, span, path=path, reason=reason))
+
+
+def _split_installed(path: str, package: str) -> tuple[str, list[str]]:
+    """Return the package that installs a path, "" for none, and the folders and the file in it."""
+    folders = path.replace("\\", "/").split("/")
+    if not package and "share" in folders[:-2]:
+        share = len(folders) - 1 - folders[::-1].index("share")
+        return folders[share + 1], folders[share + 2 :]
+    return package, folders
+
+
+def _in_own_package(path: str, package: str, source: Source) -> str:
+    """Return the relative path of what the package of a source installs, in the folder of that package, or ""."""
+    package, folders = _split_installed(path, package)
+    _, real = included_path(".", source)
+    root = _package_root(real) if package and ".." not in folders else ""
+    own = os.path.join(root, *folders)
+    if not root or _package_of(root) != package or not os.path.isfile(own):
+        return ""
+    return os.path.relpath(own, real)
 
 
 def read_files(sources: Sequence[Source], *, follows_includes: bool = False) -> XmlFiles:
@@ -272,13 +292,22 @@ def same_id(head: TreeHead, first: TreeHead) -> Diagnostic:
 
 
 @cache
+def _package_root(folder: str) -> str:
+    """The folder of the ROS 2 package in which a folder is, "" if it is in none."""
+    above = os.path.dirname(folder)
+    if os.path.isfile(os.path.join(folder, "package.xml")):
+        return folder
+    return _package_root(above) if above != folder else ""
+
+
+@cache
 def _package_of(folder: str) -> str:
     """The name of the ROS 2 package in which a folder is, "" if it is in none."""
-    manifest, above = os.path.join(folder, "package.xml"), os.path.dirname(folder)
-    if not os.path.isfile(manifest):
-        return _package_of(above) if above != folder else ""
+    root = _package_root(folder)
+    if not root:
+        return ""
     try:
-        name = _PACKAGE.search(read_source(manifest).text)
+        name = _PACKAGE.search(read_source(os.path.join(root, "package.xml")).text)
     except MissionError:
         return ""
     return name[1] if name is not None else ""

@@ -28,6 +28,7 @@ _DIRECTIONS = {
 }
 MODEL_KINDS = (*KINDS, SUBTREE)
 _NAV2 = os.path.join(os.path.dirname(__file__), "nav2.toml")
+_OPTIONAL = "?"
 _MARKS = {"<": "output", "=": "inout"}
 
 
@@ -119,11 +120,14 @@ def subtree_defaults(models: Mapping[str, NodeModel]) -> dict[str, Pairs]:
             for name, model in models.items()}  # fmt: skip
 
 
-def nav2_models(ids: Iterable[str]) -> dict[str, NodeModel]:
-    """The models of those ids that Nav2 has nodes for."""
+def nav2_models(ids: Iterable[str], left_out: str | None = None) -> dict[str, NodeModel]:
+    """The models of those ids that Nav2 has nodes for; `left_out` is the default of ports that may be left out."""
     found = _nav2()
-    return {node_id: NodeModel(found[node_id][0], node_id, tuple(map(_port, found[node_id][1])))
-            for node_id in ids if node_id in found}  # fmt: skip
+    return {
+        node_id: NodeModel(found[node_id][0], node_id, tuple(_port(text, left_out) for text in found[node_id][1]))
+        for node_id in ids
+        if node_id in found
+    }
 
 
 @cache
@@ -136,8 +140,9 @@ def _nav2() -> dict[str, tuple[str, list[str]]]:
     return {node_id: (kind, ports) for kind, nodes in kinds.items() for node_id, ports in nodes.items()}
 
 
-def _port(text: str) -> PortModel:
+def _port(text: str, left_out: str | None) -> PortModel:
     direction = _MARKS.get(text[0], "input")
     name, _, rest = text.lstrip("<=").partition(":")
     kind, has_default, default = rest.partition("=")
-    return PortModel(name.strip(), direction, kind.strip(), default.strip() if has_default else None)
+    usual = left_out if name.endswith(_OPTIONAL) else None
+    return PortModel(name.rstrip(_OPTIONAL), direction, kind.strip(), default.strip() if has_default else usual)

@@ -1,7 +1,8 @@
 """Which definition of an ID a file means if several files define it: its own, an included one, then the nearest one.
 
 A repository holds many programs. The files that are joined by includes are one program, and a project of Groot2
-(.btproj) is a file that includes others. Where no include says what belongs together, the folders do.
+(.btproj) is a file that includes others. Where no include says what belongs together, the install lists of CMake and
+then the folders do.
 """
 
 from __future__ import annotations
@@ -9,6 +10,8 @@ from __future__ import annotations
 import os
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from functools import cache
+
+from btlang.frontends.btcpp.installed import install_list_of
 
 
 class Scopes:
@@ -48,7 +51,9 @@ class Scopes:
             return 0, hops
         if not self.are_apart(user, file):
             return 1, 0
-        return 2, _steps(os.path.dirname(user), os.path.dirname(file))
+        steps = _steps(os.path.dirname(user), os.path.dirname(file))
+        installs = install_list_of(user)
+        return (1, 1 + steps) if installs and install_list_of(file) == installs else (2, steps)
 
     def _reached_from(self, user: str) -> dict[str, int]:
         """The file itself and all that it includes, with the number of includes on the way."""

@@ -17,7 +17,7 @@ grouped tokens, which need no look-ahead any more:
     AFTER_FORM cond [ELSE body] END        the same after one command, and `provided that`
     LOOP head DO body END                  before, after, while, if with a command as their head: `after waving, nod`
     LOOP body [STOP cond] END              repeat, every, after 5 s, for each, and try: LOOP body [ELSE body] END;
-                                           also a node that is said by its id with its children
+                                           also a node that is said by its id with its children, and a name before one
     TEST cond END                          check, wait until
 """
 

@@ -18,10 +18,7 @@ _DECLARATION = re.compile(r"<\?xml[^>]*\?>")
 _EXPRESSION = re.compile(r"\$\{[^}]*\}|\$\([^)]*\)")
 _DECLARATIONS = ("xacro:arg", "xacro:property")  # harmless as long as only names have expressions
 _EXPAND = "expand it first: xacro FILE > robot.urdf"
-_OTHERS = {
-    "mujoco": "this is MJCF, the format of MuJoCo; give a URDF file",
-    "sdf": "this is SDF, the format of Gazebo; give a URDF file",
-}
+_OTHERS = {"sdf": "this is SDF, the format of Gazebo; give a URDF file"}
 
 
 class UrdfElement:
@@ -51,14 +48,14 @@ class UrdfElement:
 
 
 class UrdfFile:
-    """The root tag of a URDF file, and the values of its tags. All methods raise BodyError with a line."""
+    """The root tag of a URDF or MJCF file, and the values of its tags. All methods raise BodyError with a line."""
 
     def __init__(self, source: Source) -> None:
         self._source = source
         self.has_expressions = False
         """Whether names had expressions of xacro, which are left out."""
         self.root = self._parse()
-        if self.root.tag != "robot":
+        if self.root.tag not in ("robot", "mujoco"):
             other = f"this isn't URDF: it begins with <{self.root.tag}>, not with <robot>"
             raise self.wrong(self.root, _OTHERS.get(self.root.tag, other))
 

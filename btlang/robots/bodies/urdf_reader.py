@@ -1,4 +1,4 @@
-"""URDF files of other programs as the body of a robot file."""
+"""URDF and MJCF files of other programs as the body of a robot file."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ import numpy as np
 from btlang.robots.bodies.body import Capsule, Joint, Sensor, Vector
 from btlang.robots.bodies.joint_tables import BASE
 from btlang.robots.bodies.mesh_bounds import mesh_bounds
+from btlang.robots.bodies.mjcf import robot_of_mjcf
 from btlang.robots.bodies.urdf_elements import UrdfElement, UrdfFile, value_of
 from btlang.robots.bodies.urdf_wheels import Drive, describe_base, gap_between, plugin_drive, wheel_joints
 from btlang.robots.motion.kinematics import Array
@@ -99,6 +100,8 @@ def read_urdf(source: Source) -> Skeleton:
 class _UrdfReader:
     def __init__(self, source: Source) -> None:
         self._file, self._path = UrdfFile(source), source.name
+        if self._file.root.tag == "mujoco":
+            self._file.root = robot_of_mjcf(self._file.root, self._file.wrong)
         self._notes: list[str] = []
         self._reach = 0.0
         """How far the base reaches from its axis, in metres."""

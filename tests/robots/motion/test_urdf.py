@@ -69,7 +69,7 @@ def test_what_is_fixed_is_a_piece_of_what_carries_it() -> None:
         ("revolute", "screw", 5, 'type "screw" can\'t be read'),
         ("<link", "<xacro:include filename='wheel.xacro'/><link", 1, "this is xacro, which makes URDF"),
         ('radius="0.05"', 'radius="${r / 2}"', 2, 'this is xacro, which makes URDF: "radius" is an expression'),
-        ("robot", "mujoco", 1, "this is MJCF, the format of MuJoCo"),
+        ("robot", "sdf", 1, "this is SDF, the format of Gazebo"),
         (LIMIT, "", 5, 'the joint "shoulder_lift" needs a <limit>'),
         ('upper="1"', 'upper="-3"', 6, "leaves it no room"),
         ('upper="1"', 'upper="nan"', 6, '"upper" of <limit> must be a number'),

@@ -35,7 +35,7 @@ _MOST_CORRECTIONS = 3
 _ALIKE = {
     **dict.fromkeys(("wait", "wait_time", "wait_forever", "nothing", "fail"), "command"), "negated": "condition",
     "unless": "if", "until": "while",
-    "if_possible": "within", "if_it_works": "within", "once": "within", "stop_when": "provided", "as_soon_as": "if",
+    "if_possible": "within", "if_it_works": "within", "once": "within", "as_soon_as": "if",
     "first_time": "whenever",  "retry": "try", "one_of": "try", "wait_until": "check",
     **dict.fromkeys(("delay", "at", "every_day"), "every"), "in_order": "in_parallel",
     **dict.fromkeys(("set", "increase", "decrease", "add", "subtract", "remember", "include"), "command"),

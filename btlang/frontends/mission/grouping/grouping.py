@@ -54,14 +54,15 @@ def group(source: Source, raw: list[Token], conditions: set[str], word: Callable
 _OPERAND: dict[str, Callable[[Scan, Token], None]] = {
     **dict.fromkeys(("command", "condition", "wait", "wait_time", "wait_forever", "nothing", "fail"), operands.operand),
     "unknown": operands.unknown,
-    **dict.fromkeys(("if", "unless", "while", "until", "as_soon_as"), operands.form),
+    **dict.fromkeys(("if", "unless", "while", "until", "as_soon_as", "provided"), operands.form),
     **dict.fromkeys(("check", "wait_until", "wait_for", "wait_up_to"), operands.test),
     **dict.fromkeys(operands.SEPARATORS, operands.joined_block),
     **dict.fromkeys(
         ("repeat", "try", "if_possible", "retry", "every", "delay", "at", "every_day", "until_time", "each"),
         operands.loop,
     ),
-    **dict.fromkeys(("for", "up_to"), operands.front_amount),
+    "label": operands.label,
+    **dict.fromkeys(("for", "up_to", "within"), operands.front_amount),
     **dict.fromkeys(("whenever", "first_time"), operands.rule),
     "not": operands.negation,
     "never": problems.prohibition,

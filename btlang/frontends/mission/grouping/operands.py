@@ -10,7 +10,7 @@ from btlang.frontends.mission.grouping.problems import found_words, no_operand, 
 from btlang.frontends.mission.grouping.readings import started_over
 from btlang.frontends.mission.grouping.scan import ENDS, Scan
 from btlang.frontends.mission.grouping.stack import StackEntry
-from btlang.frontends.mission.token import Called, Header, Listed, Token
+from btlang.frontends.mission.token import Called, Header, Listed, NodeCall, Token
 
 SEPARATORS = {"in_parallel": "BLOCK_AND", "in_order": "BLOCK_OR", "node": "BLOCK_CHILD", "following": "SEMI"}
 """What begins a block, each with the token between its lines."""
@@ -132,9 +132,21 @@ def loop(scan: Scan, token: Token) -> None:
     separator(scan)
 
 
+def label(scan: Scan, token: Token) -> None:
+    """The name of a command before it: `"first try": go to the lab`."""
+    at = scan.at + 1 + (scan.raw[scan.at + 1].kind == "check")
+    said = scan.raw[at].value
+    details = said.details if isinstance(said, Called) else said
+    if isinstance(details, NodeCall) and details.name and scan.raw[at + 1].kind in ENDS:
+        scan.fail("BT141", scan.span(token), words=scan.words(token), wanted="a node without another name")
+        return
+    loop(scan, token)
+
+
 def front_amount(scan: Scan, token: Token) -> None:
-    """`for 10 min, A`: as behind the command."""
-    (loop if scan.raw[scan.at + 1].kind in ("comma", "colon") else no_operand)(scan, token)
+    """`for 10 min, A`: as behind the command. A time limit needs a `:`: `within 10 s, A, then B` has two readings."""
+    marks = ("colon",) if token.kind == "within" else ("comma", "colon")
+    (loop if scan.raw[scan.at + 1].kind in marks else no_operand)(scan, token)
 
 
 def fronted(scan: Scan, token: Token) -> None:

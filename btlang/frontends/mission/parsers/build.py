@@ -36,6 +36,7 @@ from btlang.tree.ast import (
     If,
     IfWorks,
     Name,
+    Named,
     Not,
     Nothing,
     Phrase,
@@ -55,6 +56,7 @@ from btlang.tree.ast import (
     While,
     Within,
 )
+from btlang.tree.catalogue import takes_one_child
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.language_tables import CONNECTIVES
 
@@ -166,7 +168,11 @@ class Builder:
             return Constrained(value.kind, value.zones, body, span)
         if isinstance(value, NodeCall):
             children = body.items if isinstance(body, Chain) and body.operator == "children" else (body,)
+            if len(children) > 1 and takes_one_child(value.id):
+                children = (Chain("sequence", children, True, body.span),)
             return Exact(value.id, value.ports, value.name, children, False, span, value.outputs)
+        if kind == "label":
+            return _named(_amount(opener), body, span)
         if kind == "try":
             return Try(body, otherwise, span)
         tried_span = span if otherwise is None else Span(self.source, opener.start, tried_end)
@@ -264,6 +270,17 @@ def _outlasts(body: Ast, pace: object) -> bool:
         return isinstance(body, UntilTime) or (isinstance(body, For) and float(body.seconds) >= float(str(seconds)))
     except ValueError:
         return False  # a value of the mission
+
+
+def _named(name: str, said: Ast, span: Span) -> Ast:
+    """A command with its name; a leaf or a node that is said by its id has it itself."""
+    leaf = said.condition if isinstance(said, Check) else said
+    if not isinstance(leaf, Phrase | Exact) or leaf.name:
+        return Named(name, said, span)
+    if isinstance(said, Check):
+        return Check(leaf.replace(name=name), span)
+    made: Ast = leaf.replace(name=name, span=span)
+    return made
 
 
 def _rounds(token: Token) -> int:

@@ -17,8 +17,8 @@ from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, statements
 from btlang.tree.catalogue import SEQUENCE, SUBTREE
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.lexicon import Lexicon
-from btlang.vocabulary.node_forms import node_details, node_forms, node_forms_by_start
-from btlang.vocabulary.node_words import is_port, read_id, role_end, subtree_named
+from btlang.vocabulary.node_forms import NodeForm, node_details, node_forms, node_forms_by_start, opposite_script
+from btlang.vocabulary.node_words import ends_id, is_port, read_id, role_end, subtree_named
 from btlang.vocabulary.trie import TrieNode
 
 _MOST_WORDS = 12  # of the name of a port
@@ -63,6 +63,9 @@ def read_node(
             return None
         node_id, at, way = found
         is_named = meaning.role == "do" and way != "node"
+        if is_named and " " in node_id and node_id not in subtrees:  # no tag of XML has such a name
+            call, end = _details(reader, at, SUBTREE, {"ID": node_id})
+            return (call, end) if text.words[end] != ":" else _details(reader, at, node_id, ports)
         subtree = subtree_named(node_id, subtrees, in_words=way == "words") if is_named else ""
         if subtree:
             node_id, ports["ID"] = SUBTREE, subtree
@@ -79,30 +82,34 @@ def read_form(text: Words, at: int, vocabulary: Lexicon, names: TrieNode | None 
     with a name before it, or, if it is a sequence, by its name alone: `"say hello":`. None for other words.
     """
     reader, words, name = _Reader(text, vocabulary, names), text.words, ""
-    try:
-        if words[at][0] == '"':
-            name, at = reader.text(at)
-            if words[at] == ":" and words[at + 1] in (END_OF_STATEMENT, END_OF_TEXT):
-                return NodeCall(SEQUENCE, (), name), at
-            if words[at] != ",":
-                return None
-            at += 1
-        for form in node_forms_by_start(vocabulary).get(words[at], ()):
-            end, ports = at + len(form.before), dict[str, str]()
-            if tuple(words[at:end]) != form.before:
-                continue
-            if form.value is not None:
-                ports[form.port] = form.value
-            elif form.port:
-                ports[form.port], end = reader.text(end)
-            behind = end + len(form.after)
-            if tuple(words[end:behind]) == form.after:
-                call, end = _details(reader, behind, form.id, ports)
-                if words[end] == ":" and not (name and call.name):
-                    return call.replace(name=name or call.name), end
-    except Unreadable:
-        pass
+    if words[at][0] == '"':
+        name, at = reader.text(at)
+        if words[at] == ":" and words[at + 1] in (END_OF_STATEMENT, END_OF_TEXT):
+            return NodeCall(SEQUENCE, (), name), at
+        if words[at] != ",":
+            return None
+        at += 1
+    for form in node_forms_by_start(vocabulary).get(words[at], ()):
+        try:
+            found = reader.form(at, form)
+            call, end = _details(reader, found[1], form.id, found[0]) if found is not None else (None, at)
+        except Unreadable:
+            continue
+        if call is not None and words[end] == ":" and not (name and call.name):
+            return call.replace(name=name or call.name), end
     return None
+
+
+def read_label(text: Words, at: int, vocabulary: Lexicon) -> tuple[str, int] | None:
+    """The name in quotes that stands before a node: `"first try": go to the lab`; and where the node begins.
+
+    A comma is behind it only before a block, `"first try", retry twice:`, as `"hello", then wave` lacks a command.
+    """
+    name, end = _Reader(text, vocabulary).text(at)
+    last = next(place for place in range(end, len(text.words)) if text.words[place] in (END_OF_STATEMENT, END_OF_TEXT))
+    is_block = text.words[end] == "," and text.words[last - 1] == ":"
+    is_label = is_block or (text.words[end] == ":" and last > end + 1)
+    return (name, end + 1) if is_label else None
 
 
 def _details(reader: _Reader, at: int, node_id: str, ports: dict[str, str]) -> tuple[NodeCall, int]:
@@ -202,9 +209,9 @@ def misread_form(text: Words, at: int, vocabulary: Lexicon) -> tuple[Span, list[
     if words[last] != ":" or last == at:
         return None
     span = text.span(at, last)
-    number = _NUMBER.search(span.text)
-    value = number[0] if number else ""
-    said = [form.say(value) for form in node_forms(vocabulary) if (form.port and form.value is None) == bool(value)]
+    values = _NUMBER.findall(span.text)
+    forms = node_forms(vocabulary)
+    said = [each.say(values) for each in forms if sum(port.value is None for port in each.ports) == len(values)]
     near = respellings(span.text.lower(), said)
     return (span, near) if near else None
 
@@ -233,6 +240,20 @@ class _Reader:
         words = read_id(self._text, at, self._vocabulary)
         return (*words, "words") if words is not None else None
 
+    def form(self, at: int, form: NodeForm) -> tuple[dict[str, str], int] | None:
+        """The ports that a form says, and where it ends; None for other words. Raises Unreadable."""
+        ports: dict[str, str] = {}
+        for part in form.parts:
+            if isinstance(part, str):
+                if self._text.words[at] != part:
+                    return None
+                at += 1
+            elif part.value is not None:
+                ports[part.name] = part.value
+            else:
+                ports[part.name], at = self.text(at)
+        return ports, at
+
     def ports(self, at: int, ports: dict[str, str]) -> tuple[list[str], int]:
         """Reads `with width 0.05, speed 2 giving {path} unless "x > 1"` into `ports`; those behind `giving`, and where
         it ends.
@@ -254,12 +275,8 @@ class _Reader:
                 if another is None:
                     return outputs, at
                 following, key, value, at = another
-            elif giving_at and self._text.words[following] == "{":
-                value, at = self.text(following)
-                key = value[1:-1].strip()
             else:
-                key, value_at = self.key(following)
-                value, at = self.text(value_at)
+                key, _, value, at = self.port(following)
             begins, gives = True, bool(giving_at) or (gives and not with_at)
             if key in ports:
                 raise GivenTwice(following, f"another port than {key}")
@@ -272,8 +289,9 @@ class _Reader:
             end = at + len(detail.words)
             if tuple(self._text.words[at:end]) == detail.words:
                 found = (detail.value, end) if detail.value is not None else self.quoted(end)
-                if found is not None:
-                    return detail.port, *found
+                text = opposite_script(found[0]) if found is not None and detail.opposite else found and found[0]
+                if found is not None and text is not None:
+                    return detail.port, text, found[1]
         return None
 
     def _another(self, at: int) -> tuple[int, str, str, int] | None:
@@ -283,12 +301,22 @@ class _Reader:
         behind = self.word("with", at + 1)
         following = behind or at + 1
         try:
-            key, value_at = self.key(following)
-            value, end = self.text(value_at)
+            key, value_at, value, end = self.port(following)
         except Unreadable:
             return None
-        is_one = behind or is_port(self._text, following, value_at, self._vocabulary, self._names)
-        return (following, key, value, end) if is_one else None
+        if value_at == following:  # `{limit} is more than 3` is a condition
+            is_one = self._text.words[end] in _BEHIND_ID or ends_id(self._text, end, self._vocabulary)
+        else:
+            is_one = is_port(self._text, following, value_at, self._vocabulary, self._names)
+        return (following, key, value, end) if behind or is_one else None
+
+    def port(self, at: int) -> tuple[str, int, str, int]:
+        """The name of a port, where its text begins, the text and where it ends; `{path}` is the port of that name."""
+        if self._text.words[at] == "{":
+            value, end = self.text(at)
+            return value[1:-1].strip(), at, value, end
+        key, value_at = self.key(at)
+        return key, value_at, *self.text(value_at)
 
     def key(self, at: int) -> tuple[str, int]:
         """The name of a port, in quotes or as words: `number of retries`; and where its text begins."""

@@ -8,7 +8,7 @@ from btlang.support.record import Record
 from btlang.text.source import Span
 from btlang.text.words import Words
 from btlang.vocabulary.language_tables import NOT_ALONE
-from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
 from btlang.vocabulary.nouns import Description
 from btlang.vocabulary.pattern import forms
 from btlang.vocabulary.references import RELATIONS
@@ -53,8 +53,9 @@ def find_prefixes(text: Words, vocabulary: Lexicon) -> dict[int, Prefix]:
     if firsts.isdisjoint(text.distinct):
         return prefixes
     vocabulary = vocabulary.with_references()
+    heads = {phrase.split()[-1] for role in NODE_ROLES for phrase in vocabulary.roles[role]}
     for at, word in enumerate(text.words):
-        if word in firsts:
+        if word in firsts and not (at and text.words[at - 1] in heads):  # `do add pose to vector` is a node
             match = longest(vocabulary.trie, text, at, vocabulary.context)
             if match is not None and match.meaning.role in SEPARATORS:
                 prefix = _prefix(text, match.meaning.role, match.last, vocabulary)

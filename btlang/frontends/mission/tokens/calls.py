@@ -99,8 +99,8 @@ class Calls:
         said = token.value
         if not isinstance(said, Called) or said.entry.sort not in ("action", "condition"):
             return at
-        is_phrase = longest(self._vocabulary.trie, self._text, at, self._context) is not None
-        if is_phrase and not is_detail(self._text, at, self._vocabulary):
+        is_own = is_detail(self._text, at, self._vocabulary)
+        if not is_own and longest(self._vocabulary.trie, self._text, at, self._context) is not None:
             return at  # `with 5 s in between`
         try:
             read = read_details(self._text, at, dict(said.arguments), self._vocabulary, names)

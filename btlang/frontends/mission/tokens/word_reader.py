@@ -10,7 +10,7 @@ from bisect import bisect_right
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.symbols.includes import ROLE as INCLUDE
 from btlang.frontends.mission.symbols.names import Names
-from btlang.frontends.mission.symbols.nodes import Unreadable, read_form, read_node, unreadable
+from btlang.frontends.mission.symbols.nodes import Unreadable, read_form, read_label, read_node, unreadable
 from btlang.frontends.mission.symbols.prefixes import SEPARATORS, Prefix, span_of
 from btlang.frontends.mission.token import (
     BEFORE_CONDITIONS,
@@ -150,8 +150,7 @@ class WordReader:
 
     def _phrase(self, at: int, last: int) -> int:
         """What begins at a word, known or unknown."""
-        form = self._form(at)
-        if form:
+        if form := self._form(at) or (self._label(at) if self._text.words[at][0] == '"' else 0):
             return form
         match = self._requests.with_time(self._requests.with_name(self._match(at), at), at)
         match = self._without_measure(match, at)
@@ -478,6 +477,15 @@ class WordReader:
             return 0
         tokens.append(Token("node", text.starts[at], text.ends[read[1] - 1], read[0]))
         return read[1]
+
+    def _label(self, at: int) -> int:
+        """The name of a node before it, at the start of a statement. Returns where to go on, or 0."""
+        label = read_label(self._text, at, self._vocabulary) if begins(self._tokens) else None
+        if label is None:
+            return 0
+        name, end = label
+        self._tokens.append(Token("label", self._text.starts[at], self._text.ends[end - 1], name))
+        return end
 
     def _node(self, head: Match, at: int) -> int:
         """A node that is said by its id. Returns where to go on, 0 where the words are no such node."""

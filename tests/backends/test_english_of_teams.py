@@ -1,0 +1,112 @@
+"""Trees as teams have them, in English that they can edit: names before statements, guards, short ports and blocks."""
+
+from __future__ import annotations
+
+import pytest
+
+from btlang.api import parse_tree
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.text.source import Source
+
+TREE = '<root BTCPP_format="4"><BehaviorTree ID="MainTree">{}</BehaviorTree></root>'
+PORTS = 'goal="{goal}" planner="Smac"'
+LONG = " ".join(f'{name}="{name} of the cell"' for name in ("shelf", "tray", "gripper", "camera", "approach"))
+
+CASES = {
+    "a name before a leaf": (
+        f'<Sequence><DetectTags name="first look" {PORTS}/><Wave name="hi"/>'
+        '<Sleep name="settle" msec="500"/></Sequence>',
+        ['"first look": do detect tags with {goal}, planner "Smac"', '"hi": wave', '"settle": wait 0.5 s'],
+    ),
+    "a name before a condition": (
+        '<Sequence><Fallback><IsGripperOk/><Wave/></Fallback><IsGripperOk name="ok?" door="2"/></Sequence>',
+        ["check test is gripper ok or wave", '"ok?": check test is gripper ok with door 2'],
+    ),
+    "a name before a node of a team": (
+        '<Recovery name="again" retries="3"><Wave/><Nod/></Recovery>',
+        ['"again", do recovery with retries 3:', "  wave", "  nod"],
+    ),
+    "a name before a form": (
+        '<RetryUntilSuccessful name="thrice" num_attempts="3"><Wave/></RetryUntilSuccessful>',
+        ['"thrice": retry wave 3 times'],
+    ),
+    "a guard with a name": (
+        '<ReactiveSequence name="still wanted"><Inverter><IsGoalNew/></Inverter><DetectTags goal="{goal}"/>'
+        "</ReactiveSequence>",
+        ['"still wanted": do detect tags with {goal} provided that not test is goal new'],
+    ),
+    "a guard of something long": (
+        f"<ReactiveSequence><IsLidOpen/><Sequence><DetectTags {LONG}/><Wave/></Sequence></ReactiveSequence>",
+        [
+            "provided that test is lid open:",
+            '  do detect tags with shelf "shelf of the cell", tray "tray of the cell",',
+            '      gripper "gripper of the cell", camera "camera of the cell", approach "approach of the cell"',
+            "  wave",
+        ],
+    ),
+    "a long sequence in a fallback": (
+        f"<Fallback><Sequence><Wave/><DetectTags {LONG}/></Sequence><Nod/><Wave/></Fallback>",
+        [
+            "try in order:",
+            "  step by step:",
+            "    wave",
+            '    do detect tags with shelf "shelf of the cell", tray "tray of the cell",',
+            '        gripper "gripper of the cell", camera "camera of the cell", approach "approach of the cell"',
+            "  nod",
+            "  wave",
+        ],
+    ),
+    "a time limit of something long": (
+        f'<Timeout msec="2500"><Sequence><Wave/><DetectTags {LONG}/></Sequence></Timeout>',
+        [
+            "within 2.5 s:",
+            "  wave",
+            '  do detect tags with shelf "shelf of the cell", tray "tray of the cell",',
+            '      gripper "gripper of the cell", camera "camera of the cell", approach "approach of the cell"',
+        ],
+    ),
+    "a decorator of a sequence": (
+        "<ForceFailure><Sequence><Wave/><Nod/></Sequence></ForceFailure>",
+        ["failing in any case:", "  wave", "  nod"],
+    ),
+    "a condition of other programs": (
+        '<Wave name="hi" _onlyIf="x &gt; 1"/>',
+        ['"hi": wave only if "x > 1"'],
+    ),
+    "a script that says what isn't": (
+        "<Sequence><Wave _skipIf=\"mode != 'a b'\"/><Nod _skipIf='!done'/>"
+        "<Wave _skipIf='a != 1 &amp;&amp; b'/></Sequence>",
+        ["wave if \"mode == 'a b'\"", 'nod if "done"', 'wave unless "a != 1 && b"'],
+    ),
+    "thresholds of a parallel": (
+        '<Parallel success_count="1" failure_count="2"><Wave/><Nod/></Parallel>',
+        ["at the same time, until 1 succeeded or 2 failed:", "  wave", "  nod"],
+    ),
+    "a tree of another file, and an id with the words of a statement": (
+        '<Sequence><SubTree ID="Move to Waypoint" goal="{goal}"/><AddPoseToVector input="{pose}"/></Sequence>',
+        ['do "Move to Waypoint" with {goal}', "do add pose to vector with input {pose}"],
+    ),
+}
+
+
+@pytest.mark.parametrize("parser", ["shunting-yard", "lark"])
+@pytest.mark.parametrize(("tree", "lines"), CASES.values(), ids=CASES)
+def test_what_a_team_reads(tree: str, lines: list[str], parser: str) -> None:
+    xml = TREE.format(tree)
+    text = str(parse_tree(xml).to("english"))
+    said = [line for line in text.splitlines() if not line.startswith(("this mission is", "#"))]
+    assert said == lines
+    assert parse_tree(text, parser=parser).to("xml", onto=Source(xml)) == xml
+
+
+def test_a_text_without_its_command_is_no_name() -> None:
+    with pytest.raises(MissionError) as error:
+        parse_tree('"Good morning", then wave')
+    assert "BT019" in [problem.code for problem in error.value.diagnostics]
+
+
+@pytest.mark.parametrize("text", ['"x": wave called "y"', '"x": check test is door open called "y"'])
+def test_a_node_has_one_name(text: str) -> None:
+    with pytest.raises(MissionError) as error:
+        parse_tree(text)
+    assert [problem.code for problem in error.value.diagnostics] == ["BT141"]
