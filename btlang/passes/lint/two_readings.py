@@ -214,9 +214,10 @@ def find_counts_behind_lists(compilation: Compilation) -> Iterator[Diagnostic]:
     for body in ast.bodies(compilation.mission):
         for node in compilation.syntax(body):
             for left, right in pairwise(ast.parts(node)) if isinstance(node, ast.Chain) else ():
+                if not isinstance(right, ast.Phrase) or right.entry.id not in COUNTING or _places_of(right):
+                    continue
                 goals = [sorted(_places_of(each)) for each in ast.parts(left) if isinstance(each, ast.Phrase)]
-                counts = isinstance(right, ast.Phrase) and right.entry.id in COUNTING and not _places_of(right)
-                if not (ast.is_list(left) and counts and all(goals)):
+                if not (ast.is_list(left) and all(goals)):
                     continue
                 if left.span.source.text[left.span.end : right.span.start].strip(" ,").lower() not in joints:
                     continue

@@ -207,9 +207,9 @@ def find_distant_questions(compilation: Compilation) -> Iterator[Diagnostic]:
     phrases = _phrases(nodes)
     if all(each.entry.id != ASK and "|" not in "".join(text for _, text in each.arguments) for each in phrases):
         return  # as nearly always: nobody is asked, and nothing is chosen by what it is like
-    for node in nodes:
-        asked = [_person_of(each) for each in _phrases(ast.parts(node)) if each.entry.id == ASK]
-        if ast.is_list(node) and len({*asked} - {""}) > 1:  # from beside one of them, the others are asked from afar
+    for node in (node for node in nodes if isinstance(node, ast.Chain) and ast.is_list(node)):
+        asked = [_person_of(each) for each in _phrases(node.items) if each.entry.id == ASK]
+        if len({*asked} - {""}) > 1:  # from beside one of them, the others are asked from afar
             word = vocabulary.word
             all_of = joined(asked, word("and"))
             fixed = f"{' '.join(vocabulary.asking['journey'])} {all_of} {word('and')} ask each of them ..."

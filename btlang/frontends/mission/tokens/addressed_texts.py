@@ -42,7 +42,9 @@ class AddressedTexts(ToldWords):
 
     @cached_property
     def _addressing(self) -> frozenset[str]:
-        """The verbs behind which a person is told or asked something."""
+        """The verbs behind which a person is told or asked something; none in a text without times."""
+        if self._text.distinct.isdisjoint(phrase.split()[0] for phrase in self._vocabulary.roles["at"]):
+            return frozenset()
         entries = (self._vocabulary.entry(id) for id in (TELL, ASK))
         verbs = (phrase.split()[0] for entry in entries if entry is not None for phrase in entry.phrases)
         return frozenset((*verbs, *self._vocabulary.asking["reminding"]))
