@@ -49,7 +49,7 @@ ASKING = (
     "in_turn", "until_none", "rounds", "obliging", "failing", "found", "counted", "replied",
     "so", "being", "causing", "asking_for", "plea_for", "helping", "plea_for_help",
     "speaking", "spoken_of", "still", "motionless", "who", "somebody", "answering", "likewise",
-    "remaining", "entering", "turning_to", "ended", "fewer", "having", "putting",
+    "remaining", "entering", "turning_to", "ended", "fewer", "having", "putting", "denied",
 )  # fmt: skip
 """What the table `asking` of a language may have; without it there are no questions, and no remarks."""
 

@@ -144,6 +144,8 @@ class Lexicon:
         """The words beside a list that say nothing: `in that order`."""
         self.ended = tree_of((words, role == "fewer") for role in ("ended", "fewer") for words in self.asking[role])
         """The words for what isn't so any more, and whether they are about a count: `it's gone`, `there are fewer`."""
+        self.denied = tree_of((words, True) for words in self.asking["denied"])
+        """The words that deny what was checked: `it isn't`."""
         self.relatives = tree_of((words, True) for words in language["relatives"])
         """The words that begin what is said of a thing: `that is`."""
         self.entering = tree_of((words, True) for words in self.asking["entering"])

@@ -11,12 +11,14 @@ from functools import cached_property
 from btlang.frontends.mission.token import HOLDING, RULES, Called, Remembered, Token, statement_start
 from btlang.frontends.mission.tokens.partial_commands import LONGEST_VERB, PartialCommands
 from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of
+from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import OBJECT
 from btlang.vocabulary.word_tree import find
 
+_BETWEEN = frozenset(("every", "comma", "and", "then"))
 _UNTIL = ("until", "wait_until")
 _COUNTS, _MORE = ("PeopleAt", "ObjectsAt"), {"above", "at_least"}
 _ASKED = tuple([form, "condition", "comma"] for form in (*RULES, "if"))
@@ -27,7 +29,8 @@ class PartialConditions(PartialCommands):
 
     def add_condition(self, at: int) -> int:
         """A condition that isn't said as its phrases are. Returns where to go on, 0 where there is none."""
-        return self._add_quantity(at) or self._add_contracted(at) or self._add_lasting(at) or self._add_ended(at)
+        ways = (self._add_quantity, self._add_contracted, self._add_lasting, self._add_ended, self._add_denied)
+        return next((end for way in ways if (end := way(at))), 0)
 
     def _add_quantity(self, at: int) -> int:
         """`charge until it is at least 80%`: the latest quantity is compared, or the only one with that unit."""
@@ -111,6 +114,25 @@ class PartialConditions(PartialCommands):
         start, end = self._text.starts[at], self._text.ends[ended[1] - 1]
         tokens += [Token("not", start, start), Token("condition", start, end, asked)]
         return ended[1]
+
+    def _add_denied(self, at: int) -> int:
+        """`check that the door is closed, and close it if it isn't`: closes it if it isn't closed."""
+        tokens, denied = self._tokens, find(self._vocabulary.denied, self._text.words, at)
+        form = len(tokens) - 1
+        first = statement_start(tokens, form)
+        check = next((i for i in range(first, form) if tokens[i].kind == "check"), form)
+        between = tokens[check + 2 : form - 1]
+        plain = all(token.kind in _BETWEEN for token in between)
+        is_form = tokens[form].kind == "if" and form - check > 2 and tokens[form - 1].kind == "command" and plain
+        if denied is None or not is_form or self._text.words[denied[1]] not in (END_OF_STATEMENT, END_OF_TEXT):
+            return 0
+        asked, command, here = tokens[check + 1], tokens[form - 1], tokens[form].start
+        paces = [token for token in between if token.kind == "every"]
+        comma = Token("comma", here, here)
+        tokens[check:] = [
+            *paces, *([comma] if paces else []), tokens[form], Token("not", here, here), asked, comma, command,
+        ]  # fmt: skip
+        return denied[1]
 
     def _condition(self, found: Match, at: int) -> int:
         """Add a condition, or its denial. Returns where to go on."""
