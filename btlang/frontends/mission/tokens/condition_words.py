@@ -56,7 +56,8 @@ def with_words_before(
 def _other_subject(before: Match, text: Words, match: Match, at: int, vocabulary: Lexicon) -> Diagnostic | None:
     """BT150 for `if Alice is near and holding a cup`: who holds it isn't said, and only the robot's own hands count."""
     is_about_person = any(value.type == PERSON and value.first < at - 2 for value in before.values[:1])
-    if not is_about_person or not text.words[at].endswith(tuple(vocabulary.doing)):
+    is_name = any(value.first == at for value in match.values)  # `the reading corner is off limits`
+    if not is_about_person or is_name or not text.words[at].endswith(tuple(vocabulary.doing)):
         return None
     span = text.span(at, match.last)
     example = f"you are {span.text}"
