@@ -81,7 +81,7 @@ def test_no_work_is_left_as_a_note() -> None:
 
 
 def test_every_module_says_what_it_is_for() -> None:
-    silent = [path for path in MODULES if ast.get_docstring(ast.parse(text(path))) is None]
+    silent = [path for path in MODULES if not text(path).startswith('"""')]
     packages = {path for path in silent if path.name == "__init__.py" and "tests" in path.parts}
     assert [name(path) for path in silent if path not in packages | BORROWED] == []
 

@@ -266,8 +266,9 @@ def test_the_tutorial_leaves_no_snippet_out() -> None:
     assert all(block.file for block in blocks_there if block.language == "toml")
 
 
-def test_commands_named_in_the_tutorial_are_known(folder: Path) -> None:
-    """Those in a sentence; no robot runs for them."""
+def test_commands_named_in_the_tutorial_are_known(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Those in a sentence; no robot runs for them, and no browser comes."""
+    monkeypatch.setattr("btlang.server.page.local_page.OPEN", 0.0)
     text = re.sub(r"^```.*?^```$", "", (ROOT / "docs" / "tutorial.md").read_text(encoding="utf-8"), flags=re.M | re.S)
     named = re.findall(r"`(btc (?!(?:run|tree)`)[^`]+)`", text)
     assert len(named) > 5
