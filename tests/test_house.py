@@ -40,7 +40,6 @@ LONG: dict[str, str] = {
     "examples/guide/robot.toml": "all of a humanoid",
     "btlang/web/package-lock.json": "made by npm",
     "btlang/robots/robot.py": "what robots can do, one capability after the other",
-    "btlang/builders.py": "made from the catalogue",
     "btlang/cli/verbs.py": "the table of verbs",
     "docs/cli.md": "made from the help of the commands",
     "docs/api.md": "made from the docstrings",

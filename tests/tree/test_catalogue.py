@@ -13,7 +13,6 @@ from btlang.tree.catalogue import CATALOGUE, NodeKind
 
 PACKAGE = Path(__file__).parents[2] / "btlang"
 AT_HOME = {
-    "builders.py",  # made from the catalogue
     "tree/catalogue.py",
     "engine/compile.py",  # semantics
     "passes/__init__.py",
