@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterator, Mapping
+from keyword import iskeyword
 from types import CoroutineType, GeneratorType
 from typing import TypeAlias
 
@@ -16,7 +17,7 @@ from btlang.robots.mission_vocabulary import described, world_vocabulary
 from btlang.support.record import Record
 from btlang.text.source import NOWHERE, Source, Span, find_calling_line
 from btlang.tree.ast import Fact, all_facts
-from btlang.tree.catalogue import CATALOGUE, MOST_NODES, POST_CONDITIONS, PRE_CONDITIONS
+from btlang.tree.catalogue import CATALOGUE, MOST_NODES, POST_CONDITIONS, PRE_CONDITIONS, NodeKind
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import fold
 from btlang.vocabulary.entry import Entry
@@ -173,34 +174,68 @@ def from_py_trees(root: object, *, names: bool = True) -> Behavior:
     return fold(tree, lambda node: node.children, made)
 
 
-def built(
-    node_id: str,
+def builder_of(kind: NodeKind) -> Callable[..., Behavior]:
+    """Return the function that builds a node: its parameters are the children, the ports, a name and scripts.
+
+    It raises TypeError for what doesn't fit.
+    """
+    from inspect import Parameter, Signature  # which takes longer to import than the rest of this module
+
+    def parameter(name: str, way: Any, optional: bool) -> Parameter:
+        return Parameter(f"{name}_" if iskeyword(name) else name, way, default=None if optional else Parameter.empty)
+
+    children = [
+        parameter(role, Parameter.POSITIONAL_OR_KEYWORD, at >= kind.least)
+        for at, role in enumerate(kind.roles or ("child",) * (kind.most == 1))
+    ]
+    ports = {
+        port: parameter(port, Parameter.KEYWORD_ONLY, found.default is not None) for port, found in kind.ports.items()
+    }
+    several = [Parameter("children", Parameter.VAR_POSITIONAL)] if kind.most and not children else []
+    name = Parameter("name", Parameter.KEYWORD_ONLY, default="")
+    scripts = Parameter("scripts", Parameter.VAR_KEYWORD)
+    signature = Signature([*children, *several, *ports.values(), name, scripts])
+
+    def build(*arguments: Any, **named: Any) -> Behavior:
+        try:
+            bound = signature.bind(*arguments, **named)
+        except TypeError as problem:
+            raise TypeError(f"{kind.id}: {problem}") from None
+        bound.apply_defaults()
+        given = bound.arguments
+        own = given["children"] if several else tuple(given[each.name] for each in children)
+        values = {port: given[each.name] for port, each in ports.items()}
+        return _built(kind, own, values, given["name"], given["scripts"])
+
+    build.__signature__ = signature  # type: ignore[attr-defined]
+    build.__doc__ = f"Make the node {kind.id} of {kind.origin}. {kind.text}".strip()
+    return build
+
+
+def _built(
+    kind: NodeKind,
     children: tuple[Child | None, ...],
     ports: Mapping[str, object],
     name: str,
     scripts: Mapping[str, object],
 ) -> Behavior:
-    """Make a behavior of a built-in node: what the functions of btlang.builders do.
-
-    Raises TypeError if it doesn't fit.
-    """
-    kind, own = CATALOGUE[node_id], tuple(child for child in children if child is not None)
+    own = tuple(child for child in children if child is not None)
     if None in (children if kind.most >= MOST_NODES else children[: kind.least]):
         raise TypeError(_misfit(None))
     if not kind.least <= len(own) <= kind.most:
         most = "" if kind.most >= MOST_NODES else f" to {kind.most}" if kind.most != kind.least else ""
         least = f"at least {kind.least}" if kind.most >= MOST_NODES else f"{kind.least}{most}"
         raise TypeError(
-            f"{node_id} takes {least} child{'ren' * (max(kind.least, kind.most % MOST_NODES) > 1)}, not {len(own)}"
+            f"{kind.id} takes {least} child{'ren' * (max(kind.least, kind.most % MOST_NODES) > 1)}, not {len(own)}"
         )
     for child in own:
         if not isinstance(child, Behavior | str | Source | Node | Tree | Mission):
             _entry(child)
     for script in scripts:
         if script not in (*PRE_CONDITIONS, *POST_CONDITIONS) and not kind.any_ports:
-            raise TypeError(f"{node_id} has no port {script!r}")
+            raise TypeError(f"{kind.id} has no port {script!r}")
     given = {**ports, **scripts}
-    return Behavior(node_id, own, _ports(given), name, span=find_calling_line(), numbers=_numbers(given))
+    return Behavior(kind.id, own, _ports(given), name, span=find_calling_line(), numbers=_numbers(given))
 
 
 def _ports(ports: Mapping[str, object]) -> tuple[tuple[str, str], ...]:

@@ -159,7 +159,6 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 def pytest_collection_finish() -> None:
     """What was collected stays, and most tests leave few objects: looking for garbage takes an eighth of all time."""
     gc.freeze()
-    gc.unfreeze()  # they are old ones now, and `gc_paused` can do the same for what is made later
     gc.set_threshold(20_000, 20, 20)
     gc.enable()
 

@@ -241,6 +241,8 @@ def _main() -> None:
     gc.collect()
     gc.freeze()
     words = _serve(socket.socket(fileno=int(sys.argv[1])))
+    if words[0] == "-P":
+        del words[0], sys.path[0]  # the folder
     while words[0] != "-m":
         assert words[:2] == ["-W", "ignore"], words
         simplefilter("ignore")

@@ -5,7 +5,6 @@ from __future__ import annotations
 import inspect
 import json
 import keyword
-import re
 import runpy
 import textwrap
 from collections.abc import Callable, Iterator
@@ -15,6 +14,7 @@ from typing import Any
 
 import btlang
 from btlang import PUBLIC
+from btlang.builders import builder_name
 from btlang.run.events import LOGGED, Event
 from btlang.run.logs import describe_event
 from btlang.support.field_types import field_type
@@ -111,67 +111,47 @@ def grammar_tables() -> str:
 _PYTHON = {"int": "int | str", "unsigned int": "int | str", "double": "float | str", "bool": "bool | str"}
 
 
-def builder_name(node_id: str) -> str:
-    """The name of the function that builds a node."""
-    return re.sub(r"(?<=[a-z])(?=[A-Z0-9])", "_", node_id).lower()
-
-
-def builders_module() -> str:
-    """The functions that build trees, one for each built-in node."""
-    scripts = "\n".join(f"        {script}: str" for script in (*PRE_CONDITIONS, *POST_CONDITIONS))
+def builders_stub() -> str:
+    """The types of the functions that build trees, for mypy and editors."""
+    scripts = "\n".join(f"    {script}: str" for script in (*PRE_CONDITIONS, *POST_CONDITIONS))
     made = [_builder(kind) for kind in CATALOGUE.values()]
-    names = "\n".join(f'    "{name}",' for name in sorted(["leaf", *map(builder_name, CATALOGUE)]))
     return f"""\
-\"\"\"Functions that build trees: one for each built-in node. Made from the catalogue by `python -m tests.generate`.
+# Made from the catalogue by `python -m tests.generate`.
+from typing import TypedDict, Unpack
 
-The keyword arguments are the ports of the node; docs/engine.md says what each node does.
-\"\"\"
+from btlang.behavior import Behavior, Child, Value
+from btlang.behavior import leaf as leaf
 
-from __future__ import annotations
-
-from btlang.behavior import Behavior, Child, Value, built, leaf
-
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from typing import TypedDict, Unpack
-
-    class Scripts(TypedDict, total=False):
-        \"\"\"Scripts that every node may have.\"\"\"
+class Scripts(TypedDict, total=False):
+    \"\"\"Scripts that every node may have.\"\"\"
 
 {scripts}
 
+__all__: list[str]
 
-__all__ = [
-{names}
-]
-
-
-""" + "\n\n".join(made)
+def builder_name(node_id: str) -> str: ...
+""" + "".join(made).lstrip()
 
 
 def _builder(kind: NodeKind) -> str:
     if kind.roles:
         roles = [_parameter(role) for role in kind.roles]
         children = [f"{role}: Child{' | None = None' * (at >= kind.least)}" for at, role in enumerate(roles)]
-        given = f"({', '.join(roles)})"
     elif kind.most == 1:
-        children, given = ["child: Child"], "(child,)"
+        children = ["child: Child"]
     elif kind.most:
-        children, given = ["*children: Child"], "children"
+        children = ["*children: Child"]
     else:
-        children, given = [], "()"
+        children = []
     ports = [f"{_parameter(port)}: {_annotation(found)}" for port, found in kind.ports.items()]
     star = ["*"] if not children or children[0][0] != "*" else []
     others = "**scripts: Value" if kind.any_ports else "**scripts: Unpack[Scripts]"
     parameters = [*children, *star, *ports, 'name: str = ""', others]
     head = _wrapped(f"def {builder_name(kind.id)}(", parameters, ") -> Behavior:", "")
-    values = ", ".join(f'"{port}": {_parameter(port)}' for port in kind.ports)
-    arguments = [f'"{kind.id}"', given, f"{{{values}}}", "name", "scripts"]
     about = f"Make the node {kind.id} of {kind.origin}."
     text = textwrap.fill(f"{about} {kind.text}".strip(), 112, subsequent_indent="    ")
     end = "\n    " if "\n" in text else ""
-    body = _wrapped("    return built(", arguments, ")", "    ")
-    return f'{head}\n    """{text}{end}"""\n{body}\n'
+    return f'\n{head}\n    """{text}{end}"""\n'
 
 
 def _parameter(name: str) -> str:
@@ -191,12 +171,7 @@ def _wrapped(begin: str, items: list[str], end: str, indent: str) -> str:
         return line
     if len(inner) <= 120:
         return f"{begin}\n{inner}\n{indent}{end}"
-    deeper = f"{indent}    "
-    each = [
-        _wrapped(f"{deeper}{{", item[1:-1].split(", "), "},", deeper) if item[0] == "{" else f"{deeper}{item},"
-        for item in items
-    ]
-    return "\n".join([begin, *each, f"{indent}{end}"])
+    return "\n".join([begin, *(f"{indent}    {item}," for item in items), f"{indent}{end}"])
 
 
 def public_stub() -> str:
@@ -257,7 +232,7 @@ def _signature(found: Any) -> str:
 
 FILES: dict[str, Callable[[], str]] = {
     "btlang/__init__.pyi": public_stub,
-    "btlang/builders.py": builders_module,
+    "btlang/builders.pyi": builders_stub,
     "btlang/run/events.schema.json": events_schema,
     "btlang/task/commands.schema.json": commands_schema,
     "btlang/web/src/events.ts": events_module,

@@ -12,9 +12,11 @@ import os
 import re
 import shlex
 import shutil
+import stat
 import subprocess
 import sys
 import tempfile
+from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
@@ -26,6 +28,7 @@ from btlang.frontends.mission.reader import PARSERS
 from btlang.recording.latest import note_latest
 from btlang.task.layer import read_schedules
 from tests.conftest import without_overruns
+from tests.forked import popen
 
 ROOT = Path(__file__).parent.parent
 README = ROOT / "README.md"
@@ -86,18 +89,11 @@ def commands() -> list[str]:
 def run(arguments: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
     """Runs this Python in a folder, as an installed command would; both outputs in one."""
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONIOENCODING": "utf-8"}
-    environment["XDG_STATE_HOME"] = str(folder / "state")
-    return subprocess.run(
-        [sys.executable, "-P", *arguments],
-        cwd=folder,
-        env=environment,
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        encoding="utf-8",
-        timeout=600,  # only against what hangs: these give way to others
-        check=False,
-    )
+    words = [sys.executable, "-P", *arguments]
+    streams = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.STDOUT}
+    with popen(words, cwd=folder, env=environment, text=True, **streams) as process:
+        printed, _ = process.communicate()
+    return subprocess.CompletedProcess(words, process.returncode or 0, printed)
 
 
 def btc(line: str, folder: Path) -> subprocess.CompletedProcess[str]:
@@ -136,16 +132,37 @@ def readings(line: str) -> list[str]:
     return [quick(f"{line} --parser {parser}")[1] for parser in PARSERS]
 
 
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
-    """A folder with the examples and the files that the pages show."""
-    return laid_out(tmp_path)
-
-
 @pytest.fixture(scope="module")
 def read_only(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The same, for all tests that leave it as it is: to lay one out takes longer than to read a mission."""
+    """A folder with the examples and the files that the pages show, for all tests: to lay it out takes longer than
+    to read a mission, and the words of files that stay where they are stay known.
+    """
     return laid_out(tmp_path_factory.mktemp("pages"))
+
+
+@pytest.fixture
+def folder(read_only: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """The same, for tests that write into it, with a latest run. The next test finds it as this one did."""
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
+    note_latest(str(read_only / "tea.mcap"))
+    before = stamps(read_only)
+    yield read_only
+    after = stamps(read_only)
+    if any(after.get(path) != stamp for path, stamp in before.items()):
+        shutil.rmtree(read_only)
+        laid_out(read_only)
+        return
+    for path in sorted(after.keys() - before.keys(), reverse=True):  # folders behind what they contain
+        path.rmdir() if after[path] is None else path.unlink()
+
+
+def stamps(folder: Path) -> dict[Path, tuple[int, int] | None]:
+    """The time and the size of each file in a folder, None for folders."""
+    found: dict[Path, tuple[int, int] | None] = {}
+    for path in folder.rglob("*"):
+        status = path.lstat()
+        found[path] = None if stat.S_ISDIR(status.st_mode) else (status.st_mtime_ns, status.st_size)
+    return found
 
 
 def laid_out(folder: Path) -> Path:
@@ -157,9 +174,6 @@ def laid_out(folder: Path) -> Path:
         if block.file:
             (folder / block.file).write_text(block.text, encoding="utf-8")
     (folder / "tea.mcap").write_bytes(recording())
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("XDG_STATE_HOME", str(folder / "state"))
-        note_latest(str(folder / "tea.mcap"))
     return folder
 
 
@@ -266,8 +280,9 @@ def test_the_tutorial_leaves_no_snippet_out() -> None:
     assert all(block.file for block in blocks_there if block.language == "toml")
 
 
-def test_commands_named_in_the_tutorial_are_known(folder: Path) -> None:
-    """Those in a sentence; no robot runs for them."""
+def test_commands_named_in_the_tutorial_are_known(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Those in a sentence; no robot runs for them, and no browser comes."""
+    monkeypatch.setattr("btlang.server.page.local_page.OPEN", 0.0)
     text = re.sub(r"^```.*?^```$", "", (ROOT / "docs" / "tutorial.md").read_text(encoding="utf-8"), flags=re.M | re.S)
     named = re.findall(r"`(btc (?!(?:run|tree)`)[^`]+)`", text)
     assert len(named) > 5

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Protocol
 
 from btlang.actions.common import DrivingRobot, Watch, spot, where
-from btlang.actions.joints import take
+from btlang.actions.joints import posture, take
 from btlang.actions.motion import Steps, turn
 from btlang.actions.navigation import accomplish
 from btlang.engine.leaves.leaf import ActionFailed
@@ -58,59 +58,17 @@ def point_at_place(
     yield from _towards(robot, "right arm pointing", place or spot(x, y), where(robot, place, x, y))
 
 
-def point_left(robot: Joints) -> Steps:
-    """Stretch the left arm to the left."""
-    yield from take(robot, "left arm pointing", bearing=90.0)
-
-
-def point_right(robot: Joints) -> Steps:
-    """Stretch the right arm to the right."""
-    yield from take(robot, "right arm pointing", bearing=-90.0)
-
-
-def point_ahead(robot: Joints) -> Steps:
-    """Stretch the right arm ahead."""
-    yield from take(robot, "right arm pointing", bearing=0.0)
-
-
-def nod(robot: Joints) -> Steps:
-    """Nod the head twice."""
-    yield from take(robot, "nod")
-
-
-def shake_head(robot: Joints) -> Steps:
-    """Turn the head from side to side."""
-    yield from take(robot, "shake head")
-
-
-def look_around(robot: Joints) -> Steps:
-    """Turn the head all the way to both sides and back ahead."""
-    yield from take(robot, "look around")
-
-
-def look_left(robot: Joints) -> Steps:
-    """Turn the head to the left."""
-    yield from take(robot, "look left")
-
-
-def look_right(robot: Joints) -> Steps:
-    """Turn the head to the right."""
-    yield from take(robot, "look right")
-
-
-def look_ahead(robot: Joints) -> Steps:
-    """Turn the head straight ahead."""
-    yield from take(robot, "look ahead")
-
-
-def look_up(robot: Joints) -> Steps:
-    """Raise the head."""
-    yield from take(robot, "look up")
-
-
-def look_down(robot: Joints) -> Steps:
-    """Lower the head."""
-    yield from take(robot, "look down")
+point_left = posture("left arm pointing", bearing=90.0)
+point_right = posture("right arm pointing", bearing=-90.0)
+point_ahead = posture("right arm pointing", bearing=0.0)
+nod = posture("nod")
+shake_head = posture("shake head")
+look_around = posture("look around")
+look_left = posture("look left")
+look_right = posture("look right")
+look_ahead = posture("look ahead")
+look_up = posture("look up")
+look_down = posture("look down")
 
 
 def look_at_person(robot: AimingRobot, person: str) -> Steps:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from btlang.actions.common import Watch
 from btlang.actions.motion import Steps
@@ -40,3 +40,13 @@ def take(robot: Joints, *postures: str, bearing: float = 0.0) -> Steps:
             for angles in known[name][at : at + 1]:
                 step.update(angles)
         yield from bring(robot, {joint: angle_of(angle, bearing) for joint, angle in step.items()})
+
+
+def posture(*names: str, bearing: float = 0.0) -> Callable[[Joints], Steps]:
+    """Return an action that brings the body to postures, as `take` does."""
+
+    def assume(robot: Joints) -> Steps:
+        """Bring the body to the postures."""
+        yield from take(robot, *names, bearing=bearing)
+
+    return assume

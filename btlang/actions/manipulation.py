@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from btlang.actions.joints import take
+from btlang.actions.joints import posture, take
 from btlang.actions.motion import Steps
 from btlang.actions.navigation import accomplish, travel
 from btlang.engine.leaves.leaf import ActionFailed
@@ -108,51 +108,13 @@ def _full_hand(robot: Hands, object: str | None) -> Hand:
     return hand
 
 
-def raise_right_arm(robot: Joints) -> Steps:
-    """Bring the arm up."""
-    yield from take(robot, "right arm raised")
-
-
-def raise_left_arm(robot: Joints) -> Steps:
-    """Bring the arm up."""
-    yield from take(robot, "left arm raised")
-
-
-def raise_both_arms(robot: Joints) -> Steps:
-    """Bring both arms up together."""
-    yield from take(robot, "left arm raised", "right arm raised")
-
-
-def lower_right_arm(robot: Joints) -> Steps:
-    """Let the arm hang."""
-    yield from take(robot, "right arm hanging")
-
-
-def lower_left_arm(robot: Joints) -> Steps:
-    """Let the arm hang."""
-    yield from take(robot, "left arm hanging")
-
-
-def lower_both_arms(robot: Joints) -> Steps:
-    """Let both arms hang."""
-    yield from take(robot, "left arm hanging", "right arm hanging")
-
-
-def stretch_right_arm(robot: Joints) -> Steps:
-    """Stretch the arm out ahead."""
-    yield from take(robot, "right arm stretched")
-
-
-def stretch_left_arm(robot: Joints) -> Steps:
-    """Stretch the arm out ahead."""
-    yield from take(robot, "left arm stretched")
-
-
-def retract_right_arm(robot: Joints) -> Steps:
-    """Fold the arm to the body."""
-    yield from take(robot, "right arm folded")
-
-
-def retract_left_arm(robot: Joints) -> Steps:
-    """Fold the arm to the body."""
-    yield from take(robot, "left arm folded")
+raise_right_arm = posture("right arm raised")
+raise_left_arm = posture("left arm raised")
+raise_both_arms = posture("left arm raised", "right arm raised")
+lower_right_arm = posture("right arm hanging")
+lower_left_arm = posture("left arm hanging")
+lower_both_arms = posture("left arm hanging", "right arm hanging")
+stretch_right_arm = posture("right arm stretched")
+stretch_left_arm = posture("left arm stretched")
+retract_right_arm = posture("right arm folded")
+retract_left_arm = posture("left arm folded")

@@ -19,9 +19,6 @@ else:
         return lambda cls: cls
 
 
-_REQUIRED = object()
-
-
 class _RecordMeta(type):
     """The metaclass that turns the annotations of a class body into slots and a positional constructor, in the order
     written.

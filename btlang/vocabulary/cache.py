@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 _PROTOCOL = 5
 _MOST_IN_PROCESS = 16
 _in_process: dict[tuple[Any, ...], Any] = {}
-MOST_FILES = 20  # those that were used longest ago are deleted
+MOST_FILES = 20  # of a kind; those that were used longest ago are deleted
 _PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 _CODE = ("", "diagnostics", "robots", "robots/worlds", "text", "vocabulary")  # they make it; "" holds the version
 _OTHERS_MAY_WRITE = stat.S_IWGRP | stat.S_IWOTH
@@ -147,13 +147,16 @@ def _write(path: str, key: bytes, made: object) -> None:
         except OSError:
             os.unlink(new)
             raise
-        _delete_least_used(os.path.dirname(path))
+        _delete_least_used(*os.path.split(path))
     except (OSError, RecursionError):
         return
 
 
-def _delete_least_used(folder: str) -> None:
+def _delete_least_used(folder: str, written: str) -> None:
+    """Of the kind of the file that was written: what is made of users' own files must not displace what ships."""
+    kind = written[: written.index("-") + 1]
     with os.scandir(folder) as entries:
-        files = sorted((entry for entry in entries if entry.is_file()), key=lambda entry: entry.stat().st_mtime_ns)
+        files = [entry for entry in entries if entry.name.startswith(kind) and entry.is_file()]
+    files.sort(key=lambda entry: entry.stat().st_mtime_ns)
     for entry in files[:-MOST_FILES]:
         os.unlink(entry.path)

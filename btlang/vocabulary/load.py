@@ -92,7 +92,8 @@ def _files(folder: str) -> list[str]:
 
 def _kept(folder: str, paths: Sequence[str]) -> Lexicon:
     """The vocabulary of files alone, from the cache if it has it."""
-    return cached("words", [*_files(folder), *paths], lambda: _made_of_all(folder, _read_all(paths, _kept_file), ()))
+    kind = "words" if paths else "language"
+    return cached(kind, [*_files(folder), *paths], lambda: _made_of_all(folder, _read_all(paths, _kept_file), ()))
 
 
 def _made(

@@ -26,7 +26,6 @@ from btlang import (
 from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.dump import plain
 from btlang.tree.node import Node
-from tests.generate import builder_name
 
 DONE: list[object] = []
 
@@ -192,7 +191,7 @@ def test_each_public_name_is_listed_once_and_there() -> None:
     listed = [name for names in PUBLIC.values() for name in names]
     assert sorted(listed) == btlang.__all__ == sorted(set(listed))
     assert all(getattr(btlang, name) is not None for name in listed)
-    assert set(PUBLIC["btlang.builders"]) == set(builders.__all__) == {"leaf", *map(builder_name, CATALOGUE)}
+    assert set(PUBLIC["btlang.builders"]) == set(builders.__all__) == {"leaf", *map(builders.builder_name, CATALOGUE)}
     assert repr(sequence("wave", "nod")) == "<Behavior Sequence, 2 children>"
 
 

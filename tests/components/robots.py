@@ -11,9 +11,9 @@ SAMPLES = Path(__file__).parent / "samples"
 
 
 def robot_file(folder: Path, more: str) -> str:
-    """The standard robot with more in its file, beside the samples."""
+    """The standard robot with more in its file, beside the samples. Where a folder has them, their words stay read."""
     for sample in SAMPLES.iterdir():
-        if sample.is_file():
+        if sample.is_file() and not (folder / sample.name).exists():
             shutil.copy(sample, folder)
     path = folder / "robot.toml"
     standard = Path(STANDARD_BODY).read_text(encoding="utf-8")

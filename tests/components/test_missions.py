@@ -20,6 +20,12 @@ from tests.components.robots import machine, robot_file
 WHERE = pytest.mark.parametrize("runs", ["process", "here"])
 
 
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """That of the robots of all tests which leave the samples as they are."""
+    return tmp_path_factory.mktemp("robots")
+
+
 def run(robot: str, text: str, **options: Any) -> tuple[btlang.Outcome, list[Event]]:
     events: list[Event] = []
     mission = btlang.parse_tree(text, keywords=robot_words(robot))
@@ -34,8 +40,8 @@ def printed(events: list[Event]) -> list[str]:
 
 
 @WHERE
-def test_words_conditions_and_quantities(tmp_path: Path, runs: str) -> None:
-    robot = robot_file(tmp_path, machine(runs=f'"{runs}"', parameters="{ heat = 70 }"))
+def test_words_conditions_and_quantities(folder: Path, runs: str) -> None:
+    robot = robot_file(folder, machine(runs=f'"{runs}"', parameters="{ heat = 70 }"))
     text = (
         "if something was brewed, print early otherwise brew tea\n"
         "brew\n"
@@ -51,8 +57,8 @@ def test_words_conditions_and_quantities(tmp_path: Path, runs: str) -> None:
 
 
 @WHERE
-def test_what_it_raises_is_the_reason(tmp_path: Path, runs: str) -> None:
-    robot = robot_file(tmp_path, machine(runs=f'"{runs}"', parameters='{ wrong = "raise in brew" }'))
+def test_what_it_raises_is_the_reason(folder: Path, runs: str) -> None:
+    robot = robot_file(folder, machine(runs=f'"{runs}"', parameters='{ wrong = "raise in brew" }'))
     outcome, _ = run(robot, "brew tea")
     assert not outcome.succeeded
     assert "no water" in outcome.why()
@@ -61,15 +67,15 @@ def test_what_it_raises_is_the_reason(tmp_path: Path, runs: str) -> None:
 
 @WHERE
 @pytest.mark.parametrize("hook", ["configure", "activate", "step"])
-def test_where_a_hook_raised_is_said(tmp_path: Path, runs: str, hook: str) -> None:
-    robot = robot_file(tmp_path, machine(runs=f'"{runs}"', parameters=f'{{ wrong = "raise in {hook}" }}', restarts=0))
+def test_where_a_hook_raised_is_said(folder: Path, runs: str, hook: str) -> None:
+    robot = robot_file(folder, machine(runs=f'"{runs}"', parameters=f'{{ wrong = "raise in {hook}" }}', restarts=0))
     outcome, _ = run(robot, "wait 0.5 s then brew tea", speed="real")
     assert "RuntimeError: no water (raised in _go_wrong, coffee.py:" in outcome.why()
 
 
 @WHERE
-def test_a_refusal_is_a_plain_no(tmp_path: Path, runs: str) -> None:
-    robot = robot_file(tmp_path, machine(runs=f'"{runs}"'))
+def test_a_refusal_is_a_plain_no(folder: Path, runs: str) -> None:
+    robot = robot_file(folder, machine(runs=f'"{runs}"'))
     outcome, events = run(
         robot, "whenever the tray is full, print full\nif the tray is full, print yes otherwise print no"
     )
@@ -82,8 +88,8 @@ def test_a_refusal_is_a_plain_no(tmp_path: Path, runs: str) -> None:
 
 
 @WHERE
-def test_an_answer_that_was_forgotten_is_not_known(tmp_path: Path, runs: str) -> None:
-    robot = robot_file(tmp_path, machine(runs=f'"{runs}"', parameters='{ wrong = "forget it" }'))
+def test_an_answer_that_was_forgotten_is_not_known(folder: Path, runs: str) -> None:
+    robot = robot_file(folder, machine(runs=f'"{runs}"', parameters='{ wrong = "forget it" }'))
     outcome, events = run(robot, "if the tray is full, print yes otherwise print no")
     assert not outcome.succeeded
     assert printed(events) == []
@@ -91,16 +97,16 @@ def test_an_answer_that_was_forgotten_is_not_known(tmp_path: Path, runs: str) ->
 
 
 @pytest.mark.parametrize("wrong", ["raise", "exit"])
-def test_one_that_does_not_start_fails_its_words(tmp_path: Path, wrong: str) -> None:
-    robot = robot_file(tmp_path, machine(parameters=f'{{ wrong = "{wrong} in configure" }}', restarts=1))
+def test_one_that_does_not_start_fails_its_words(folder: Path, wrong: str) -> None:
+    robot = robot_file(folder, machine(parameters=f'{{ wrong = "{wrong} in configure" }}', restarts=1))
     outcome, events = run(robot, "try brew tea otherwise print sorry")
     assert (outcome.succeeded, printed(events)) == (True, ["sorry"])
     outcome, _ = run(robot, "brew tea")
     assert "no water" in outcome.why() or "exit code 7" in outcome.why()
 
 
-def test_a_death_fails_the_command_at_once_and_it_is_back_for_the_next(tmp_path: Path) -> None:
-    robot = robot_file(tmp_path, machine())
+def test_a_death_fails_the_command_at_once_and_it_is_back_for_the_next(folder: Path) -> None:
+    robot = robot_file(folder, machine())
     text = "try roll away otherwise print lost\nwait 3 seconds\nbrew tea"
     events: list[Event] = []
     mission = btlang.parse_tree(text, keywords=robot_words(robot))
@@ -123,8 +129,8 @@ def test_a_death_fails_the_command_at_once_and_it_is_back_for_the_next(tmp_path:
         assert pid is None or not os.path.exists(f"/proc/{pid}")
 
 
-def test_what_it_drives_stands_when_it_dies(tmp_path: Path) -> None:
-    robot = robot_file(tmp_path, machine())
+def test_what_it_drives_stands_when_it_dies(folder: Path) -> None:
+    robot = robot_file(folder, machine())
     mission = btlang.parse_tree("roll away", keywords=robot_words(robot))
     with btlang.Session(robot) as session:
         run = session.start(mission)
@@ -139,8 +145,8 @@ def test_what_it_drives_stands_when_it_dies(tmp_path: Path) -> None:
         assert session.robot.velocity == (0.0, 0.0)
 
 
-def test_a_halt_ends_the_method_and_what_it_drives(tmp_path: Path) -> None:
-    robot = robot_file(tmp_path, machine())
+def test_a_halt_ends_the_method_and_what_it_drives(folder: Path) -> None:
+    robot = robot_file(folder, machine())
     outcome, _ = run(robot, "roll away for 1 second then brew tea", speed="real")
     assert outcome.succeeded, outcome.why()
     assert outcome.seconds < 5
@@ -148,11 +154,11 @@ def test_a_halt_ends_the_method_and_what_it_drives(tmp_path: Path) -> None:
 
 @WHERE
 def test_one_that_hangs_keeps_no_robot_from_going_down(
-    tmp_path: Path, runs: str, monkeypatch: pytest.MonkeyPatch
+    folder: Path, runs: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(connection, "_UP", 0.5)
     hangs = machine(runs=f'"{runs}"', parameters='{ wrong = "hang in configure" }', limit=600)
-    robot = robot_file(tmp_path, hangs)
+    robot = robot_file(folder, hangs)
     began = time.monotonic()
     with btlang.Session(robot) as session:
         process = session.connection.manager.statuses()[0].process  # type: ignore[attr-defined]
@@ -160,9 +166,9 @@ def test_one_that_hangs_keeps_no_robot_from_going_down(
     assert process is None or not os.path.exists(f"/proc/{process}")
 
 
-def test_components_that_need_each_other_wait(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_components_that_need_each_other_wait(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(connection, "_UP", 0.5)
-    robot = robot_file(tmp_path, machine(needs='["other"]') + "\n" + machine(name='"other"', needs='["machine"]'))
+    robot = robot_file(folder, machine(needs='["other"]') + "\n" + machine(name='"other"', needs='["machine"]'))
     with btlang.Session(robot) as session:
         manager = session.connection.manager  # type: ignore[attr-defined]
         assert [each.why for each in manager.statuses()] == ["waits for the other", "waits for the machine"]
@@ -170,9 +176,9 @@ def test_components_that_need_each_other_wait(tmp_path: Path, monkeypatch: pytes
 
 
 @WHERE
-def test_an_emergency_stop_holds_what_a_component_moves_itself(tmp_path: Path, runs: str) -> None:
+def test_an_emergency_stop_holds_what_a_component_moves_itself(folder: Path, runs: str) -> None:
     wheels = '\n[[device]]\nname = "wheels"\nkind = "drive"\ndriver = "simulated"\n'
-    robot = robot_file(tmp_path, machine(runs=f'"{runs}"', needs='["wheels"]') + wheels)
+    robot = robot_file(folder, machine(runs=f'"{runs}"', needs='["wheels"]') + wheels)
     mission = btlang.parse_tree("push the wheels", keywords=robot_words(robot))
     with btlang.Session(robot) as session:
         run = session.start(mission)
@@ -218,8 +224,8 @@ def test_a_newer_version_waits_for_the_mission(tmp_path: Path) -> None:
         (machine(**{"class": '"coffee:None"'}), "can't be loaded"),
     ],
 )
-def test_what_cannot_be_loaded_says_why(tmp_path: Path, table: str, reason: str) -> None:
-    robot = robot_file(tmp_path, f"{table}\nrestarts = 0")
+def test_what_cannot_be_loaded_says_why(folder: Path, table: str, reason: str) -> None:
+    robot = robot_file(folder, f"{table}\nrestarts = 0")
     with btlang.Session(robot) as session:
         assert reason in session.connection.manager.statuses()[0].why  # type: ignore[attr-defined]
 
@@ -246,10 +252,8 @@ def test_no_run_starts_without_a_class(tmp_path: Path, runs: str, capsys: pytest
 
 
 @WHERE
-def test_a_rule_that_never_knew_is_told_at_the_end(
-    tmp_path: Path, runs: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    robot = robot_file(tmp_path, machine(runs=f'"{runs}"', parameters='{ wrong = "slip" }'))
+def test_a_rule_that_never_knew_is_told_at_the_end(folder: Path, runs: str, capsys: pytest.CaptureFixture[str]) -> None:
+    robot = robot_file(folder, machine(runs=f'"{runs}"', parameters='{ wrong = "slip" }'))
     outcome, events = run(robot, "whenever the tray is full, print full. go to the lab")
     assert outcome.succeeded
     [told] = outcome.unanswered

@@ -1,16 +1,13 @@
 """The engine does what the reference interpreter does, on random trees with random leaves.
 
 After every tick, halt, emergency stop and suspension, also one that another engine goes on from: the same status, the
-same calls and halts of leaves in the same order, the same blackboards. So do the plain nodes, where no faster variant
-of them is chosen.
+same calls and halts of leaves in the same order, the same blackboards.
 """
 
 from __future__ import annotations
 
 import json
-from contextlib import nullcontext
 from typing import Any
-from unittest.mock import patch
 
 from hypothesis import example, given
 from hypothesis import strategies as st
@@ -29,15 +26,13 @@ LEFT_RUNNING = n("LoopString", n("RateController", Node("F:k"), hz=0.4), queue="
 """The loop ends while its child, which was SKIPPED, counts as RUNNING: its next run finds it so."""
 
 
-@example(LEFT_RUNNING, "ttt", False, True)
+@example(LEFT_RUNNING, "ttt", False)
 @searches(150, 20000)
-@given(TREES | BUSY, letters("ttttthperm", 3, 12), st.booleans(), st.booleans())
-def test_engine_equals_reference(shape: Node, orders: str, watched: bool, fused: bool) -> None:
+@given(TREES | BUSY, letters("ttttthperm", 3, 12), st.booleans())
+def test_engine_equals_reference(shape: Node, orders: str, watched: bool) -> None:
     drawn, world = Drawn(shape), World()
     drawn.bind(world)
-    variants = nullcontext() if fused else patch("btlang.engine.compile.choose_compiler", lambda usual, *_: usual)
-    with variants:
-        check(drawn, world, orders, watched)
+    check(drawn, world, orders, watched)
 
 
 def check(drawn: Drawn, world: World, orders: str, watched: bool) -> None:

@@ -20,9 +20,15 @@ EYE = '\n[[device]]\nname = "eye"\nkind = "camera"\ndriver = "simulated"\n'
 SONAR = '\n[[device]]\nname = "sonar"\nkind = "range"\ndriver = "simulated"\noptions = { silent = [0, 1e6] }\n'
 
 
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """That of the robot, whose file each test finds as it was."""
+    return tmp_path_factory.mktemp("robot")
+
+
 @pytest.fixture
-def layer(tmp_path: Path) -> Iterator[TaskLayer]:
-    robot = robot_file(tmp_path, machine() + EYE + SONAR)
+def layer(tmp_path: Path, folder: Path) -> Iterator[TaskLayer]:
+    robot = robot_file(folder, machine() + EYE + SONAR)
     with TaskLayer(robot, MissionReader(robot_words(robot)), folder=str(tmp_path / "data")) as layer:
         wait_until(lambda: " active " in lines(layer)[0])  # components start in processes of their own
         yield layer
@@ -41,12 +47,12 @@ def test_they_are_listed(layer: TaskLayer) -> None:
     assert answer.data["devices"][1]["silent"] == "it is switched off in the robot file"
 
 
-def test_restart_load_and_unload(layer: TaskLayer, tmp_path: Path) -> None:
+def test_restart_load_and_unload(layer: TaskLayer, folder: Path) -> None:
     assert layer.handle(messages.ChangeComponent("machine", "restart")).ok
     wait_until(lambda: "started 2 times" in lines(layer)[0] and " active " in lines(layer)[0])
-    path = tmp_path / "robot.toml"
+    path = folder / "robot.toml"
     path.write_text(path.read_text(encoding="utf-8").replace("coffee:Machine", "tea:Machine"), encoding="utf-8")
-    (tmp_path / "tea.py").write_text("from coffee import Machine\n", encoding="utf-8")
+    (folder / "tea.py").write_text("from coffee import Machine\n", encoding="utf-8")
     assert layer.handle(messages.ChangeComponent("machine", "load")).ok
     wait_until(lambda: " active " in lines(layer)[0] and "tea:Machine" in lines(layer)[0])
     assert layer.handle(messages.ChangeComponent("machine", "unload")).ok

@@ -229,6 +229,16 @@ def test_what_is_used_outlives_what_is_made_once(monkeypatch: pytest.MonkeyPatch
             os.utime(file, ns=(0, file.stat().st_mtime_ns - 1_000_000_000))
 
 
+def test_many_files_of_users_displace_no_words_that_ship(folder: Path, tmp_path: Path) -> None:
+    load_vocabulary()
+    for number in range(cache.MOST_FILES + 3):
+        pack = tmp_path / f"{number}.toml"
+        pack.write_text("")
+        for kind in ("words", "file", "world"):
+            cache.cached(kind, [str(pack)], lambda: True)
+    assert not is_read(load_vocabulary)
+
+
 def test_writers_at_the_same_time(folder: Path) -> None:
     code = (
         "from btlang.vocabulary import cache\n"

@@ -7,6 +7,7 @@ import keyword
 import pkgutil
 import re
 from collections.abc import Iterable, Mapping
+from functools import cache
 
 from btlang.backends.py_trees.plan import Part, Plan, Variable, plan_of
 from btlang.backends.python_module import SourceLines, Statements, format_call, format_literal
@@ -226,18 +227,7 @@ def _parts(root: Part) -> Iterable[Part]:
 
 def _definitions(used: Iterable[str]) -> str:
     """Return the text of our classes and functions of these names, and of what they use; "" if none is ours."""
-    texts: dict[str, str] = {}
-    needs: dict[str, set[str]] = {}
-    constants: list[str] = []
-    for module in _MODULES:
-        text = (pkgutil.get_data(__package__, f"{module}.py") or b"").decode()
-        for item in ast.parse(text).body:
-            source = ast.get_source_segment(text, item) or ""
-            if isinstance(item, ast.ClassDef | ast.FunctionDef):
-                texts[item.name] = source
-                needs[item.name] = {name.id for name in ast.walk(item) if isinstance(name, ast.Name)}
-            elif isinstance(item, ast.Assign):
-                constants.append(source)
+    constants, texts, needs = _own_code()
     wanted: set[str] = set()
     waiting = [name for name in used if name in texts]
     while waiting:
@@ -249,3 +239,23 @@ def _definitions(used: Iterable[str]) -> str:
         return ""
     copied = [text for name, text in texts.items() if name in wanted]
     return "\n" + "\n".join(constants) + "\n\n\n" + "\n\n\n".join(copied) + "\n"
+
+
+@cache
+def _own_code() -> tuple[list[str], dict[str, str], dict[str, set[str]]]:
+    """Return the texts of our constants, those of our classes and functions by name, and the names that each uses."""
+    constants: list[str] = []
+    texts: dict[str, str] = {}
+    needs: dict[str, set[str]] = {}
+    for module in _MODULES:
+        data = pkgutil.get_data(__package__, f"{module}.py") or b""
+        lines = data.split(b"\n")  # ast.get_source_segment splits them again for each item
+        for item in ast.parse(data).body:
+            *above, last = lines[item.lineno - 1 : item.end_lineno]
+            source = b"\n".join([*above, last[: item.end_col_offset]]).decode()
+            if isinstance(item, ast.ClassDef | ast.FunctionDef):
+                texts[item.name] = source
+                needs[item.name] = {name.id for name in ast.walk(item) if isinstance(name, ast.Name)}
+            elif isinstance(item, ast.Assign):
+                constants.append(source)
+    return constants, texts, needs
