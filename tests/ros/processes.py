@@ -61,7 +61,7 @@ def group_is_alive(process: Process) -> bool:
 class Command:
     """`btc` with arguments, in a process group of its own, with what it printed so far. `folder` keeps that."""
 
-    program: tuple[str, ...] = ("-m", "tests.ros.quick_btc")
+    program: tuple[str, ...] = ("-m", "btlang")
 
     def __init__(self, folder: Path, domain: int, *arguments: str, **environment: str | None) -> None:
         self._out, self._err = folder / "out.txt", folder / "err.txt"
