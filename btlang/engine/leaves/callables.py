@@ -30,7 +30,10 @@ _TRUTHS = ("bool", "bool_")  # what numpy's comparisons give goes by these names
 
 
 class FunctionLeaf:
-    """A leaf that calls a function as it is: none of its values come from the blackboard."""
+    """A leaf that calls a function as it is: none of its values come from the blackboard.
+
+    What ticks many children calls such a function itself (see fused.py) and hands on here what is no plain answer.
+    """
 
     __slots__ = ("call", "instance")
 

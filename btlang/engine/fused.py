@@ -1,0 +1,255 @@
+"""Faster variants of nodes that tick many children, with the same results. Only compile.py chooses them.
+
+A wrapper around each function leaf would take as long as the function itself. So these nodes call the functions as they
+are, and normalize what is neither True nor False: another answer, or an exception. What a node does is written, simply,
+in nodes/; tests/engine/test_reference.py runs both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial
+
+from btlang.engine.instance import NodeInstance
+from btlang.engine.leaves.callables import fail_with, find_function, status_of
+from btlang.engine.nodes import control
+from btlang.engine.nodes.control import reactive_fallback, reactive_sequence
+from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any, TypeAlias
+
+    from btlang.engine.instance import Compiled, Halt
+
+    Ticks: TypeAlias = tuple[Callable[[], Any], ...]
+    Calls: TypeAlias = tuple[Ticks, tuple[Halt, ...], tuple[NodeInstance | None, ...]]
+    Compile: TypeAlias = Callable[[NodeInstance, Sequence[Compiled]], Compiled]
+
+
+def choose_compiler(usual: Compile, instance: NodeInstance, children: Sequence[Compiled]) -> Compile:
+    """Return the function that compiles a node fastest: its `usual` one, or a variant of it."""
+    if usual is control.parallel:
+        port = instance.node.port
+        return default_parallel if port("success_count", "-1") == "-1" and port("failure_count", "1") == "1" else usual
+    if usual in _VARIANTS and any(find_function(tick) for tick, _ in children):
+        return _VARIANTS[usual]
+    return usual
+
+
+def _calls(children: Sequence[Compiled]) -> Calls:
+    """Return what to call for a tick of each child, the halts, and the instances of function leaves, None for other
+    children.
+
+    The caller of the ticks catches all but KeyboardInterrupt, and normalizes what it caught, every answer that is no
+    status, and each FAILURE that makes it fail, so that the failure is that of the leaf.
+    """
+    functions = [find_function(tick) for tick, _ in children]
+    ticks = [tick if leaf is None else leaf.call for (tick, _), leaf in zip(children, functions, strict=True)]
+    instances = [None if leaf is None else leaf.instance for leaf in functions]
+    return tuple(ticks), tuple([halt for _, halt in children]), tuple(instances)
+
+
+def normalize_status(instance: NodeInstance | None, answer: object) -> int:
+    """Return the status of an answer, or of an exception that was raised instead. A node's answer is its status."""
+    if instance is None:
+        if isinstance(answer, BaseException):
+            raise answer
+        assert isinstance(answer, int)
+        return answer
+    if answer is FAILURE:
+        return instance.refuse()
+    return fail_with(instance, answer) if isinstance(answer, BaseException) else status_of(instance, answer)
+
+
+def in_order(instance: NodeInstance, children: Sequence[Compiled], passes: int) -> Compiled:
+    """Compile a Sequence or Fallback; see nodes/control.py."""
+    ticks, halts, instances = _calls(children)
+    nothing = None if passes is SUCCESS else passes  # what functions return is most often nothing
+    index = skipped = 0
+
+    # what does not change are defaults: a cell for each would be a third of the memory of a tree
+    def tick(
+        ticks: Ticks = ticks,
+        count: int = len(ticks),
+        passes: int = passes,
+        nothing: int | None = nothing,
+    ) -> int:
+        nonlocal index, skipped
+        plain = -1  # the latest child that passed, whose answer has not been normalized
+        while index < count:
+            try:
+                status = ticks[index]()
+                if status is passes or status is nothing:
+                    plain = index
+                    index += 1
+                    continue
+                if status == RUNNING:
+                    return RUNNING
+            except KeyboardInterrupt:
+                raise
+            except BaseException as problem:
+                status = problem
+            if status == SKIPPED:
+                halts[index](False)
+                skipped += 1
+            else:
+                status = normalize_status(instances[index], status)
+                if status is not passes:
+                    index = skipped = 0
+                    return status
+                plain = -1
+            index += 1
+        if skipped:
+            passes = SKIPPED if skipped == count else passes
+            skipped = 0
+        if passes is FAILURE and plain >= 0:
+            normalize_status(instances[plain], FAILURE)
+        index = 0
+        return passes
+
+    def halt(keep: bool) -> None:
+        nonlocal index, skipped
+        if index < len(halts):  # not so where an exception came after the last child
+            halts[index](keep)
+        if not keep:
+            index = skipped = 0
+
+    return tick, halt
+
+
+def default_parallel(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
+    """Compile a Parallel with its default thresholds: it ends with the first failure, or when no child is RUNNING."""
+    ticks, halts, instances = _calls(children)
+    everyone = tuple(enumerate(ticks))
+    left = everyone  # those that have not completed
+    completed = [False] * len(ticks)
+    state = instance.state
+
+    def tick(going_on: int = RUNNING) -> int:
+        nonlocal left
+        running = fewer = skipped = False
+        for index, child in left:
+            try:
+                status = child()
+                if status is going_on:  # what nearly all say, compared as fast as can be
+                    running = True
+                    continue
+                if status is SUCCESS or status is None:
+                    completed[index] = fewer = True
+                    continue
+                if status == RUNNING:
+                    running = True
+                    continue
+            except KeyboardInterrupt:
+                raise
+            except BaseException as problem:
+                status = problem
+            if status == SKIPPED:
+                skipped = True
+            elif normalize_status(instances[index], status) is FAILURE:
+                fault = state.fault
+                halt(False)
+                state.fault = fault
+                return FAILURE
+            else:
+                completed[index] = fewer = True
+        if running:
+            if fewer:
+                find_left()
+            return RUNNING
+        if skipped:
+            halt(False)
+        else:
+            completed[:] = [False] * len(completed)
+            left = everyone
+        return SUCCESS
+
+    def find_left() -> None:
+        nonlocal left
+        left = tuple([each for each in everyone if not completed[each[0]]])
+
+    def halt(keep: bool) -> None:
+        for index, stop in enumerate(halts):
+            if not completed[index]:
+                stop(keep)
+        if not keep:
+            completed[:] = [False] * len(completed)
+        find_left()
+
+    return tick, halt
+
+
+def reactive(instance: NodeInstance, children: Sequence[Compiled], passes: int) -> Compiled:
+    """Compile a ReactiveSequence or ReactiveFallback; see nodes/control.py."""
+    ticks, halts, instances = _calls(children)
+    pairs, count = tuple(enumerate(ticks)), len(ticks)
+    interrupts = instance.state.interrupts
+    fails = SUCCESS if passes is FAILURE else FAILURE
+    running = -1  # the child that was RUNNING at the last tick
+    asked = 0  # the child that is being ticked
+
+    def interrupt() -> None:
+        nonlocal running
+        if asked < running:
+            child, running = running, -1
+            halts[child](False)
+
+    def tick() -> int:
+        nonlocal running, asked
+        if running > 0:
+            interrupts.append(interrupt)
+        skipped = 0
+        plain = -1  # the latest child that passed, whose answer has not been normalized
+        status = passes
+        for asked, child in pairs:
+            try:
+                status = child()
+                if status is passes:
+                    plain = asked
+                    continue
+                if status != RUNNING and status != SKIPPED:
+                    status = normalize_status(instances[asked], status)
+            except KeyboardInterrupt:
+                raise
+            except BaseException as problem:
+                status = normalize_status(instances[asked], problem)
+            if status is passes:
+                plain = -1
+            elif status == SKIPPED:
+                halts[asked](False)
+                skipped += 1
+            else:
+                break
+        if interrupts and interrupts[-1] is interrupt:
+            interrupts.pop()
+        if status is fails or status == RUNNING:
+            if asked < running:
+                if status is FAILURE:
+                    instance.pass_on("its guard failed on the way")
+                halts[running](False)
+            running = -1 if status is fails else asked
+            return status
+        running = -1
+        if skipped == count:
+            return SKIPPED
+        if passes is FAILURE and plain >= 0:
+            normalize_status(instances[plain], FAILURE)
+        return passes
+
+    def halt(keep: bool) -> None:
+        nonlocal running
+        for stop in halts:
+            stop(keep)
+        if not keep:
+            running = -1
+
+    return tick, halt
+
+
+_VARIANTS: dict[Compile, Compile] = {
+    control.sequence: partial(in_order, passes=SUCCESS),
+    control.fallback: partial(in_order, passes=FAILURE),
+    reactive_sequence: partial(reactive, passes=SUCCESS),
+    reactive_fallback: partial(reactive, passes=FAILURE),
+}
