@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterator, Mapping
-from keyword import iskeyword
 from types import CoroutineType, GeneratorType
 from typing import TypeAlias
 
@@ -174,51 +173,14 @@ def from_py_trees(root: object, *, names: bool = True) -> Behavior:
     return fold(tree, lambda node: node.children, made)
 
 
-def builder_of(kind: NodeKind) -> Callable[..., Behavior]:
-    """Return the function that builds a node: its parameters are the children, the ports, a name and scripts.
-
-    It raises TypeError for what doesn't fit.
-    """
-    from inspect import Parameter, Signature  # which takes longer to import than the rest of this module
-
-    def parameter(name: str, way: Any, optional: bool) -> Parameter:
-        return Parameter(f"{name}_" if iskeyword(name) else name, way, default=None if optional else Parameter.empty)
-
-    children = [
-        parameter(role, Parameter.POSITIONAL_OR_KEYWORD, at >= kind.least)
-        for at, role in enumerate(kind.roles or ("child",) * (kind.most == 1))
-    ]
-    ports = {
-        port: parameter(port, Parameter.KEYWORD_ONLY, found.default is not None) for port, found in kind.ports.items()
-    }
-    several = [Parameter("children", Parameter.VAR_POSITIONAL)] if kind.most and not children else []
-    name = Parameter("name", Parameter.KEYWORD_ONLY, default="")
-    scripts = Parameter("scripts", Parameter.VAR_KEYWORD)
-    signature = Signature([*children, *several, *ports.values(), name, scripts])
-
-    def build(*arguments: Any, **named: Any) -> Behavior:
-        try:
-            bound = signature.bind(*arguments, **named)
-        except TypeError as problem:
-            raise TypeError(f"{kind.id}: {problem}") from None
-        bound.apply_defaults()
-        given = bound.arguments
-        own = given["children"] if several else tuple(given[each.name] for each in children)
-        values = {port: given[each.name] for port, each in ports.items()}
-        return _built(kind, own, values, given["name"], given["scripts"])
-
-    build.__signature__ = signature  # type: ignore[attr-defined]
-    build.__doc__ = f"Make the node {kind.id} of {kind.origin}. {kind.text}".strip()
-    return build
-
-
-def _built(
+def built(
     kind: NodeKind,
     children: tuple[Child | None, ...],
     ports: Mapping[str, object],
     name: str,
     scripts: Mapping[str, object],
 ) -> Behavior:
+    """Make a behavior of a built-in node: what the functions of btlang.builders do. Raises TypeError for a misfit."""
     own = tuple(child for child in children if child is not None)
     if None in (children if kind.most >= MOST_NODES else children[: kind.least]):
         raise TypeError(_misfit(None))

@@ -6,15 +6,59 @@ The keyword arguments are the ports of the node; docs/engine.md says what each n
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
+from keyword import iskeyword
 
-from btlang.behavior import builder_of
+from btlang.behavior import Behavior, built
 from btlang.behavior import leaf as leaf
-from btlang.tree.catalogue import CATALOGUE
+from btlang.tree.catalogue import CATALOGUE, NodeKind
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
 
 
 def builder_name(node_id: str) -> str:
     """Return the name of the function that builds a node: `IfThenElse` is built by `if_then_else`."""
     return re.sub(r"(?<=[a-z])(?=[A-Z0-9])", "_", node_id).lower()
+
+
+def builder_of(kind: NodeKind) -> Callable[..., Behavior]:
+    """Return the function that builds a node: its parameters are the children, the ports, a name and scripts.
+
+    It raises TypeError for what doesn't fit.
+    """
+    from inspect import Parameter, Signature  # which takes longer to import than the rest of this module
+
+    def parameter(name: str, way: Any, optional: bool) -> Parameter:
+        return Parameter(f"{name}_" if iskeyword(name) else name, way, default=None if optional else Parameter.empty)
+
+    children = [
+        parameter(role, Parameter.POSITIONAL_OR_KEYWORD, at >= kind.least)
+        for at, role in enumerate(kind.roles or ("child",) * (kind.most == 1))
+    ]
+    ports = {
+        port: parameter(port, Parameter.KEYWORD_ONLY, found.default is not None) for port, found in kind.ports.items()
+    }
+    several = [Parameter("children", Parameter.VAR_POSITIONAL)] if kind.most and not children else []
+    name = Parameter("name", Parameter.KEYWORD_ONLY, default="")
+    scripts = Parameter("scripts", Parameter.VAR_KEYWORD)
+    signature = Signature([*children, *several, *ports.values(), name, scripts])
+
+    def build(*arguments: Any, **named: Any) -> Behavior:
+        try:
+            bound = signature.bind(*arguments, **named)
+        except TypeError as problem:
+            raise TypeError(f"{kind.id}: {problem}") from None
+        bound.apply_defaults()
+        given = bound.arguments
+        own = given["children"] if several else tuple(given[each.name] for each in children)
+        values = {port: given[each.name] for port, each in ports.items()}
+        return built(kind, own, values, given["name"], given["scripts"])
+
+    build.__signature__ = signature  # type: ignore[attr-defined]
+    build.__doc__ = f"Make the node {kind.id} of {kind.origin}. {kind.text}".strip()
+    return build
 
 
 _BUILDERS = {builder_name(kind.id): builder_of(kind) for kind in CATALOGUE.values()}
