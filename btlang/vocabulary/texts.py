@@ -155,7 +155,8 @@ class Texts:
 
         The `sure` words belong to it, though they may end others.
         """
-        doubtful = self._doubtful - sure
+        others = (text.words[at] for at in range(first, last) if not self._begins_no_other(text, at))
+        doubtful = (self._doubtful - sure).intersection(others)  # but not `in` of `if she is in pain`
         opener = text.words[first - 1]
         asks = opener in self._question_words
         for at in range(first, last) if asks else (first,):  # `what tea he wants`

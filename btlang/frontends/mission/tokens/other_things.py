@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.frontends.mission.token import JOINTS, STATEMENT_ENDS, Called, Token
+from btlang.frontends.mission.token import JOINTS, STATEMENT_ENDS, Called, Token, run_start
 from btlang.frontends.mission.tokens.ended_rules import GO
 from btlang.frontends.mission.tokens.word_matches import words_of
 from btlang.text.source import Span
@@ -50,9 +50,14 @@ def with_other_things(tokens: list[Token], vocabulary: Lexicon, text: Words) -> 
 def with_things_there(tokens: list[Token]) -> None:
     """Make `go to the lab and pick up the cups` pick up those in the lab."""
     for at in range(2, len(tokens)):
-        said, journey = tokens[at].value, tokens[at - 2].value
-        if not isinstance(said, Called) or said.entry.id not in _TAKING or tokens[at - 1].kind not in JOINTS:
+        said = tokens[at].value
+        if not isinstance(said, Called) or said.entry.id not in _TAKING:
             continue
+        before = run_start(tokens, at, JOINTS)
+        is_next = any(token.kind == "then" for token in tokens[before:at])
+        if not 0 < before < at or (is_next and said.entry.id != _TAKING[0]):
+            continue  # `go to the dock, then take the cups to the lab`
+        journey = tokens[before - 1].value
         goes = isinstance(journey, Called) and journey.entry.id == GO
         place = dict(journey.arguments).get("place", "{") if isinstance(journey, Called) and goes else "{"
         for name, text in said.arguments:
