@@ -37,9 +37,8 @@ def kinds_of(name: str, kind: str) -> tuple[str, ...]:
     heads = named[-1:] if named and named[-1].isalpha() and len(words) > 1 else []
     if heads and named is not words:
         heads.append(" ".join(named))
-    return tuple(dict.fromkeys(each for each in (*heads, kind.lower()) if each and each != kind.lower())) + (
-        (kind.lower(),) if kind else ()
-    )
+    declared = [kind.lower()] if kind else []
+    return (*(head for head in dict.fromkeys(heads) if head not in declared), *declared)
 
 
 def of_person(wears: tuple[str, ...], gesture: str) -> Parts:
