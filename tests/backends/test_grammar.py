@@ -86,7 +86,7 @@ def codes(text: str, parser: str, language: str = "en") -> list[str]:
 @pytest.mark.long
 def test_both_parsers_read_what_the_grammar_makes() -> None:
     count = amount(800, 10_000)
-    sampler = Sampler(rules_of(), seed=21)
+    sampler = Sampler(rules_of(), seed=25)
     found: Counter[str] = Counter()
     for number in range(count):
         text = sampler.sentence()

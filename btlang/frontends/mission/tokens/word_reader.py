@@ -404,6 +404,8 @@ class WordReader:
         """Whether a command is that before `and` in other words: `take it to the lab and leave it there`."""
         if len(self._tokens) < 2 or self._tokens[-1].kind != "and" or not isinstance(said.value, Called):
             return False
+        if len(self._tokens) > 2 and self._tokens[-3].kind == "both":
+            return False  # `both call staff and ask for help` says two
         before, source = self._tokens[-2], self._text.source.text
         is_same = before.kind == "command" and before.value == said.value and not said.value.entry.accompaniment
         return is_same and source[before.start : before.end].lower() != source[said.start : said.end].lower()
