@@ -127,9 +127,7 @@ def _diagnose(
 
 def _add_help(problem: Diagnostic, *advice: str) -> Diagnostic:
     """Add advice of several lines."""
-    lines = "\n".join(line for line in advice if line)
-    helped: Diagnostic = problem.replace(arguments=(*problem.arguments, ("help", lines)))
-    return helped
+    return problem.advising("\n".join(line for line in advice if line))
 
 
 def _place(error: EngineError) -> tuple[str, int]:

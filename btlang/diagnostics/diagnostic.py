@@ -63,6 +63,13 @@ class Diagnostic(Record):
         lines = (self.kind.hint.format(**arguments), arguments.get("help", ""))
         return "\n".join(line for line in lines if line)
 
+    def advising(self, advice: str) -> Diagnostic:
+        """Return the same with a further hint, of one or more lines."""
+        helps = (text for name, text in (*self.arguments, ("help", advice)) if name == "help" and text)
+        others = (pair for pair in self.arguments if pair[0] != "help")
+        advised: Diagnostic = self.replace(arguments=(*others, ("help", "\n".join(helps))))
+        return advised
+
 
 def diagnostic(
     code: str,
@@ -185,7 +192,7 @@ class MissionError(Exception):
 
     def advising(self, advice: str) -> MissionError:
         """Return the same error with a further hint below each diagnostic."""
-        return MissionError([each.replace(arguments=(*each.arguments, ("help", advice))) for each in self.diagnostics])
+        return MissionError([each.advising(advice) for each in self.diagnostics])
 
 
 def sort_diagnostics(diagnostics: list[Diagnostic]) -> list[Diagnostic]:

@@ -171,3 +171,8 @@ def test_a_fix_takes_its_message_away(line: str, at: int, put: str) -> None:
     for problem in before:
         if problem.fix is not None:
             assert same(before, problem) > same(told(Source(after_fix(problem))), problem)
+
+
+def test_a_further_hint_keeps_the_one_before() -> None:
+    problem = diagnostic("BT129", Span(Source("wave"), 0, 4), words="wave", reason="it is so", help="Name it.")
+    assert problem.advising("Read the file.").hint.splitlines()[-2:] == ["Name it.", "Read the file."]
