@@ -151,11 +151,11 @@ def _count(
     if place is not None or x is not None:
         yield from go_to(robot, place, x, y)
     types = COUNTABLE if of_kind else (what,)
-    found = {name for type in types for name in robot.seen(type)}
+    found = set[str]().union(*map(robot.seen, types))
     with closing(turn(robot, _AROUND)) as turning:
         for _ in turning:
             yield
-            found.update(name for type in types for name in robot.seen(type))
+            found.update(*map(robot.seen, types))
     if of_kind:
         found &= set(of_a_kind(robot, what))
     blackboard.set(COUNT, len(found))

@@ -58,19 +58,21 @@ def with_things_there(tokens: list[Token]) -> None:
         if not 0 < before < at or (is_next and said.entry.id != _TAKING[0]):
             continue  # `go to the dock, then take the cups to the lab`
         journey = tokens[before - 1].value
-        goes = isinstance(journey, Called) and journey.entry.id == GO
-        place = dict(journey.arguments).get("place", "{") if isinstance(journey, Called) and goes else "{"
-        for name, text in said.arguments:
-            choice = choice_of(text)
-            if (
-                place[:1] != "{"
-                and choice is not None
-                and choice.how == ALL
-                and not dict(choice.parts).keys() & _PLACED
-            ):
-                parts = tuple(sorted((*choice.parts, ("inside", place))))
-                arguments = {**dict(said.arguments), name: choice.replace(parts=parts).text}
-                tokens[at].value = said.replace(arguments=tuple(arguments.items()))
+        goals = journey.arguments if isinstance(journey, Called) and journey.entry.id == GO else ()
+        place = dict(goals).get("place", "{")
+        if place[:1] != "{":
+            arguments = tuple((name, _placed(text, place)) for name, text in said.arguments)
+            tokens[at].value = said.replace(arguments=arguments)
+
+
+def _placed(said: str, place: str) -> str:
+    """A value, with the place where it is for all things of a kind of which nothing says where they are."""
+    choice = choice_of(said)
+    if choice is None or choice.how != ALL or dict(choice.parts).keys() & _PLACED:
+        return said
+    parts = tuple(sorted((*choice.parts, ("inside", place))))
+    text: str = choice.replace(parts=parts).text
+    return text
 
 
 def _chosen(value: Called) -> Choice | None:
