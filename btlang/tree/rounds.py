@@ -297,9 +297,8 @@ def _travels(node: ast.Ast) -> bool:
     """Whether it goes somewhere by itself, or says a place."""
     for item in ast.parents_first(node):
         if isinstance(item, ast.Phrase):
-            places = {slot.name for slot in item.entry.slots if slot.type == PLACE}
-            says = places.intersection(name for name, _ in item.arguments)
-            if says or (_TRAVELS in item.entry.needs and not places):
+            has_place = any(slot.type == PLACE for slot in item.entry.slots)
+            if item.entry.given(PLACE, item.arguments) or (_TRAVELS in item.entry.needs and not has_place):
                 return True
         elif isinstance(item, ast.Name | ast.Exact):
             return True

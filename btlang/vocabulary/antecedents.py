@@ -14,7 +14,7 @@ from btlang.vocabulary.word_tree import WordTree, find
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from collections.abc import Callable, Set
+    from collections.abc import Callable, Mapping, Sequence, Set
     from typing import Protocol
 
     from btlang.vocabulary.descriptions import Modifiers
@@ -35,6 +35,16 @@ if TYPE_CHECKING:
 _LONGEST_NAME = 4  # words
 _MOST_ADJECTIVES = 3  # words
 _NOT_IN_NAMES = frozenset((",", ";", ":", "(", ")", END_OF_TEXT))
+
+
+def pronouns_for(pronouns: Mapping[str, Sequence[str]], kind: str, *, alone: bool = False) -> list[str]:
+    """The pronouns that may stand for a value of a type; with `alone` those for no other type."""
+    return [word for word, types in pronouns.items() if kind in types and not (alone and len(types) > 1)]
+
+
+def says_there(words: str, pronouns: Mapping[str, Sequence[str]]) -> bool:
+    """Whether words end with a pronoun for a place: `Bob is there`."""
+    return words.lower().endswith(tuple(f" {word}" for word in pronouns_for(pronouns, PLACE)))
 
 
 class Antecedents:

@@ -7,7 +7,7 @@ from btlang.text.source import Span
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
     from typing import Any, TypeAlias
 
     from btlang.vocabulary.ros_binding import RosBinding
@@ -132,6 +132,11 @@ class Entry(Record, uncompared=("span",)):
             if slot.name == name:
                 return slot
         raise KeyError(name)
+
+    def given(self, type: str, arguments: Iterable[tuple[str, str]]) -> list[str]:
+        """The texts that arguments give to slots of a type."""
+        names = {slot.name for slot in self.slots if slot.type == type}
+        return [text for name, text in arguments if name in names]
 
     @property
     def point_ports(self) -> frozenset[str]:

@@ -14,6 +14,7 @@ from btlang.passes.compilation import Compilation
 from btlang.text.source import Span
 from btlang.tree import ast
 from btlang.tree.answers import ABOUT_ANSWERS
+from btlang.vocabulary.antecedents import says_there
 from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.lexicon import Lexicon
@@ -160,7 +161,7 @@ def _is_awaited(node: ast.If, before: ast.Ast) -> bool:
 
 def _is_tour(journeys: Sequence[ast.Phrase]) -> bool:
     """Return whether a journey leads to several places, at the last of which it is too late to look."""
-    goals = [text for each in journeys for name, text in each.arguments if each.entry.slot(name).type == PLACE]
+    goals = [text for each in journeys for text in each.entry.given(PLACE, each.arguments)]
     choices = [choice_of(goal) for goal in goals]
     is_set = any(choice is not None and choice.how == ALL for choice in choices)
     return is_set or (len(goals) > 1 and len({each.entry.id for each in journeys}) == 1)
@@ -175,8 +176,8 @@ def _leads_through(journey: ast.Phrase, asked: ast.Phrase) -> bool:
     """Return whether a condition asks if the door is closed of the place to which a journey leads: `kitchen door`."""
     if asked.entry.id != _CLOSED:
         return False
-    doors = [text.lower().split() for name, text in asked.arguments if asked.entry.slot(name).type == DOOR]
-    goals = [text.lower() for name, text in journey.arguments if journey.entry.slot(name).type == PLACE]
+    doors = [text.lower().split() for text in asked.entry.given(DOOR, asked.arguments)]
+    goals = [text.lower() for text in journey.entry.given(PLACE, journey.arguments)]
     return any(goal in door for door in doors for goal in goals)
 
 
@@ -207,8 +208,7 @@ def _too_early(node: ast.If, vocabulary: Lexicon) -> Iterator[Diagnostic]:
         return
     phrases = [each for each in ast.parents_first(node.body) if isinstance(each, ast.Phrase)]
     chosen = {text for each in phrases for text in _find_things(each) if text[:1] == "{"}
-    there = [word for word, types in vocabulary.values.pronouns.items() if PLACE in types]
-    is_there = asked.span.text.lower().endswith(tuple(f" {word}" for word in there))
+    is_there = says_there(asked.span.text, vocabulary.values.pronouns)
     if (is_there and any(MOVES in each.entry.resources for each in phrases)) or chosen & _find_things(asked):
         body, condition = node.body.span.text, asked.span.text
         advice = (

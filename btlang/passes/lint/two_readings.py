@@ -230,7 +230,7 @@ def find_counts_behind_lists(compilation: Compilation) -> Iterator[Diagnostic]:
 
 def _places_of(phrase: ast.Phrase) -> set[str]:
     """Return the names of places that a command or condition has."""
-    return {text for name, text in phrase.arguments if phrase.entry.slot(name).type == PLACE}
+    return {*phrase.entry.given(PLACE, phrase.arguments)}
 
 
 def find_lasting_reactions(compilation: Compilation) -> Iterator[Diagnostic]:

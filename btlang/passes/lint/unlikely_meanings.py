@@ -217,7 +217,7 @@ def find_distant_questions(compilation: Compilation) -> Iterator[Diagnostic]:
             return
     sights = {id(node.condition) for node in nodes if isinstance(node, ast.If)}
     for phrase in sorted(phrases, key=lambda each: each.span.start):
-        named = [text for name, text in phrase.arguments if phrase.entry.slot(name).type == PERSON]
+        named = phrase.entry.given(PERSON, phrase.arguments)
         choice = choice_of(named[0]) if named else None
         parts = dict(choice.parts) if choice is not None else {}
         there = next((parts[relation] for relation in ("at", "inside") if relation in parts), "")
@@ -240,8 +240,7 @@ def find_distant_questions(compilation: Compilation) -> Iterator[Diagnostic]:
 
 def _person_of(phrase: ast.Phrase) -> str:
     """Return the name of the person in a phrase, "" for none and for one who is chosen."""
-    texts = (text for name, text in phrase.arguments if phrase.entry.slot(name).type == PERSON and text[:1] != "{")
-    return next(texts, "")
+    return next((text for text in phrase.entry.given(PERSON, phrase.arguments) if text[:1] != "{"), "")
 
 
 def find_unused_answers(compilation: Compilation) -> Iterator[Diagnostic]:

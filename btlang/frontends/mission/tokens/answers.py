@@ -11,6 +11,7 @@ from btlang.frontends.mission.tokens.sentence_reader import is_answer, is_questi
 from btlang.frontends.mission.tokens.silent_words import begins
 from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of
 from btlang.tree.answers import ABOUT_ANSWERS, ANSWERED, ASK, EXAMPLE, OF_WHICH, UNANSWERED, asking_verbs
+from btlang.vocabulary.antecedents import pronouns_for
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.references import choice_of
 from btlang.vocabulary.value_type import PERSON, TEXT
@@ -248,7 +249,7 @@ class Answers(AddressedTexts):
     @cached_property
     def _pronoun(self) -> str:
         """A pronoun that stands for people alone: `he`."""
-        return next((word for word, kinds in self._vocabulary.values.pronouns.items() if kinds == [PERSON]), "")
+        return next(iter(pronouns_for(self._vocabulary.values.pronouns, PERSON, alone=True)), "")
 
     def _silent(self, token: Token, words: str) -> None:
         """Makes `she says nothing` and `she doesn't say anything` the condition that nobody has answered."""
@@ -313,4 +314,4 @@ def _person_in(question: object) -> str:
     """Return the one person whom a question names, "" for none or several."""
     if not isinstance(question, Called):
         return ""
-    return next((text for name, text in question.arguments if question.entry.slot(name).type == PERSON), "")
+    return next(iter(question.entry.given(PERSON, question.arguments)), "")

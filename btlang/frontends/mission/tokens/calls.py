@@ -13,6 +13,7 @@ from btlang.frontends.mission.tokens.two_goals import two_goals
 from btlang.text.source import Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.adjectives import OWNER
+from btlang.vocabulary.antecedents import pronouns_for
 from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.entry import MANNER, Entry
 from btlang.vocabulary.lexicon import Lexicon
@@ -58,8 +59,7 @@ class Calls:
         self._lists: dict[str, tuple[Token, SlotValue]] = {}
         self._alternatives: dict[str, tuple[Token, SlotValue]] = {}  # by the reference to the one that succeeds
         # in most missions nobody is spoken of by a pronoun
-        people = (word for word, types in vocabulary.values.pronouns.items() if PERSON in types)
-        self.speaks_of_people = not text.distinct.isdisjoint(people)
+        self.speaks_of_people = not text.distinct.isdisjoint(pronouns_for(vocabulary.values.pronouns, PERSON))
         self._owners = not text.distinct.isdisjoint(vocabulary.values.names_tree(OWNER))
 
     def token(self, match: Match, at: int) -> Token:

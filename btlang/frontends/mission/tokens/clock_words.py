@@ -252,8 +252,8 @@ class ClockWords(SentenceReader):
         """Whether something is forbidden from a word on, behind a comma."""
         behind = self._phrase(self._behind_comma(at))
         entry = behind.meaning.entry if behind is not None else None
-        keeps_out = entry is not None and entry.constrains == KEEP_OUT
-        return keeps_out or (behind is not None and behind.meaning.role == "never")
+        is_constraint = entry is not None and entry.constrains == KEEP_OUT
+        return is_constraint or (behind is not None and behind.meaning.role == "never")
 
     def _within_hours(self, match: Match, asked: Token, last: tuple[str, int]) -> int:
         """`patrol A and B from 10 pm to 6 am`, `stand at the door from 9 am to 5 pm`: as if it stood in front."""

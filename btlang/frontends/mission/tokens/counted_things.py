@@ -8,6 +8,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.token import Called, Listed, Token, arguments_of
 from btlang.text.source import Source, Span
 from btlang.tree.sums import COMPARED, COUNTING
+from btlang.vocabulary.antecedents import says_there
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import choice_of
 from btlang.vocabulary.value_type import KINDS, OBJECT, PERSON, PLACE
@@ -28,13 +29,11 @@ def with_counted_things(tokens: list[Token], vocabulary: Lexicon, source: Source
         return  # as nearly always
     last: Called | Listed | None = None
     goal = ""
-    there = tuple(f" {word}" for word, types in vocabulary.values.pronouns.items() if PLACE in types)
     for token in tokens:
         said = token.value
         if not isinstance(said, Called | Listed):
             continue
-        places = {slot.name for slot in said.entry.slots if slot.type == PLACE}
-        goal = next((text for name, text in arguments_of(said)[-1] if name in places), goal)
+        goal = next(iter(said.entry.given(PLACE, arguments_of(said)[-1])), goal)
         if said.entry.id in COUNTING:
             last = said
         elif said.entry.id == COMPARED and isinstance(said, Called):
@@ -42,7 +41,7 @@ def with_counted_things(tokens: list[Token], vocabulary: Lexicon, source: Source
             compared: Called = said.replace(arguments=tuple(each for each in said.arguments if each[0] not in things))
             token.value = compared
             span = Span(source, token.start, token.end)
-            if things and goal and last is None and span.text.lower().endswith(there):
+            if things and goal and last is None and says_there(span.text, vocabulary.values.pronouns):
                 token.value = _asked_there(compared, things, goal, vocabulary)
             elif things and last is not None and not _counts(last, things):
                 reason = "what was counted last is something else"

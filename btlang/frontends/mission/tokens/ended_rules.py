@@ -32,6 +32,7 @@ from btlang.frontends.mission.token import (
 )
 from btlang.text.source import Span
 from btlang.text.time_of_day import seconds_of, shown
+from btlang.vocabulary.antecedents import says_there
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.value_type import PLACE
@@ -229,12 +230,12 @@ def _say_where(tokens: list[Token], at: int, vocabulary: Lexicon, span: Callable
     """
     said = tokens[at].value
     zones = texts_of(said) if isinstance(said, Called | Listed) else ()
-    there = tuple(f" {word}" for word, types in vocabulary.values.pronouns.items() if PLACE in types)
     if len(zones) != 1 or zones[0] not in vocabulary.values.listed(PLACE):
         return
     for token in tokens[at + 2 : _condition_end(tokens, at + 2)[0]]:
         value = token.value
-        if not isinstance(value, Called | Listed) or not span(token.start, token.end).text.lower().endswith(there):
+        words = span(token.start, token.end).text
+        if not isinstance(value, Called | Listed) or not says_there(words, vocabulary.values.pronouns):
             continue
         place = vocabulary.entry(_AT.get(value.entry.id, ""))
         if place is not None:

@@ -42,6 +42,7 @@ from btlang.frontends.mission.tokens.visitors import with_meetings, with_sightin
 from btlang.frontends.mission.tokens.word_reader import WordReader
 from btlang.text.source import Source, Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, split
+from btlang.vocabulary.antecedents import pronouns_for
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.pattern import forms
 from btlang.vocabulary.reading_context import Known, ReadingContext
@@ -240,7 +241,7 @@ def _say_if_so(text: Words, vocabulary: Lexicon) -> None:
     words, values, asking = text.words, vocabulary.values, vocabulary.asking
     if text.distinct.isdisjoint(vocabulary.relatives):
         return  # as nearly always
-    it = next((word for word, kinds in values.pronouns.items() if DOOR in kinds), "")
+    it = next(iter(pronouns_for(values.pronouns, DOOR)), "")
     entries = (vocabulary.entry(id) for id in ("DoorOpen", "DoorClosed"))
     states = {form[-1] for entry in entries if entry is not None for each in entry.phrases for form in forms(each)}
     for at in reversed([at for at in range(1, len(words) - 1) if words[at] in vocabulary.relatives]):

@@ -21,6 +21,7 @@ from btlang.frontends.mission.tokens.sentence_reader import hears, searches
 from btlang.frontends.mission.tokens.settling import FAILS, MEASURES, STAYS, WORKS, asked_about, lasting, misses
 from btlang.frontends.mission.tokens.silent_words import BEGINS
 from btlang.text.source import Span
+from btlang.vocabulary.antecedents import says_there
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.value_type import PERSON, PLACE
 
@@ -190,7 +191,7 @@ class Limits(GoingOn):
         """
         tokens, text = self._tokens, self._text
         said = tokens[wait].value
-        has_time = isinstance(said, Called) and any(said.entry.slot(name).type == _TIME for name, _ in said.arguments)
+        has_time = isinstance(said, Called) and said.entry.given(_TIME, said.arguments) != []
         if has_time or tokens[wait + 1].kind in MEASURES:
             start, stop = tokens[form].start, tokens[-1].end
             del tokens[run_start(tokens, form, JOINTS) :]
@@ -226,13 +227,12 @@ class Limits(GoingOn):
     def _doubt_place(self, at: int, form: int) -> None:
         """BT151 for `take the cup to the lab and give it to Bob. If he isn't there, A`: in the lab, or anywhere."""
         tokens, source, word = self._tokens, self._text.source, self._vocabulary.word
-        there = [word for word, types in self._vocabulary.values.pronouns.items() if PLACE in types]
         words, given = Span(source, tokens[form].start, tokens[-1].end), tokens[at].value
-        if not isinstance(given, Called) or not words.text.lower().endswith(tuple(f" {word}" for word in there)):
+        if not isinstance(given, Called) or not says_there(words.text, self._vocabulary.values.pronouns):
             return
         led = [token.value for token in tokens[statement_start(tokens, at) : at] if isinstance(token.value, Called)]
-        places = [text for said in led for name, text in said.arguments if said.entry.slot(name).type == PLACE]
-        person = next((text for name, text in given.arguments if given.entry.slot(name).type == PERSON), "{")
+        places = [text for said in led for text in said.entry.given(PLACE, said.arguments)]
+        person = next(iter(given.entry.given(PERSON, given.arguments)), "{")
         if not places or "{" in (person[0], places[-1][0]) or not drives(given):
             return
         done = source.text[tokens[at].start : tokens[at].end]

@@ -39,6 +39,7 @@ from btlang.frontends.mission.tokens.silent_words import begins
 from btlang.frontends.mission.tokens.tries import LIMIT
 from btlang.text.source import Span
 from btlang.tree.rounds import ONE_FAILS
+from btlang.vocabulary.antecedents import pronouns_for
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.value_type import OBJECT, PERSON, PLACE
 from btlang.vocabulary.word_tree import find
@@ -232,7 +233,7 @@ class Outcomes(Limits):
         if self._text.words[at + 1] not in located.asking["located"]:
             return 0
         kind = next(slot.type for slot in said.entry.slots if slot.type in (PERSON, OBJECT))
-        pronoun = next((word for word, of in located.values.pronouns.items() if kind in of), "")
+        pronoun = next(iter(pronouns_for(located.values.pronouns, kind)), "")
         verb = located.asking["search"][0]
         match = self._partial.with_front(at, at + 1, [verb, pronoun])
         if match is None:

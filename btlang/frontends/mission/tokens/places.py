@@ -64,7 +64,7 @@ class Places(SentenceReader):
         if not drives(journey):
             return
         places = [dict(each) for each in arguments_of(journey)]
-        goals = [text for each in places for name, text in each.items() if journey.entry.slot(name).type == PLACE]
+        goals = [text for each in places for text in journey.entry.given(PLACE, each.items())]
         if not goals or any(len(each) != 1 for each in places):
             return
         choice = choice_of(goals[0])

@@ -19,8 +19,8 @@ from btlang.frontends.mission.token import (
     Token,
     arguments_of,
     run_end,
-    run_start,
     statement_end,
+    statement_of,
     statement_start,
 )
 from btlang.frontends.mission.tokens.settling import MEASURES
@@ -131,7 +131,7 @@ def _asks(token: Token) -> bool:
 
 def _at_both(tokens: list[Token], at: int) -> None:
     """`A at 6 pm and again at 9 pm`: at both times, with what is joined behind: `..., and B`."""
-    first, end = statement_start(tokens, at), run_start(tokens, statement_end(tokens, at), STATEMENT_ENDS)
+    first, end = statement_of(tokens, at)
     commands, further = tokens[first : at - 2], tokens[at + 2 : end]
     if tokens[at - 2].kind != "at" or not commands or any(token.kind not in _PLAIN for token in (*commands, *further)):
         return
@@ -170,8 +170,7 @@ def _elsewhere(commands: Sequence[Token], journey: Token) -> list[Token]:
 
 
 def _places(said: Called | Listed) -> list[str]:
-    pairs = (pair for arguments in arguments_of(said) for pair in arguments)
-    return [text for name, text in pairs if said.entry.slot(name).type == PLACE]
+    return [text for arguments in arguments_of(said) for text in said.entry.given(PLACE, arguments)]
 
 
 def _moved(token: Token, place: str) -> Token:

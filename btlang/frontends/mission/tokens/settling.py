@@ -28,6 +28,7 @@ from btlang.frontends.mission.token import (
 )
 from btlang.text.source import Source, Span
 from btlang.text.words import Words
+from btlang.vocabulary.antecedents import pronouns_for
 from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
@@ -237,7 +238,7 @@ def find_brief_stays(tokens: Sequence[Token], vocabulary: Lexicon, source: Sourc
 def find_unclear_things(tokens: Sequence[Token], vocabulary: Lexicon, text: Words) -> Iterator[Diagnostic]:
     """Report `pick up the cup. If the light is off, put it in the lab`: what is carried, or what was asked about."""
     carried, asked = "", ""
-    pronouns = {word for word, types in vocabulary.values.pronouns.items() if OBJECT in types}
+    pronouns = {*pronouns_for(vocabulary.values.pronouns, OBJECT)}
     if text.distinct.isdisjoint(pronouns):
         return
     for token in tokens:
@@ -260,7 +261,7 @@ def find_unclear_things(tokens: Sequence[Token], vocabulary: Lexicon, text: Word
 def find_unclear_people(tokens: Sequence[Token], vocabulary: Lexicon, text: Words) -> Iterator[Diagnostic]:
     """Report `follow Alice until you see Bob. Tell her "Bye"`: whom the command or its condition is about."""
     about, asked = "", ""
-    pronouns = {word for word, types in vocabulary.values.pronouns.items() if [*types] == [PERSON]}
+    pronouns = {*pronouns_for(vocabulary.values.pronouns, PERSON, alone=True)}
     if text.distinct.isdisjoint(pronouns) or all(token.kind not in _ENDS_WHILE for token in tokens):
         return
     for at, token in enumerate(tokens):
@@ -285,8 +286,7 @@ def _person_of(said: object) -> str:
     """The name of the person whom a phrase is about, "" for none, or for one who is chosen elsewhere."""
     if not isinstance(said, Called):
         return ""
-    people = {slot.name for slot in said.entry.slots if slot.type == PERSON}
-    chosen = next((text for name, text in said.arguments if name in people), "")
+    chosen = next(iter(said.entry.given(PERSON, said.arguments)), "")
     choice = choice_of(chosen)
     return chosen if chosen[:1] != "{" else dict(choice.parts).get(NAME, "") if choice is not None else ""
 
@@ -298,8 +298,7 @@ def _is_delivered(said: object) -> bool:
 
 def _thing_of(said: Called) -> str:
     """The name of the thing that a phrase is about, "" for none, or for one that is chosen."""
-    names = {slot.name for slot in said.entry.slots if slot.type == OBJECT}
-    return next((text for name, text in said.arguments if name in names and text[:1] != "{"), "")
+    return next((text for text in said.entry.given(OBJECT, said.arguments) if text[:1] != "{"), "")
 
 
 def lasting(wait: Span, vocabulary: Lexicon) -> Diagnostic:
@@ -315,7 +314,7 @@ def first_word(token: Token, source: Source) -> str:
 
 def names_place(said: Called | Listed) -> bool:
     """Whether a command says a place: `stand at the desk`, but not `stop`."""
-    return any(said.entry.slot(name).type == PLACE for each in arguments_of(said) for name, _ in each)
+    return any(said.entry.given(PLACE, each) for each in arguments_of(said))
 
 
 def _is_sequence(before: Sequence[Token]) -> bool:
@@ -380,7 +379,7 @@ def misses(command: Token, asked: Token) -> bool:
     value, condition = command.value, asked.value
     if not isinstance(value, Called | Listed) or not isinstance(condition, Called) or not takes(command):
         return False
-    things = {text for name, text in condition.arguments if condition.entry.slot(name).type == OBJECT}
+    things = {*condition.entry.given(OBJECT, condition.arguments)}
     return condition.entry.id in _THERE and bool(things) and things <= named_by(value)
 
 
@@ -396,4 +395,4 @@ def is_somebody_else(command: Token, asked: Token, somebody: Container[str]) -> 
     value = command.value
     if not isinstance(value, Called) or not is_presence(asked.value, somebody):
         return False
-    return any(value.entry.slot(name).type == PERSON and text[:1] != "{" for name, text in value.arguments)
+    return any(text[:1] != "{" for text in value.entry.given(PERSON, value.arguments))

@@ -52,7 +52,7 @@ class Visitors(SentenceReader):
             said, last = self._calls.token(whole, at).value, whole.last
         if not isinstance(said, Called) or not self._is_end(last):
             return 0
-        everyone = next((text for name, text in said.arguments if said.entry.slot(name).type == PERSON), "")
+        everyone = next(iter(said.entry.given(PERSON, said.arguments)), "")
         choice = choice_of(everyone)
         first = statement_start(tokens, len(tokens))
         joint = run_start(tokens, len(tokens) - 1, JOINTS)
@@ -160,6 +160,6 @@ def _is_whoever(token: Token) -> bool:
     value = token.value
     if token.kind != "command" or not isinstance(value, Called) or not value.arguments:
         return False
-    people = [text for name, text in value.arguments if value.entry.slot(name).type == PERSON]
+    people = value.entry.given(PERSON, value.arguments)
     choice = choice_of(people[0]) if people else None
     return choice is not None and dict(choice.parts) == {"seen_by": "robot"} and choice.how in ("seen", ALL)
