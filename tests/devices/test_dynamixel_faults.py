@@ -41,7 +41,7 @@ def no_wrong_value(r: Rig, tolerance: float = 0.3) -> None:
 
 
 def test_a_silent_servo_is_named_and_the_others_go_on() -> None:
-    with rig(*servos(), silence=2.0) as r:
+    with rig(*servos(), silence=5.0) as r:  # else a busy computer is taken for a silent servo
         r.loop.start()
         goals = hold(r)
         r.until(r.is_back, goals)

@@ -149,8 +149,11 @@ def test_an_exit_in_a_leaf_fails_it_and_stops_the_robot() -> None:
 
 
 def test_stop_from_another_thread_wakes_the_sleep() -> None:
-    runner, engine, _ = make(Node("Forever"), speed=1.0, rate=0.01)
-    threading.Timer(0.05, runner.controls.stop).start()
+    def stopped_soon() -> Iterator[None]:
+        threading.Timer(0.05, runner.controls.stop).start()
+        yield from forever()
+
+    runner, engine, _ = make(Node("Forever"), {"Forever": stopped_soon}, speed=1.0, rate=0.01)
     began = time.monotonic()
     outcome = runner.run()
     assert time.monotonic() - began < 5
