@@ -191,6 +191,10 @@ class Lexicon:
         """What a mission calls the robot, and what the robot calls itself: `you are`, `I am`."""
         self.happened: dict[str, str] = language["happened"]
         """The verbs of what is so, and of what was so: `is`, `was`."""
+        self.persons: dict[str, list[str]] = language["persons"]
+        """The other words for the person for whom a word stands: of `he`, `him` and `his`."""
+        self.of_hearer: dict[str, str] = language["of_hearer"]
+        """The verbs of what is said of somebody, and to them: `is`, `are`."""
         self.perfect: dict[str, str] = language["perfect"]
         """How a condition says that it has held for some time, and what it says: `has been`, `is`."""
         self.nodes: dict[str, str] = language["nodes"]

@@ -38,6 +38,7 @@ class Texts:
 
         self._clause_words = frozenset(language["clause_words"])
         self._question_words = frozenset(language["question_words"])
+        self._measuring = frozenset(language["asking"].get("measuring", ()))
         self._openers = frozenset((*language["clause_openers"], *self._question_words))
         self._modals, self.completed = frozenset(language["modals"]), frozenset(language["completed"])
         self._participles, self._endings = frozenset(language["participles"]), tuple(language["participle_endings"])
@@ -48,7 +49,8 @@ class Texts:
         self._relatives = frozenset(phrase.split()[0] for phrase in language["relatives"])
         self._owners = frozenset(language["possessives"].get("others", ()))
         self._having = "".join(language["asking"].get("having", ())[:1])
-        self._addressed = "".join(language["asking"].get("addressed", ())[:1])
+        self._subjects = frozenset((*language["pronouns"], *language["asking"].get("addressed", ())))
+        self._doing = "".join(language["asking"].get("doing_it", ())[:1])
         self._sayings = tree_of((phrase, True) for phrase in language["sayings"])
         self._then, self._otherwise = words_of("then"), words_of("otherwise")
         self._direct = tree_of((words, said) for said, clauses in language["direct"].items() for words in ways(clauses))
@@ -56,7 +58,8 @@ class Texts:
         """Words for persons that are others for whoever hears them."""
         self._joining_words = [*map(words_of, _JOINING)]
         self._joining = set().union(*self._joining_words)
-        self._timing = {phrase.split()[0] for phrase in roles.get("at", ())}
+        self.timing = {phrase.split()[0] for phrase in roles.get("at", ())}
+        """The first words of times."""
         self._joints = words_of("nor") | words_of("and") | words_of("or")
         self._doubtful = {*_MARKS, *self.of_persons, *self._joining, *language.get("counts", ())}
 
@@ -131,15 +134,18 @@ class Texts:
         """Whether an article, or a word for whose thing it is, stands before what begins at a word."""
         return at in text.articles or text.words[at] in self._owners
 
-    def doubt(self, text: Words, first: int, last: int) -> int:
-        """The word of a text without quotes that may end it, or be understood as somebody else; 0 if there is none."""
-        doubtful = (at for at in range(first, last) if text.words[at] in self._doubtful)
+    def doubt(self, text: Words, first: int, last: int, sure: Set[int] = frozenset()) -> int:
+        """The word of a text without quotes that may end it, or be understood as somebody else; 0 if there is none.
+
+        The words at `sure` places are neither.
+        """
+        doubtful = (at for at in range(first, last) if text.words[at] in self._doubtful and at not in sure)
         return next((at for at in doubtful if at == first or not self._belongs(text, at)), 0)
 
     def _begins_no_other(self, text: Words, at: int) -> bool:
         """Whether a word begins none of the words that could go on with the mission: the `in` of `in ten minutes`."""
         word = text.words[at]
-        if word in self._timing or word not in self._joining or word in self.of_persons:
+        if word in self.timing or word not in self._joining or word in self.of_persons:
             return False
         return all(find(joining, text.words, at) is None for joining in self._joining_words)
 
@@ -150,10 +156,11 @@ class Texts:
         is_joint = any(find(joints, text.words, at) is not None for joints in (self._joints, self._then))
         return text.words[at - 1] in self.inverting - self._modals and text.words[at] in self._joining and not is_joint
 
-    def direct(self, text: Words, first: int, last: int, sure: Set[str]) -> str | None:
+    def direct(self, text: Words, first: int, last: int, sure: Set[str], verbs: Mapping[int, str]) -> str | None:
         """The question that a clause stands for: `he is hungry` as "Are you hungry?"; None where that can't be told.
 
-        The `sure` words belong to it, though they may end others.
+        The `sure` words belong to it, though they may end others; the `verbs` are those of questions, by the place of
+        who does it: of `she drinks tea`, "drink".
         """
         others = (text.words[at] for at in range(first, last) if not self._begins_no_other(text, at))
         doubtful = (self._doubtful - sure).intersection(others)  # but not `in` of `if she is in pain`
@@ -161,6 +168,8 @@ class Texts:
         asks = opener in self._question_words
         for at in range(first, last) if asks else (first,):  # `what tea he wants`
             front = find(self._direct, text.words, at)
+            if front is None and at in verbs:
+                front = f"{self._doing} {verbs[at]}", at + 2
             if front is not None and (front[1] < last or asks):
                 if not doubtful.isdisjoint(text.words[first:at]):
                     break  # `when she comes if she wants tea`
@@ -173,34 +182,47 @@ class Texts:
         verb = self._verb(text, first, last)
         if verb == first or not self._relatives.isdisjoint(text.words[first:verb]):
             return None
-        parts = [*([opener] if asks else []), text.words[verb], *self._said(text, first, verb)]
+        subject = self._subject(text, first, verb) if opener in self._measuring else first
+        if subject is None:
+            return None  # `how long dinner will take`
+        parts = [*([opener] if asks else []), *self._said(text, first, subject), text.words[verb]]
+        parts += self._said(text, subject, verb)
         if self._belongs(text, verb + 1):  # `if the book is on the table`
             doubtful = doubtful - {text.words[verb + 1]}
         return self._question(parts, self._said(text, verb + 1, last), doubtful)
 
+    def _subject(self, text: Words, first: int, verb: int) -> int | None:
+        """Where who or what does it begins behind a question word: at `it` in `how long it will take`."""
+        places = range(first, verb)
+        found = (at for at in places if text.words[at] in self._subjects or self.is_owned(text, at))
+        return next(found, first if verb == first + 1 else None)
+
     def _question(self, front: Sequence[str], behind: Sequence[str], doubtful: Set[str]) -> str | None:
         """A question of words, None where one of them is somebody else for whoever hears it."""
-        if any(word != self._addressed and word.lower() in doubtful for word in behind):
+        if any(word.lower() in doubtful for word in behind):
             return None
         asked = " ".join((*front, *behind))
         return f"{asked[0].upper()}{asked[1:]}?"
 
     def _said(self, text: Words, first: int, last: int) -> list[str]:
-        """Words as they are written, or in the place of those; but what is theirs is yours for whom is asked."""
-        said = []
-        for at in range(first, last):
-            word, written = text.words[at], text.source.text[text.begin(at) : text.ends[at]]
-            said.append(
-                self._addressed if word in self._owners else written if written.lower().endswith(word) else word
-            )
-        return said
+        """Words as they are written, or in the place of those."""
+        written = (text.source.text[text.begin(at) : text.ends[at]] for at in range(first, last))
+        return [
+            each if each.lower().endswith(word) else word
+            for each, word in zip(written, text.words[first:last], strict=True)
+        ]
+
+    def written(self, text: Words, first: int, last: int) -> str:
+        """Words as they are written, or those in their place."""
+        return " ".join(self._said(text, first, last)).replace(" ,", ",")
 
     def end_of_clause(self, text: Words, at: int) -> int:
         """Where the clause ends that begins at a word, 0 where it is one word."""
         end = at
         while text.words[end] not in _ENDS:
             has_comma = text.words[end] == ","
-            if find(self._then, text.words, end + has_comma) is not None:
+            then = find(self._then, text.words, end + has_comma)
+            if then is not None and text.words[then[1]] not in _ENDS:  # but `she is next`
                 break
             if has_comma and find(self._otherwise, text.words, end + 1) is not None:
                 break

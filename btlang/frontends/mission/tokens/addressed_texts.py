@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cached_property
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import Called, Listed, Token
+from btlang.frontends.mission.tokens.hearers import Hearers, verbs_of
 from btlang.frontends.mission.tokens.silent_words import BEGINS
-from btlang.frontends.mission.tokens.told_words import ToldWords
 from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of
 from btlang.text.words import Words
 from btlang.tree.answers import ASK
@@ -19,8 +20,6 @@ from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE, ZONE
 from btlang.vocabulary.word_tree import find
 
 TELL = "TellPerson"
-_SOMEBODY = "may be somebody else for whoever hears it"
-_NEXT = "may be a part of it, or go on with the mission"
 _NO_QUESTION = "begins no question that I know"
 _MATTER = "begins what it is about, but not what to say"
 _PERSON = "is a person, and the question is missing"
@@ -30,7 +29,7 @@ _BEFORE_TIME = frozenset((*BEGINS, "and"))
 _BEHIND = ("politeness", "then", "and", "unless")
 
 
-class AddressedTexts(ToldWords):
+class AddressedTexts(Hearers):
     """Texts without quotes that one text has for people."""
 
     def _ends(self, at: int) -> bool:
@@ -86,7 +85,7 @@ class AddressedTexts(ToldWords):
     def _goes_on(self, at: int) -> bool:
         """Whether words follow that are neither a mark nor begin anything."""
         is_mark = self._is_end(at) or self._text.words[at] in (",", ":")
-        return not is_mark and self._phrase(at) is None
+        return not is_mark and ((phrase := self._phrase(at)) is None or phrase.meaning.role == "there_are")
 
     def _tell(self, entry: Entry, value: SlotValue, command: Token) -> int:
         """`tell Bob dinner is ready`: a clause without a word before it."""
@@ -95,9 +94,21 @@ class AddressedTexts(ToldWords):
         end = self._end_before_command(value.first, end, is_told=True) or end
         if any(word[0] == '"' for word in text.words[value.first : end]):
             return 0  # `tell her quietly "Hello"`
-        if end and (text.words[value.first] not in texts.matters or not self._doubt(entry, value.first, _MATTER)):
-            self._doubt_words(entry, value.first, end)
-        return self._say_clause(value, end, command) if end else 0
+        if not end:
+            return 0
+        if text.words[value.first] in texts.matters:
+            self._doubt(entry, value.first, _MATTER)
+            return self._say_clause(value, end, command, text)
+        said = self._to_hearer(command, value.first, end, is_asked=False)
+        self._doubt_words(entry, command, value.first, end, said)
+        return self._say_clause(value, end, command, said)
+
+    def _said_times(self, first: int, last: int) -> Iterator[int]:
+        """The places of times that belong to what is said: `tell Bob that lunch is at noon`, `that we close at six`."""
+        timing = self._vocabulary.values.texts.timing
+        for at in range(first + 2, last):
+            if self._text.words[at] in timing and ((time := self._phrase(at)) is None or time.meaning.role == "at"):
+                yield at
 
     def _wish(self, value: SlotValue, command: Token) -> int:
         """`wish Bob a nice day`: "Have a nice day"."""
@@ -110,19 +121,23 @@ class AddressedTexts(ToldWords):
         self._tokens.append(command)
         return end
 
-    def _say_clause(self, value: SlotValue, end: int, command: Token) -> int:
+    def _say_clause(self, value: SlotValue, end: int, command: Token, said: Words) -> int:
         """Say the words of a clause up to a place, at which the mission goes on."""
         text = self._text
-        self._set_text(command, value.name, text.source.text[text.begin(value.first) : text.ends[end - 1]])
+        words = text.source.text[text.begin(value.first) : text.ends[end - 1]]
+        if said is not text:
+            words = self._vocabulary.values.texts.written(said, value.first, end)
+        self._set_text(command, value.name, words)
         command.end = text.ends[end - 1]
         self._tokens.append(command)
         return end
 
-    def _doubt_words(self, entry: Entry, first: int, last: int) -> bool:
-        if self._doubt(entry, self._vocabulary.values.texts.doubt(self._text, first, last)):
-            return True
-        self._note_unnamed(first, last)
-        return False
+    def _doubt_words(self, entry: Entry, command: Token, first: int, last: int, said: Words) -> None:
+        """Doubt what somebody is told, where nothing says who or what is meant; a time in it is part of it."""
+        text, texts = self._text, self._vocabulary.values.texts
+        sure = self._clear(said, first, last).union(self._said_times(first, last))
+        if not self._doubt(entry, texts.doubt(text, first, last, sure), said=(command, first, last)):
+            self._note_unnamed(first, last)
 
     def _note_unnamed(self, first: int, last: int) -> None:
         """BT137 for `tell Bob that it was open`, behind a door."""
@@ -135,19 +150,18 @@ class AddressedTexts(ToldWords):
     def _plead(self, entry: Entry, value: SlotValue, at: int, command: Token) -> int:
         """`ask Bob to close his door`: says "Please close your door" to him; `ask Bob for the cup`: to give it."""
         text, asking, texts = self._text, self._vocabulary.asking, self._vocabulary.values.texts
-        owners = self._vocabulary.values.adjectives.other_owners
         is_thing = text.words[value.first - 1] in asking["asking_for"]
         helps = is_thing and text.words[value.first] in asking["helping"]
         end = value.first + 1 if helps else texts.end_of_clause(text, value.first) or value.last
-        doubtful = (place for place in range(value.first, end) if texts.doubt(text, place, place + 1))
-        if self._doubt(entry, next((place for place in doubtful if text.words[place] not in owners), 0)):
-            return 0
+        heard = self._to_hearer(command, value.first, end, is_asked=True)
+        clear = self._clear(heard, value.first, end)
+        clear |= {place for place in range(value.first, end) if text.words[place - 1] in asking["coming"]}
+        doubtful = (place for place in range(value.first, end) if texts.doubt(text, place, place + 1, clear))
+        self._doubt(entry, next(doubtful, 0), said=(command, value.first, end))
         kind = "plea_for" if is_thing else "reminder" if text.words[at] in asking["reminding"] else "plea"
         said = asking["plea_for_help" if helps else kind][0].capitalize()
-        for place in range(end if helps else value.first, end):
-            is_owner = text.words[place] in owners
-            written = text.source.text[text.begin(place) : text.ends[place]]
-            said += f" {asking['addressed'][0] if is_owner else written}"
+        if not helps:
+            said += f" {texts.written(heard, value.first, end)}"
         self._set_text(command, value.name, said)
         command.end = text.ends[end - 1]
         self._tokens.append(command)
@@ -173,22 +187,25 @@ class AddressedTexts(ToldWords):
         end = self._end_before_command(at, value.last, is_told=False)
         last = end or value.last
         is_speaker = text.words[at - 2] in values.role_words.speaker
-        asked = self._of_speaker(at, last) if is_speaker else text
+        asked = self._of_speaker(at, last) if is_speaker else self._to_hearer(command, at, last, is_asked=True)
         asked = self._with_thing(asked, at, last)
         about = asked if asked is not text or not is_speaker else None  # `ask me if she wants tea`
-        question = values.texts.direct(about, at, last, self._joining_things(at, last)) if about is not None else None
+        sure = self._sure_words(at, last)
+        question = values.texts.direct(about, at, last, sure, {}) if about is not None else None
+        if about is not None and question is None:
+            question = values.texts.direct(about, at, last, sure, verbs_of(text, at, last, self._vocabulary))
         self._note_asked(at, last)
-        if question is not None and self._doubt(entry, self._measure_in(at, last)):
-            return 0
+        if question is not None and self._doubt(entry, self._measure_in(at, last), said=(command, at, last)):
+            return self._say_clause(value, value.last, command, text)
         if question is not None:
             self._set_text(command, value.name, question)
             if end:
                 command.end = text.ends[end - 1]
                 self._tokens.append(command)
             return end
-        if not self._doubt(entry, values.texts.doubt(text, at + 1, value.last)):
-            self._doubt(entry, at, _NO_QUESTION)
-        return 0
+        doubtful = values.texts.doubt(text, at + 1, value.last)
+        self._doubt(entry, doubtful or at, "" if doubtful else _NO_QUESTION, (command, at, value.last))
+        return self._say_clause(value, value.last, command, text)
 
     def _ask_nobody(self, entry: Entry, value: SlotValue, command: Token) -> int:
         """BT013 for `ask the patient "Tea?"`, BT159 for words without a question. Returns where to go on."""
@@ -213,19 +230,6 @@ class AddressedTexts(ToldWords):
             at for at, match in found if match is not None and match.meaning.role in _MEASURES and match.last == last
         )
         return next(ends, 0)
-
-    def _of_speaker(self, first: int, last: int) -> Words:
-        """The words of `ask me if I want my tea` as those about somebody else: `if they want their tea`."""
-        text, asking = self._text, self._vocabulary.asking
-        owners = self._vocabulary.values.adjectives
-        if all(text.words[at] not in asking["speaking"] for at in range(first, last)):
-            return text
-        for at in range(first, last):
-            if text.words[at] in asking["speaking"]:
-                text = text.with_word(at, asking["spoken_of"][0])
-            elif text.words[at] in owners.own:
-                text = text.with_word(at, min(owners.other_owners))
-        return text
 
     def _with_thing(self, text: Words, first: int, last: int) -> Words:
         """`look for the cup. If that fails, ask Bob where it is`: the words with the cup, which he can't know."""
@@ -307,18 +311,28 @@ class AddressedTexts(ToldWords):
         role = behind.meaning.role if behind is not None else ""
         return at not in self._text.articles and role in _DONE
 
-    def _joining_things(self, first: int, last: int) -> set[str]:
-        """The words that only join things there: `if she'd like the newspaper or her book`."""
-        text, values, sure = self._text, self._vocabulary.values, set[str]()
+    def _sure_words(self, first: int, last: int) -> set[str]:
+        """The words of a question that could end it, and don't: `if she'd like the newspaper or her book`."""
+        text, values, asking = self._text, self._vocabulary.values, self._vocabulary.asking
+        sure = {*asking["hearing"], *asking["addressed"]}.difference(text.words[first:last])
         for word in (*self._vocabulary.roles["or"], *self._vocabulary.roles["and"]):
             places = [place + 1 for place in range(first, last - 1) if text.words[place] == word]
             if places and all(
                 find(values.names_tree(OBJECT), text.words, place) is not None
                 or (values.texts.is_owned(text, place) and self._is_no_name(place))
+                or (word in self._vocabulary.roles["or"] and self._is_choice(first, place))
                 for place in places
             ):
                 sure.add(word)
-        return sure
+        times = {*self._said_times(first, last)}
+        elsewhere = {text.words[at] for at in range(first, last) if at not in times}
+        return sure | {text.words[at] for at in times} - elsewhere
+
+    def _is_choice(self, first: int, at: int) -> bool:
+        """Whether a word behind `or` in a question is another answer: `if she wants tea or coffee`."""
+        if self._text.words[at] in self._vocabulary.before_conditions:
+            return False
+        return self._is_no_name(at) or self._vocabulary.values.texts.may_be_joined(self._text, first, at)
 
     def _is_no_name(self, at: int) -> bool:
         """Whether no name of somebody or of a place, and no phrase, begins at a word."""
@@ -368,14 +382,6 @@ class AddressedTexts(ToldWords):
     def _is_clause(self, value: SlotValue) -> bool:
         """Whether a text stands behind a word such as `that` or `if`."""
         return self._vocabulary.values.texts.opens(self._text.words[value.first - 1])
-
-    def _doubt(self, entry: Entry, at: int, reason: str = "") -> bool:
-        """Says that a word of a text without quotes may mean something else (BT159), if it is one."""
-        if at:
-            is_person = self._text.words[at] in self._vocabulary.values.texts.of_persons
-            reason, span = reason or (_SOMEBODY if is_person else _NEXT), self._text.span(at, at + 1)
-            self._calls.problems.append(diagnostic("BT159", span, word=span.text, reason=reason, example=entry.example))
-        return at > 0
 
     def _set_text(self, command: Token, slot: str, text: str, adds: bool = False) -> None:
         """Makes a text that of a command, or `adds` it to the one that it has."""

@@ -52,7 +52,7 @@ class Requests(Questions):
         if is_so and entry.id in (SAY, TELL) and (said := self._asked_of()):  # `if you can't find it, say so`
             self._set_text(command, value.name, said)
             return 0
-        goes_on = self._text.source.text[self._text.ends[value.first] :][:1] == "'"  # `tell her it's late`
+        goes_on = entry.id == TELL and self._goes_on(value.last)  # `tell her it is late`
         if (is_pronoun or is_so) and value.last == value.first + 1 and not goes_on and entry.id in (SAY, TELL):
             self._doubt(entry, value.first)  # `say it again`
             return 0
@@ -71,12 +71,14 @@ class Requests(Questions):
         if entry.id == ASK:
             return self._ask(entry, value, command)
         if self._is_clause(value):
-            if end := self._end_before_command(value.first, value.last, is_told=True):
-                return self._say_clause(value, end, command) if not self._doubt_words(entry, value.first, end) else 0
-            doubt = self._vocabulary.values.texts.doubt(self._text, value.first, value.last)
-            doubt = doubt or self._measure_in(value.first, value.last)
-            self._doubt(entry, doubt or self._addressee(value.first + 1, value.last) * (entry.id == SAY))
-            self._note_unnamed(value.first, value.last)
+            end = self._end_before_command(value.first, value.last, is_told=True)
+            last = end or value.last
+            heard = self._to_hearer(command, value.first, last, is_asked=False)
+            self._doubt_words(entry, command, value.first, last, heard)
+            if end or heard is not self._text:
+                return self._say_clause(value, last, command, heard)
+            at_end = self._measure_in(value.first, last)
+            self._doubt(entry, at_end or self._addressee(value.first + 1, last) * (entry.id == SAY))
         if not (entry.accompaniment or "voice" in entry.needs):
             return 0  # a text that nobody says is its words: `listen for the bell`
         text, first = self._text, value.first

@@ -1,0 +1,198 @@
+"""Words about people as whoever hears them is told them: of `tell her that she is next`, "you are next"."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.frontends.mission.token import STATEMENT_ENDS, Called, Listed, Token
+from btlang.frontends.mission.tokens.sentence_reader import is_question
+from btlang.frontends.mission.tokens.told_words import ToldWords
+from btlang.frontends.mission.tokens.word_matches import words_of
+from btlang.text.words import Words
+from btlang.vocabulary.entry import Entry
+from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.value_type import PERSON
+
+_SOMEBODY = "may be somebody else for whoever hears it"
+_NEXT = "may be a part of it, or go on with the mission"
+
+
+class Hearers(ToldWords):
+    """Who is meant by words for people in what is said to somebody."""
+
+    def _to_hearer(self, command: Token, first: int, last: int, is_asked: bool) -> Words:
+        """The text whose words are those for whoever a command speaks to; where that isn't clear, as they are.
+
+        `she` at the start is who is spoken to where nobody else was, and who is asked always.
+        """
+        text, vocabulary = self._text, self._vocabulary
+        if not vocabulary.persons or not isinstance(command.value, Called | Listed):
+            return text
+        text = as_robot(text, first, last, vocabulary)
+        spoken = [*persons_in(text, first, last, vocabulary)]
+        hearer = self._persons_of(command)
+        named = {*persons_in(text, words_of(text, command).start, first, vocabulary)}
+        known, here = self._persons_before()
+        for who in spoken:
+            at = next(at for at in range(first, last) if person_of(text.words[at], vocabulary) == who)
+            is_subject, meant = text.words[at] == who, {name for name, words in known if who in words}
+            known_otherwise = {name for name, words in known if words and who not in words}
+            others = {name for name, _ in known} - hearer - known_otherwise
+            other = "".join(meant - hearer)
+            if who not in named and len(meant) == 1 and other:
+                text = as_named(text, at, last, who, other, vocabulary) if "{" not in other else text
+            elif is_asked and (is_subject or (len(spoken) == 1 and others.isdisjoint(here))):
+                text = as_hearer(text, first, last, who, vocabulary, but=who)
+            elif not is_asked and (at == first or (who in named and not _owns(text, at, last, vocabulary))):
+                if who in named or meant or not others:
+                    text = as_hearer(text, first, last, who, vocabulary)
+        return text
+
+    def _of_speaker(self, first: int, last: int) -> Words:
+        """The words of `ask me if I want my tea` as those about somebody else: `if they want your tea`."""
+        text, asking = self._text, self._vocabulary.asking
+        own = self._vocabulary.values.adjectives.own
+        if all(text.words[at] not in asking["speaking"] for at in range(first, last)):
+            return text
+        for at in range(first, last):
+            if text.words[at] in asking["speaking"]:
+                text = text.with_word(at, asking["spoken_of"][0])
+            elif text.words[at] in own:
+                text = text.with_word(at, asking["addressed"][0])
+        return text
+
+    def _doubt(self, entry: Entry, at: int, reason: str = "", said: tuple[Token, int, int] | None = None) -> bool:
+        """Says that a word of what a command has `said` in a range may mean something else (BT159), if it is one."""
+        if at:
+            is_person = self._text.words[at] in self._vocabulary.values.texts.of_persons
+            reason, span = reason or (_SOMEBODY if is_person else _NEXT), self._text.span(at, at + 1)
+            example = self._quoting(*said, at) if said is not None else entry.example
+            self._calls.problems.append(diagnostic("BT159", span, word=span.text, reason=reason, example=example))
+        return at > 0
+
+    def _quoting(self, command: Token, first: int, last: int, at: int) -> str:
+        """A command with the words that it says in quotes, up to a word in doubt behind which another one begins."""
+        text, values, asking = self._text, self._vocabulary.values, self._vocabulary.asking
+        goes_on = at > first and text.words[at] in self._vocabulary.roles["and"] and self._phrase(at + 1) is not None
+        end = at - (text.words[at - 1] == ",") if goes_on else last
+        is_asked, opener = is_question(command), text.words[first - 1]
+        pleads = opener in asking["pleading"]
+        heard = self._to_hearer(command, first, end, is_asked or pleads)
+        said = values.texts.written(heard, first, end)
+        if is_asked:
+            verbs, sure = verbs_of(text, first, end, self._vocabulary), set(text.words[first:end])
+            question = values.texts.direct(heard, first, end, sure.union(asking["hearing"]), verbs)
+            said = question or f"{opener.capitalize()} {said}?" if values.texts.asks(opener) else question or said
+        elif pleads:
+            reminds = text.words[words_of(text, command).start] in asking["reminding"]
+            said = f"{asking['reminder' if reminds else 'plea'][0].capitalize()} {said}"
+        front = text.source.text[command.start : text.ends[first - 1 - (pleads or values.texts.opens(opener))]]
+        rest = f", {self._vocabulary.word('then')} {values.texts.written(text, at + 1, last)}" if goes_on else ""
+        return f'{front} "{said}"{rest}'
+
+    def _clear(self, said: Words, first: int, last: int) -> set[int]:
+        """The places of words for people of whom it is clear who they are, once they are `said` so."""
+        text, vocabulary = self._text, self._vocabulary
+        changed = {at for at in range(first, last) if said.words[at] != text.words[at]}
+        persons = {person_of(text.words[at], vocabulary) for at in changed} - {""}
+        return changed.union(at for at in range(first, last) if person_of(text.words[at], vocabulary) in persons)
+
+    def _persons_before(self) -> tuple[list[tuple[str, set[str]]], set[str]]:
+        """The people of this statement and the one before it, each with the words for them, and those of this one."""
+        ends = [0, 0, *(at + 1 for at, token in enumerate(self._tokens) if token.kind in STATEMENT_ENDS)]
+        known, latest, here = list[tuple[str, set[str]]](), set[str](), set[str]()
+        for place, token in enumerate(self._tokens[ends[-2] :], ends[-2]):
+            latest = self._persons_of(token) or latest
+            known += [(name, self._said_by(token)) for name in latest]
+            here |= latest if place >= ends[-1] else set()
+        return known, here
+
+    def _said_by(self, token: Token) -> set[str]:
+        """The persons for whom words of a token stand."""
+        words = words_of(self._text, token)
+        return set(persons_in(self._text, words.start, words.stop, self._vocabulary))
+
+    @staticmethod
+    def _persons_of(token: Token) -> set[str]:
+        """The people with whom something is done, by name or reference."""
+        said = token.value
+        if not isinstance(said, Called | Listed):
+            return set()
+        slots = {slot.name for slot in said.entry.slots if slot.type == PERSON}
+        each = said.arguments if isinstance(said, Listed) else [said.arguments]
+        return {text for arguments in each for name, text in arguments if name in slots and text}
+
+
+def person_of(word: str, vocabulary: Lexicon) -> str:
+    """The subject for the person whom a word stands for, "" for other words: `she` for `her` and `she'll`."""
+    word = word.partition("'")[0]
+    persons = vocabulary.persons
+    return word if word in persons else next((who for who, forms in persons.items() if word in forms), "")
+
+
+def persons_in(text: Words, first: int, last: int, vocabulary: Lexicon) -> Iterator[str]:
+    """The persons whom words stand for, each by the word that is its subject, in their order and once."""
+    yield from dict.fromkeys(who for at in range(first, last) if (who := person_of(text.words[at], vocabulary)))
+
+
+def as_hearer(text: Words, first: int, last: int, who: str, vocabulary: Lexicon, but: str = "") -> Words:
+    """The same text in which words for a person, `but` one, are those for whoever hears it: `she is` is `you are`."""
+    you, your = vocabulary.asking["hearing"][0], vocabulary.asking["addressed"][0]
+    for at in range(first, last):
+        word, _, tail = text.words[at].partition("'")
+        if person_of(word, vocabulary) != who or word == but:
+            continue
+        if word == who:
+            text = text.with_word(at, you + f"'{tail}" * (tail != ""))
+            if at + 1 < last:
+                text = text.with_word(at + 1, _with_you(text.words[at + 1], vocabulary))
+        else:
+            text = text.with_word(at, your if _owns(text, at, last, vocabulary) else you)
+    return text
+
+
+def as_named(text: Words, at: int, last: int, who: str, name: str, vocabulary: Lexicon) -> Words:
+    """The same text in which a word for a person is their name: `he missed his bus` is `Bob missed his bus`."""
+    is_owner = text.words[at] != who and _owns(text, at, last, vocabulary)
+    return text.with_word(at, name + vocabulary.values.adjectives.ending * is_owner)
+
+
+def as_robot(text: Words, first: int, last: int, vocabulary: Lexicon) -> Words:
+    """The same text in which the robot speaks of itself: `you are on your way` as `I am on my way`."""
+    others, words = vocabulary.of_robot, text.words[first:last]
+    for at in range(first, last):
+        owner = text.source.text[slice(*text.articles[at])].lower() if at in text.articles else ""
+        if owner in others:
+            text = text.with_word(at, f"{others[owner]} {text.words[at]}")
+    if len(words) > 1 and words[0] in others and words.count(words[0]) == 1:  # but not `you said that you are late`
+        both = others.get(" ".join(words[:2]), f"{others[words[0]]} {words[1]}")
+        text = text.with_word(first, both.split()[0]).with_word(first + 1, both.split()[1])
+    return text
+
+
+def verbs_of(text: Words, first: int, last: int, vocabulary: Lexicon) -> dict[int, str]:
+    """The verbs behind words for people, as they stand in questions, by the place of the word: of `she drinks tea`."""
+    places = (at for at in range(first, last - 1) if text.words[at] in vocabulary.persons)
+    return {at: verb for at in places if (verb := _with_you(text.words[at + 1], vocabulary)) != text.words[at + 1]}
+
+
+def _owns(text: Words, at: int, last: int, vocabulary: Lexicon) -> bool:
+    """Whether a word says whose the thing behind it is: the `her` of `her cup`, but not that of `bring her a cup`."""
+    if text.words[at] not in vocabulary.values.adjectives.other_owners:
+        return False
+    behind = text.words[at + 1] if at + 1 < last else ","
+    phrases = vocabulary.values.role_words.introducing.values()
+    before_nouns = {words[0] for said in phrases for words in said}
+    return behind[0].isalnum() and at + 1 not in text.articles and behind not in vocabulary.joining | before_nouns
+
+
+def _with_you(verb: str, vocabulary: Lexicon) -> str:
+    """A verb as it stands behind `you`: `are` for `is`, `need` for `needs`."""
+    from btlang.vocabulary.correct_words import correct_words  # hardly ever
+
+    if verb in vocabulary.of_hearer:
+        return vocabulary.of_hearer[verb]
+    endings = sorted(vocabulary.third_person.items(), key=lambda ending: -len(ending[0]))
+    forms = (verb.removesuffix(end) + other for end, others in endings if verb.endswith(end) for other in others[::-1])
+    return next((form for form in forms if form in correct_words(vocabulary.word_list)), verb)
