@@ -39,6 +39,7 @@ class Texts:
         self._clause_words = frozenset(language["clause_words"])
         self._question_words = frozenset(language["question_words"])
         self._measuring = frozenset(language["asking"].get("measuring", ()))
+        self._selecting = tree_of((phrase, True) for phrase in ways(language["asking"].get("selecting", ()), articles))
         self._openers = frozenset((*language["clause_openers"], *self._question_words))
         self._modals, self.completed = frozenset(language["modals"]), frozenset(language["completed"])
         self._participles, self._endings = frozenset(language["participles"]), tuple(language["participle_endings"])
@@ -185,6 +186,8 @@ class Texts:
         subject = self._subject(text, first, verb) if opener in self._measuring else first
         if subject is None:
             return None  # `how long dinner will take`
+        if subject == verb:  # `how many people are coming`
+            return self._question([opener], self._said(text, first, last), doubtful)
         parts = [*([opener] if asks else []), *self._said(text, first, subject), text.words[verb]]
         parts += self._said(text, subject, verb)
         if self._belongs(text, verb + 1):  # `if the book is on the table`
@@ -192,10 +195,18 @@ class Texts:
         return self._question(parts, self._said(text, verb + 1, last), doubtful)
 
     def _subject(self, text: Words, first: int, verb: int) -> int | None:
-        """Where who or what does it begins behind a question word: at `it` in `how long it will take`."""
+        """Where who or what does it begins behind a question word: at `it` in `how long it will take`.
+
+        At the verb where it is what is asked for, None where that isn't clear.
+        """
         places = range(first, verb)
         found = (at for at in places if text.words[at] in self._subjects or self.is_owned(text, at))
-        return next(found, first if verb == first + 1 else None)
+        if (subject := next(found, None)) is not None:
+            return subject
+        front = find(self._selecting, text.words, first - 1)
+        if front is not None:
+            return verb if verb == front[1] + 1 else None
+        return first if verb == first + 1 else None
 
     def _question(self, front: Sequence[str], behind: Sequence[str], doubtful: Set[str]) -> str | None:
         """A question of words, None where one of them is somebody else for whoever hears it."""
