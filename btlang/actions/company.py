@@ -164,12 +164,15 @@ def guide(
     y: float | None = None,
     facing: float | None = None,
     manner: str | None = None,
+    source: str | None = None,
 ) -> Steps:
-    """Ask a person to follow and drive to a place or a point.
+    """Ask a person to follow and drive to a place or a point, from a place where it meets them if there is one.
 
     It waits for a person who falls behind, and goes back for one who doesn't come. Without a person it is the last
     speaker, else the nearest person in view. Fails after four returns.
     """
+    if source is not None:
+        yield from go_to(robot, source)
     name = _somebody(robot, person)
     if not robot.sees(name):
         yield from travel(robot, name)

@@ -227,6 +227,11 @@ def person_is_at(robot: Base, person: str, place: str) -> bool:
     return person in robot.described("person", {"named": person, "at": place})
 
 
+def something_is_at(robot: Base, place: str) -> bool:
+    """Return whether any object is at a place, as far as the robot knows."""
+    return bool(robot.described("object", {"at": place}))
+
+
 def someone_is_at(robot: Base, place: str) -> bool:
     """Return whether anybody is at a place, as far as the robot knows."""
     return bool(robot.described("person", {"at": place}))

@@ -37,6 +37,14 @@ def negated_list(text: Words, first: int, last: int, vocabulary: Lexicon) -> Dia
     return _unclear(text, first, last, " ".join(either), f"{vocabulary.word('not')} ({' '.join(positive)})")
 
 
+def empty_surface(text: Words, first: int, last: int, place: str, vocabulary: Lexicon) -> Diagnostic:
+    """`the table is empty`."""
+    entries = map(vocabulary.entry, ("SomethingIsAt", "SomeoneIsAt"))
+    said = [entry.phrases[0].replace("{place}", place) for entry in entries if entry is not None]
+    one, other = (f"{vocabulary.word('not')} {words}" for words in said)
+    return _unclear(text, first, last, one, other)
+
+
 def _unclear(text: Words, first: int, last: int, one: str, other: str) -> Diagnostic:
     span = text.span(first, last)
     return diagnostic("BT151", span, words=span.text, one=one, other=other)

@@ -11,7 +11,7 @@ from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import TrieNode, longest
-from btlang.vocabulary.value_type import PERSON
+from btlang.vocabulary.value_type import PERSON, PLACE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ def _other_subject(before: Match, text: Words, match: Match, at: int, vocabulary
 def check_negation(
     text: Words, match: Match, at: int, vocabulary: Lexicon, tokens: Sequence[Token]
 ) -> Iterator[Diagnostic]:
-    """BT151 for a second negation, and for the negation of a list."""
+    """BT151 for a second negation, for the negation of a list, and for an empty place that may be no room."""
     listed = next((value for value in match.values if value.more and not value.group), None)
     is_subject = listed is not None and listed.first == at
     has_list = listed is not None and (is_subject or listed.joiner == "and")
@@ -80,3 +80,9 @@ def check_negation(
             yield negations.negated_list(text, at, match.last, vocabulary)
         else:
             yield negations.negated_twice(text, at, match.last, vocabulary)
+    elif text.words[match.last - 1] in vocabulary.asking["vacant"]:
+        place, surfaces = match.values[0], vocabulary.asking["surfaces"]
+        if text.words[place.last - 1] in surfaces or vocabulary.values.likenesses.kind_of(PLACE, place.text) in surfaces:
+            from btlang.frontends.mission.explanations import negations
+
+            yield negations.empty_surface(text, at, match.last, place.text, vocabulary)

@@ -8,12 +8,13 @@ from collections.abc import Mapping
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import Called, Listed, Token, texts_of
 from btlang.frontends.mission.tokens.addressed_texts import TELL
+from btlang.frontends.mission.tokens.hearers import person_of
 from btlang.frontends.mission.tokens.questions import Questions
 from btlang.text.source import Span
 from btlang.tree.answers import ASK
 from btlang.vocabulary.entry import SAY, Entry
 from btlang.vocabulary.match import Match
-from btlang.vocabulary.value_type import TEXT
+from btlang.vocabulary.value_type import PERSON, TEXT
 from btlang.vocabulary.word_tree import find
 
 _EXAMPLE = "hello"
@@ -162,6 +163,19 @@ class Requests(Questions):
             return 0
         self._partial.append(wanted, at)
         return end + 1
+
+    def benefit(self, at: int) -> int:
+        """`open the door for Bob`: BT158 notes that it doesn't matter for whom something is done that names nobody."""
+        words, done = self._text.words, self._tokens[-1].value if self._tokens else None
+        benefiting = self._vocabulary.values.role_words.introducing.get("beneficiary", ())
+        if (words[at],) not in benefiting or not isinstance(done, Called) or done.entry.given(PERSON, done.arguments):
+            return 0
+        named = find(self._vocabulary.values.names_tree(PERSON), words, at + 1)
+        end = named[1] if named is not None else at + 2
+        if (named is None and not person_of(words[at + 1], self._vocabulary)) or not self._ends(end):
+            return 0
+        self._calls.problems.append(diagnostic("BT158", (span := self._text.span(at, end)), words=span.text))
+        return end
 
     def _values(self) -> str:
         """What can be said so, for a message."""

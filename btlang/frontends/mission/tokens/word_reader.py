@@ -312,6 +312,7 @@ class WordReader:
             or self._partial.add_without_theme(at)
             or self._requests.tell(at)
             or self._places.left_out(at)
+            or self._requests.benefit(at)
         )
         if end:
             return end
