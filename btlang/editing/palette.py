@@ -166,6 +166,7 @@ FORMS: Mapping[str, EditorForm] = {
     "every": EditorForm("duration", lambda body, seconds: ast.Every(seconds, body, "", body.span)),
     "after": EditorForm("duration", lambda body, seconds: ast.Delay(seconds, body, body.span)),
     "until time": EditorForm("time_of_day", lambda body, time: ast.UntilTime(time, body, body.span)),
+    "by time": EditorForm("time_of_day", lambda body, time: ast.ByTime(time, body, body.span)),
     "if": EditorForm("condition", lambda body, condition: ast.If(False, condition, body, None, body.span)),
     "unless": EditorForm("condition", lambda body, condition: ast.If(True, condition, body, None, body.span)),
     "while": EditorForm("condition", lambda body, condition: ast.While(False, condition, body, None, body.span)),

@@ -26,7 +26,7 @@ _FIELDS: Mapping[type[ast.Ast], Sequence[tuple[str, str]]] = {
     **dict.fromkeys((ast.Within, ast.For, ast.UpTo, ast.Delay, ast.Wait), (("seconds", "duration"),)),
     **dict.fromkeys((ast.Every, ast.Apart), (("seconds", "duration"), ("rounds", "count"))),
     ast.Held: (("seconds", "duration"),),
-    **dict.fromkeys((ast.WaitTime, ast.UntilTime), (("time", "time_of_day"),)),
+    **dict.fromkeys((ast.WaitTime, ast.UntilTime, ast.ByTime), (("time", "time_of_day"),)),
 }
 _COUNTED = frozenset(("num_cycles", "num_attempts", "rounds", "attempts"))  # the names of counts in trees, too
 

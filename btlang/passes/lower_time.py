@@ -67,6 +67,12 @@ def _until_time(item: ast.UntilTime, done: list[Lowered], _scope: LoweringScope)
     return Lowered(_again_beside(_clock(item.time), item, done[0]))
 
 
+def _by_time(item: ast.ByTime, done: list[Lowered], _scope: LoweringScope) -> Lowered:
+    late = new_node("Sequence", (_clock(item.time), Node("AlwaysFailure")), item.span)
+    children = late, new_round(done[0])
+    return Lowered(new_node("Parallel", children, item.span, success_count="1", failure_count="1"))
+
+
 def _again_beside(timer: Node, item: ast.Ast, body: Lowered) -> Node:
     """Repeat the body until the timer succeeds."""
     again = new_node("Repeat", [new_round(body)], item.span, num_cycles="-1")
@@ -157,4 +163,5 @@ TIMED: dict[type[ast.Ast], Callable[[Any, list[Lowered], LoweringScope], Lowered
     ast.WaitUntil: _wait_until,
     ast.WaitTime: _wait_time,
     ast.UntilTime: _until_time,
+    ast.ByTime: _by_time,
 }

@@ -205,6 +205,10 @@ def _until_time(node: ast.UntilTime, printer: Printer) -> Iterator[Section]:
     yield (printer.word("repeat"), printer.time_of_day("until_time", node.time)), statements(node.body)
 
 
+def _by_time(node: ast.ByTime, printer: Printer) -> Iterator[Section]:
+    yield (printer.time_of_day("by_time", node.time),), statements(node.body)
+
+
 def _every(node: ast.Every, printer: Printer) -> Iterator[Section]:
     if node.rounds:
         yield from _paced("repeat", node.rounds, "every", node.seconds, node.body, printer)
@@ -257,6 +261,7 @@ _SECTIONS: dict[type[ast.Ast], Callable[[Any, Printer], Iterator[Section]]] = {
     ast.Retry: _retry,
     ast.For: _timed("repeat", "for"),
     ast.UntilTime: _until_time,
+    ast.ByTime: _by_time,
     ast.Every: _every,
     ast.Apart: _apart,
     ast.Delay: _timed("delay"),

@@ -228,6 +228,10 @@ def _until_time(node: ast.UntilTime, parts: list[Doc], printer: Printer) -> Doc:
     return printer.behind(parts[0], printer.time_of_day("until_time", node.time))
 
 
+def _by_time(node: ast.ByTime, parts: list[Doc], printer: Printer) -> Doc:
+    return printer.behind(parts[0], printer.time_of_day("by_time", node.time))
+
+
 def _test(role: str) -> Callable[[Any, list[Doc], Printer], Doc]:
     def said(_node: Any, parts: list[Doc], printer: Printer) -> Doc:
         return Doc((printer.word(role), printer.condition(parts[0]).fragments), FORM)
@@ -372,6 +376,7 @@ PRINTERS: dict[type[ast.Ast], Callable[[Any, list[Doc], Printer], Doc]] = {
     ast.WaitUntil: _wait_until,
     ast.WaitTime: _wait_time,
     ast.UntilTime: _until_time,
+    ast.ByTime: _by_time,
     ast.Check: _test("check"),
     ast.WaitForever: _single("wait_forever"),
     ast.Nothing: _single("nothing"),

@@ -24,8 +24,8 @@ ASK, ANSWERED, UNANSWERED = "Ask", "AnswerIs", "NobodyAnswered"
 """The ids of the question, and of the conditions about its answer."""
 ABOUT_ANSWERS = frozenset((ANSWERED, UNANSWERED))
 _ONCE = (
-    ast.Retry, ast.Try, ast.Within, ast.UpTo, ast.StopWhen, ast.Constrained, ast.Delay, ast.Provided, ast.Named,
-    ast.Chain,
+    ast.Retry, ast.Try, ast.Within, ast.ByTime, ast.UpTo, ast.StopWhen, ast.Constrained, ast.Delay, ast.Provided,
+    ast.Named, ast.Chain,
 )  # fmt: skip
 """Forms whose commands are done before what comes behind the form."""
 EXAMPLE = 'ask Alice "Tea?". If so, wave'

@@ -1,8 +1,8 @@
 """The syntax tree of a mission, as both parsers make it: what was said, with the exact characters of each part.
 
 Commands: Phrase, Name, Chain, If, IfWorks, While, Provided, StopWhen, Repeat, Retry, Try, Within, For, UpTo, Every,
-UntilTime, Apart, Delay, Constrained, Wait, WaitUntil, WaitTime, WaitForever, Check, Nothing, Fail, Assign, Remember,
-ForEach, Exact, Named; Whenever in a sequence.
+UntilTime, ByTime, Apart, Delay, Constrained, Wait, WaitUntil, WaitTime, WaitForever, Check, Nothing, Fail, Assign,
+Remember, ForEach, Exact, Named; Whenever in a sequence.
 Conditions: Phrase, Name, Compared, Chain ("all", "any"), AtLeast, Not, Held, Exact. `parts` are fields with subtrees.
 Amounts and values are port texts in base units (seconds); they may refer to values of the mission: `{level}`, in a
 text also `it is {level} percent` (see btlang/vocabulary/references.py).
@@ -304,6 +304,15 @@ class UntilTime(Ast):
     parts = ("body",)
 
 
+class ByTime(Ast):
+    """A body that fails when it isn't over at a time of day."""
+
+    time: str
+    body: Ast
+    span: Span
+    parts = ("body",)
+
+
 class Check(Ast):
     condition: Ast
     span: Span
@@ -510,7 +519,7 @@ _TEXTS: dict[type[Ast], Callable[[Any], Iterable[str]]] = {
     **dict.fromkeys((Within, For, UpTo, Delay, Wait, Held), lambda node: (node.seconds,)),
     **dict.fromkeys((Every, Apart), lambda node: (node.seconds, node.rounds)),
     Constrained: lambda node: node.zones,
-    **dict.fromkeys((WaitTime, UntilTime), lambda node: (node.time,)),
+    **dict.fromkeys((WaitTime, UntilTime, ByTime), lambda node: (node.time,)),
     Assign: lambda node: (node.text,),
     ForEach: lambda node: node.values,
     Repeat: lambda node: (node.rounds,),

@@ -42,7 +42,8 @@ ASKING = (
     "asking_do", "answers", "silence", "any_answer", "feeling", "there", "very", "states", "subject", "been", "towards",
     "going", "coming", "letting", "hours", "by_then", "time_is", "finding_out", "inspecting", "telling", "lasting",
     "whole", "located", "wishing", "wished", "fetching", "picturing", "begging", "contents", "yet", "finding",
-    "getting", "bringing", "home", "pleading", "saying_that", "plea", "reminding", "hearing", "doing_it", "measuring", "selecting", "vacant", "surfaces",
+    "getting", "bringing", "home", "pleading", "saying_that", "plea", "reminding", "hearing",
+    "doing_it", "measuring", "selecting", "vacant", "surfaces",
     "reminder", "addressed", "informing", "informed", "staying", "resuming", "interrupting", "and_back",
     "if_yes", "if_no", "told_of", "standing", "able", "unable", "reaching", "finishing", "waiting", "apiece",
     "between_joint", "standing_verbs", "kept_up", "events", "duties", "reasons", "performing", "naming", "named_as",
@@ -94,7 +95,7 @@ ROLES = {
     **dict.fromkeys(("more", "at_least_of"), "count"),
     **dict.fromkeys(("arrival_at",), "place"),
     **dict.fromkeys(("weekly", "on_days"), "days time_of_day"),
-    **dict.fromkeys(("at", "every_day", "until_time", "wait_time", "between_times"), "time_of_day"),
+    **dict.fromkeys(("at", "every_day", "until_time", "by_time", "wait_time", "between_times"), "time_of_day"),
 }
 """The roles that words can have, each with the slot that its phrases hold."""
 LISTED = {**dict.fromkeys(("at", "every_day", "weekly", "on_days"), "and"), "wait_time": "or"}

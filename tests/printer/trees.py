@@ -141,7 +141,7 @@ def _forms(inner: Trees) -> Trees:
         st.builds(ast.Apart, _seconds, inner, st.sampled_from(["-1", "1", "3"]), _span),
         st.builds(ast.Try, inner, perhaps, _span),
         *(st.builds(form, _seconds, inner, _span) for form in timed),
-        st.builds(ast.UntilTime, _times, inner, _span),
+        *(st.builds(form, _times, inner, _span) for form in (ast.UntilTime, ast.ByTime)),
         st.builds(
             _for_each, st.sampled_from([("item", _NUMBER, ("1", "{count}")), ("item", "text", ("a b", "c"))]), inner
         ),
@@ -175,7 +175,7 @@ def _about(inner: Trees) -> Trees:
         st.builds(ast.Try, inner, st.none(), _span),
         st.builds(ast.Every, _seconds, inner, st.one_of(st.just(""), _rounds), _span),
         st.builds(ast.Apart, _seconds, inner, st.sampled_from(["-1", "2"]), _span),
-        st.builds(ast.UntilTime, _times, inner, _span),
+        *(st.builds(form, _times, inner, _span) for form in (ast.UntilTime, ast.ByTime)),
     )
 
 

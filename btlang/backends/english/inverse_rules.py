@@ -218,6 +218,10 @@ def _parallel(node: Node, children: tuple[Candidate, ...], checked: Checked) -> 
         wait = _round(children[1], checked)
         if wait is not None and is_wait(wait):
             yield from (ast.UntilTime(time, wait, NOWHERE) for time in _times(timer.port("time"), checked))
+    if [part.id for part in timer.children] == ["WaitForTime", "AlwaysFailure"] and not children[1].in_lines:
+        body = _round(children[1], checked) if timer.id == "Sequence" else None
+        if body is not None:
+            yield from (ast.ByTime(time, body, NOWHERE) for time in _times(timer.children[0].port("time"), checked))
     if timer.id == "Sleep" and not children[1].in_lines:
         body = _round(children[1], checked)
         if body is not None:

@@ -89,7 +89,7 @@ BEFORE = {
 
 BEHIND = {
     "behind": "if-behind | unless-behind | while-behind | provided | stop-when | once-behind | times | if-possible"
-    " | within | for | up-to | until-time | times-every | times-apart | delayed-behind | constrained",
+    " | within | by-time | for | up-to | until-time | times-every | times-apart | delayed-behind | constrained",
     "if-behind": 'unit " " <if> " " part (", " <otherwise> " " unit)?',
     "unless-behind": 'unit " " <unless> " " part',
     "while-behind": '<repeat> " " lasting " " (<while> | <until>) " " part',
@@ -99,6 +99,7 @@ BEHIND = {
     "times": 'lasting " " <count>',
     "if-possible": 'unit " " <if_possible>',
     "within": 'lasting " " <within>',
+    "by-time": 'lasting " " <by_time>',
     "for": 'lasting " " <for>',
     "up-to": 'lasting " " <up_to>',
     "until-time": 'lasting " " <until_time>',

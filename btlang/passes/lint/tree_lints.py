@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
-from btlang.passes.lint.endings import NEVER, SKIPPED, SUCCESS, Ends, continuing_ends, find_ends
+from btlang.passes.lint.endings import FAILURE, NEVER, SKIPPED, SUCCESS, Ends, continuing_ends, find_ends
 from btlang.support.record import Record
 from btlang.text.source import Span
 from btlang.tree.catalogue import CATALOGUE, ON_FAILURE, ON_SUCCESS, SUBTREE, NodeKind
@@ -155,7 +155,7 @@ def find_cut_off(compilation: Compilation) -> list[Diagnostic]:
             if not ends:
                 compilation.fold(end)
             others = (other for other, own in zip(node.children, children, strict=True) if own is not exposed)
-            if not any(ends[id(other)] & (SUCCESS | SKIPPED) for other in others):
+            if not any(ends[id(other)] & (SUCCESS | SKIPPED) or ends[id(other)] == FAILURE for other in others):
                 return exposed
         if exposed is None or not when:
             return exposed

@@ -18,7 +18,8 @@ STARTS_OPERAND = frozenset((
 """What can only be the start of a command or condition."""
 CONDITION_FORMS = frozenset(("if", "unless", "while", "until", "provided", "as_soon_as", "stop_when"))
 AMOUNTS = frozenset((
-    "count", "for", "up_to", "apart", "within", "every", "delay", "at", "every_day", "until_time", "if_possible",
+    "count", "for", "up_to", "apart", "within", "by_time", "every", "delay", "at", "every_day", "until_time",
+    "if_possible",
 ))  # fmt: skip
 """What may stand behind a command, with a condition or without."""
 

@@ -62,7 +62,7 @@ _OPERAND: dict[str, Callable[[Scan, Token], None]] = {
         operands.loop,
     ),
     "label": operands.label,
-    **dict.fromkeys(("for", "up_to", "within"), operands.front_amount),
+    **dict.fromkeys(("for", "up_to", "within", "by_time"), operands.front_amount),
     **dict.fromkeys(("whenever", "first_time"), operands.rule),
     "not": operands.negation,
     "never": problems.prohibition,
@@ -84,7 +84,7 @@ _OPERATOR: dict[str, Callable[[Scan, Token], None]] = {
     "but": operators.but,
     "again": operators.says_nothing,
     **dict.fromkeys(
-        ("within", "if_possible", "every", "delay", "at", "every_day", "up_to", "apart"), operators.postfix
+        ("within", "by_time", "if_possible", "every", "delay", "at", "every_day", "up_to", "apart"), operators.postfix
     ),
     **dict.fromkeys(CONDITION_FORMS, operators.form_after),
     **dict.fromkeys(STARTS_OPERAND, problems.side_by_side),

@@ -13,7 +13,7 @@ _WANTED = {"neither": "nor", "not_both": "and", "either": "or", "both": "and"}
 _COMMANDS = frozenset(("command", "wait", "wait_forever", "nothing", "fail", "open", "unknown"))
 _PLAIN = frozenset((
     *_COMMANDS, "condition", "not", "close", "comma", "again",
-    "count", "for", "up_to", "apart", "within", "every", "delay", "if_possible",
+    "count", "for", "up_to", "apart", "within", "by_time", "every", "delay", "if_possible",
 ))  # fmt: skip
 """What may stand between `either` or `both` and the word that joins."""
 

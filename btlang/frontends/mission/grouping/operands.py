@@ -144,8 +144,8 @@ def label(scan: Scan, token: Token) -> None:
 
 
 def front_amount(scan: Scan, token: Token) -> None:
-    """`for 10 min, A`: as behind the command. A time limit needs a `:`: `within 10 s, A, then B` has two readings."""
-    marks = ("colon",) if token.kind == "within" else ("comma", "colon")
+    """`for 10 min, A`: as behind the command. A limit needs a `:`: `within 10 s, A, then B` has two readings."""
+    marks = ("colon",) if token.kind in ("within", "by_time") else ("comma", "colon")
     (loop if scan.raw[scan.at + 1].kind in marks else no_operand)(scan, token)
 
 

@@ -107,7 +107,7 @@ def comma(scan: Scan, token: Token) -> None:
     elif following.kind == "if_works":
         scan.at += 1
         if_works(scan, following)
-    elif following.kind in ("count", "for", "until_time", "within", "if_possible", "provided"):
+    elif following.kind in ("count", "for", "until_time", "within", "by_time", "if_possible", "provided"):
         fix = (scan.span(token), "") if is_alone(scan) else None
         advice = "Remove it." if fix else both_readings(scan, following)
         scan.fail("BT032", scan.span(token), fix, place=f"before '{scan.words(following)}'", advice=advice)

@@ -22,6 +22,7 @@ from btlang.tree.ast import (
     Assign,
     Ast,
     AtLeast,
+    ByTime,
     Chain,
     Check,
     Compared,
@@ -218,9 +219,9 @@ class Builder:
             once = self.chain("sequence", (waiting, body), span.start, span.end)
             rounds = _rounds(token)
             return once if rounds == 1 else Repeat(str(rounds), once, span)
-        if kind == "until_time":
-            return UntilTime(amount, body, span)
-        timed = {"for": For, "up_to": UpTo, "within": Within, "delay": Delay}[kind]
+        timed = {
+            "for": For, "up_to": UpTo, "within": Within, "delay": Delay, "until_time": UntilTime, "by_time": ByTime,
+        }[kind]  # fmt: skip
         return timed(amount, body, span)
 
     def _waiting(self, token: Token) -> Ast:

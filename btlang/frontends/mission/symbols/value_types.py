@@ -100,9 +100,10 @@ class ValueTypes:
             return
         known = scopes.at(header.body)
         found: dict[str, tuple[str, ...]] = {}
+        steps = {prefix.value - 1 for prefix in self._prefixes.values() if prefix.role in ("increase", "decrease")}
         at = header.body
         while at < header.last:
-            match = self._longest(at, known)
+            match = self._longest(at, known) if at not in steps else None  # `by {step}` is no time here
             for key in [key for key in open_keys if match is not None and _holds(match, key)]:
                 kinds = tuple(self._fitting(at, match, key, known))
                 found[key] = tuple(kind for kind in found.get(key, kinds) if kind in kinds) or found[key]

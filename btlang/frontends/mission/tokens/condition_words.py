@@ -80,9 +80,12 @@ def check_negation(
             yield negations.negated_list(text, at, match.last, vocabulary)
         else:
             yield negations.negated_twice(text, at, match.last, vocabulary)
-    elif text.words[match.last - 1] in vocabulary.asking["vacant"]:
+    elif match.values and text.words[match.last - 1] in vocabulary.asking["vacant"]:
         place, surfaces = match.values[0], vocabulary.asking["surfaces"]
-        if text.words[place.last - 1] in surfaces or vocabulary.values.likenesses.kind_of(PLACE, place.text) in surfaces:
+        if (
+            text.words[place.last - 1] in surfaces
+            or vocabulary.values.likenesses.kind_of(PLACE, place.text) in surfaces
+        ):
             from btlang.frontends.mission.explanations import negations
 
             yield negations.empty_surface(text, at, match.last, place.text, vocabulary)

@@ -30,7 +30,9 @@ from btlang.vocabulary.word_tree import find
 
 _HOLD, _SEES, _AT = "Hold", "SeesPerson", "PersonIsAt"
 _JOINS = ("and", "then", "or")
-_BEHIND = (*_JOINS, "at", "every", "every_day", "weekly", "count", "within", "until_time", "if", "unless", "until")
+_BEHIND = (
+    *_JOINS, "at", "every", "every_day", "weekly", "count", "within", "by_time", "until_time", "if", "unless", "until",
+)  # fmt: skip
 """Raw kinds that may stand behind where a command is done: `wave in the hall at 6 pm`."""
 _AND = frozenset(("and", "comma"))
 _COMMANDS = frozenset(("command", "name", "wait", "nothing"))

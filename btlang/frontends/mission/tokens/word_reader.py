@@ -32,6 +32,7 @@ from btlang.frontends.mission.tokens.places import Places
 from btlang.frontends.mission.tokens.remarks import Remarks
 from btlang.frontends.mission.tokens.repeated_statements import AGAIN
 from btlang.frontends.mission.tokens.requests import Requests
+from btlang.frontends.mission.tokens.settling import first_word
 from btlang.frontends.mission.tokens.silent_words import (
     MARKS,
     after_politeness,
@@ -66,6 +67,8 @@ _ASKING = BEFORE_CONDITIONS | {"wait_until", "wait_for", "wait_up_to", "check"}
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.frontends.mission.tokens.condition_words import Origin
+_ARRIVAL = {"at": "by_time", "delay": "within"}
+"""What the words for a start mean for an arrival: `be back at the dock in 10 minutes`."""
 
 
 class WordReader:
@@ -173,6 +176,9 @@ class WordReader:
             role = "and" if self._text.words[at] in self._vocabulary.roles["and"] else "if"
             match = Match(Meaning(role), at + 1)
             self._text.going_on.discard(at)
+        if match is not None and role in _ARRIVAL and self._is_to_be_there():
+            role = _ARRIVAL[role]
+            match = match.replace(meaning=Meaning(role))
         if match is not None and role in ("politeness", "never") and self._unknown.is_doubtful(match, role, at):
             match, role = None, ""
         end = self._sentence(match, role, at)
@@ -185,6 +191,12 @@ class WordReader:
         if not end and match is not None and role not in _NOT_READ:
             return self._known(match, at)
         return end or self._other(match, role, at, last)
+
+    def _is_to_be_there(self) -> bool:
+        """Whether the command before says where the robot is to be, `be back at the dock`, and not that it sets out."""
+        before = self._tokens[-1:]
+        is_command = before != [] and before[0].kind == "command"
+        return is_command and first_word(before[0], self._text.source) in self._vocabulary.asking["being"]
 
     def _without_measure(self, match: Match | None, at: int) -> Match | None:
         """The same without a text that begins how long it may take: `welcome Bob with a limit of 5 s`."""
