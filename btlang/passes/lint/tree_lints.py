@@ -18,6 +18,7 @@ from btlang.text.source import Span
 from btlang.tree.catalogue import CATALOGUE, ON_FAILURE, ON_SUCCESS, SUBTREE, NodeKind
 from btlang.tree.node import Node
 from btlang.vocabulary.entry import Entry
+from btlang.vocabulary.lexicon import Lexicon
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -27,6 +28,7 @@ ASKS, INSTANT, TAKES_TIME = range(3)
 """What the leaves below a node are at most: conditions, things that end in the tick they start, others."""
 Found: TypeAlias = "Exposed | None"
 _TIME = "when the time is over"
+_USUAL_END = "6 pm"
 _WHEN = {ON_SUCCESS: "as soon as the condition is false", ON_FAILURE: "as soon as the condition is true"}
 
 
@@ -40,7 +42,7 @@ def find_unreachable(compilation: Compilation) -> list[Diagnostic]:
             wanted = continuing_ends(kind)
             for at in range(len(children) - 1):
                 if not children[at] & wanted:
-                    found.extend(_warnings(kind, node.children[at], children[at], node.children[at + 1]))
+                    found.extend(_warnings(kind, node.children[at], children[at], node.children[at + 1], compilation))
                     break
         return find_ends(node, children, named)
 
@@ -48,7 +50,7 @@ def find_unreachable(compilation: Compilation) -> list[Diagnostic]:
     return found
 
 
-def _warnings(parent: NodeKind, before: Node, ends: Ends, behind: Node) -> list[Diagnostic]:
+def _warnings(parent: NodeKind, before: Node, ends: Ends, behind: Node, compilation: Compilation) -> list[Diagnostic]:
     """Make a warning, none if both stand for the same words: then a form has put one of them there."""
     if before.span is None or behind.span is None or _overlap(before.span, behind.span):
         return []
@@ -57,7 +59,22 @@ def _warnings(parent: NodeKind, before: Node, ends: Ends, behind: Node) -> list[
         reason = "never ends" if ends == NEVER else f"continues until it {how}"
     else:
         reason = "always fails" if parent.goes_on == ON_SUCCESS else "always succeeds"
-    return [diagnostic("BT052", behind.span, ((before.span, f"this {reason}"),), reason=reason)]
+    found = diagnostic("BT052", behind.span, ((before.span, f"this {reason}"),), reason=reason)
+    if before.id == "Repeat" and compilation.is_text and "\n" not in before.span.text + behind.span.text:
+        is_timed = all(part.id != "WaitForTime" for part in before.children[0].children)
+        found = found.advising(_way_out(before.span.text, behind.span.text, is_timed, compilation.vocabulary))
+    return [found]
+
+
+def _way_out(rounds: str, behind: str, may_end: bool, vocabulary: Lexicon) -> str:
+    """Say how to come to what stands behind rounds without end, and how to do it in each of them."""
+    until = vocabulary.first("until_time").replace("{time_of_day}", _USUAL_END)
+    ways = [f"To do it in the end, say when that comes, for example: {rounds} {until}"] if may_end else []
+    paces = {phrase.split()[0] for role in ("every", "every_day", "weekly") for phrase in vocabulary.roles[role]}
+    if rounds.split()[0].lower() in paces:
+        then, behind = vocabulary.word("then"), f"{behind[:1].lower()}{behind[1:]}"
+        ways.append(f"To do it in each round, write: {rounds}, {then} {behind}")
+    return "\n".join(ways)
 
 
 def _overlap(first: Span, second: Span) -> bool:
