@@ -43,7 +43,7 @@ ASKING = (
     "going", "coming", "letting", "hours", "by_then", "time_is", "finding_out", "inspecting", "telling", "lasting",
     "whole", "located", "wishing", "wished", "fetching", "picturing", "begging", "contents", "yet", "finding",
     "getting", "bringing", "home", "pleading", "saying_that", "plea", "reminding", "hearing",
-    "doing_it", "measuring", "selecting", "vacant", "surfaces",
+    "doing_it", "told_about", "what_is", "measuring", "selecting", "vacant", "surfaces",
     "reminder", "addressed", "informing", "informed", "staying", "resuming", "interrupting", "and_back",
     "if_yes", "if_no", "told_of", "standing", "able", "unable", "reaching", "finishing", "waiting", "apiece",
     "between_joint", "standing_verbs", "kept_up", "events", "duties", "reasons", "performing", "naming", "named_as",

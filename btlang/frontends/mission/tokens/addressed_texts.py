@@ -14,9 +14,7 @@ from btlang.text.words import Words
 from btlang.tree.answers import ASK
 from btlang.vocabulary.entry import RECIPIENT, Entry
 from btlang.vocabulary.match import Match, SlotValue
-from btlang.vocabulary.reading_context import ReadingContext
-from btlang.vocabulary.trie import longest
-from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE, ZONE
+from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE, TEXT, ZONE
 from btlang.vocabulary.word_tree import find
 
 TELL = "TellPerson"
@@ -24,20 +22,11 @@ _NO_QUESTION = "begins no question that I know"
 _MATTER = "begins what it is about, but not what to say"
 _PERSON = "is a person, and the question is missing"
 _MEASURES = frozenset(("count", "at_most", "up_to_times", "tries", "within", "by_time", "for", "up_to", "every"))
-_DONE = ("command", "at", "wait", "wait_until", "wait_forever")
 _BEFORE_TIME = frozenset((*BEGINS, "and"))
-_BEHIND = ("politeness", "then", "and", "unless")
 
 
 class AddressedTexts(Hearers):
     """Texts without quotes that one text has for people."""
-
-    def _ends(self, at: int) -> bool:
-        """Whether a question, or what is said, may end before a word."""
-        if self._is_end(at) or self._text.words[at] == ",":
-            return True
-        match = self._phrase(at)
-        return match is not None and match.meaning.role in _BEHIND
 
     @cached_property
     def _addressing(self) -> frozenset[str]:
@@ -75,17 +64,6 @@ class AddressedTexts(Hearers):
             at = time.last + 1 if words[time.last] in roles["and"] else time.last
             at += words[at] in roles["again"]
         return found
-
-    def _behind_manner(self, at: int) -> int:
-        """Where to go on behind words that say nothing, which may end what is said: `right away`."""
-        silent = self._phrase(at)
-        is_manner = silent is not None and silent.meaning.role == "politeness" and self._ends(silent.last)
-        return silent.last if silent is not None and is_manner else at
-
-    def _goes_on(self, at: int) -> bool:
-        """Whether words follow that are neither a mark nor begin anything."""
-        is_mark = self._is_end(at) or self._text.words[at] in (",", ":")
-        return not is_mark and ((phrase := self._phrase(at)) is None or phrase.meaning.role == "there_are")
 
     def _tell(self, entry: Entry, value: SlotValue, command: Token) -> int:
         """`tell Bob dinner is ready`: a clause without a word before it."""
@@ -153,11 +131,19 @@ class AddressedTexts(Hearers):
         is_thing = text.words[value.first - 1] in asking["asking_for"]
         helps = is_thing and text.words[value.first] in asking["helping"]
         end = value.first + 1 if helps else texts.end_of_clause(text, value.first) or value.last
+        end = (self._end_before_command(value.first, end, is_told=False) if is_thing else 0) or end
         heard = self._to_hearer(command, value.first, end, is_asked=True)
         clear = self._clear(heard, value.first, end)
         clear |= {place for place in range(value.first, end) if text.words[place - 1] in asking["coming"]}
         doubtful = (place for place in range(value.first, end) if texts.doubt(text, place, place + 1, clear))
         self._doubt(entry, next(doubtful, 0), said=(command, value.first, end))
+        slot = self._ask_instead(command) if is_thing and text.words[end - 1] in asking["told_about"] else ""
+        if slot:  # `ask Bob for his name`
+            question = f"{asking['what_is'][0].capitalize()} {texts.written(heard, value.first, end)}?"
+            self._set_text(command, slot, question)
+            command.end = text.ends[end - 1]
+            self._tokens.append(command)
+            return end
         kind = "plea_for" if is_thing else "reminder" if text.words[at] in asking["reminding"] else "plea"
         said = asking["plea_for_help" if helps else kind][0].capitalize()
         if not helps:
@@ -166,6 +152,22 @@ class AddressedTexts(Hearers):
         command.end = text.ends[end - 1]
         self._tokens.append(command)
         return end
+
+    def _ask_instead(self, command: Token) -> str:
+        """Make a command that tells people something one that asks them. Return the slot of the question."""
+        said, ask = command.value, self._vocabulary.entry(ASK)
+        if ask is None or not isinstance(said, Called | Listed):
+            return ""
+        kinds, names = {slot.name: slot.type for slot in said.entry.slots}, {slot.type: slot.name for slot in ask.slots}
+
+        def renamed(arguments: tuple[tuple[str, str], ...]) -> tuple[tuple[str, str], ...]:
+            return tuple((names[kinds[name]], text) for name, text in arguments)
+
+        if isinstance(said, Listed):
+            command.value = said.replace(entry=ask, arguments=tuple(map(renamed, said.arguments)))
+        else:
+            command.value = said.replace(entry=ask, arguments=renamed(said.arguments))
+        return names[TEXT]
 
     def _ask(self, entry: Entry, value: SlotValue, command: Token) -> int:
         """`ask Bob if he is hungry`: the question that the clause stands for.
@@ -288,28 +290,6 @@ class AddressedTexts(Hearers):
         self._tokens.append(command)
         self._context.latest[PERSON] = named[0]
         return likewise[1] if likewise is not None else named[1]
-
-    def _end_before_command(self, first: int, last: int, is_told: bool) -> int:
-        """Where a clause ends before a reply, or before `and` and a command whose verb can't go on with it; else 0.
-
-        What is told has its verb by then: `tell Bob that tea is ready and wave`.
-        """
-        text, joints, context = self._text, self._vocabulary.roles["and"], self._context.with_references()
-        texts, replies = self._vocabulary.values.texts, self._vocabulary.replies
-        if at := next((at for at in range(first + 1, last) if find(replies, text.words, at)), 0):
-            return 0 if is_told else at - (text.words[at - 1] == ",")
-        context.latest = dict.fromkeys(context.types, "")  # `and bring him the cup`: who is asked isn't known yet
-        for at in range(first + 1, last - 1):
-            if text.words[at] in joints and self._begins_command(at + 1, context):
-                goes_on = not texts.is_whole(text, first, at) if is_told else texts.may_be_joined(text, first, at)
-                return 0 if goes_on else at - (text.words[at - 1] == ",")
-        return 0
-
-    def _begins_command(self, at: int, context: ReadingContext) -> bool:
-        """Whether a command begins at a word, or a time at which it is done."""
-        behind = longest(self._vocabulary.trie, self._text, at, context)
-        role = behind.meaning.role if behind is not None else ""
-        return at not in self._text.articles and role in _DONE
 
     def _sure_words(self, first: int, last: int) -> set[str]:
         """The words of a question that could end it, and don't: `if she'd like the newspaper or her book`."""

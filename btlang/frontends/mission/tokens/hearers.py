@@ -77,7 +77,7 @@ class Hearers(ToldWords):
         goes_on = at > first and text.words[at] in self._vocabulary.roles["and"] and self._phrase(at + 1) is not None
         end = at - (text.words[at - 1] == ",") if goes_on else last
         is_asked, opener = is_question(command), text.words[first - 1]
-        pleads = opener in asking["pleading"]
+        pleads = opener in (*asking["pleading"], *asking["asking_for"])
         heard = self._to_hearer(command, first, end, is_asked or pleads)
         said = values.texts.written(heard, first, end)
         if is_asked:
@@ -86,7 +86,8 @@ class Hearers(ToldWords):
             said = question or f"{opener.capitalize()} {said}?" if values.texts.asks(opener) else question or said
         elif pleads:
             reminds = text.words[words_of(text, command).start] in asking["reminding"]
-            said = f"{asking['reminder' if reminds else 'plea'][0].capitalize()} {said}"
+            kind = "plea_for" if opener in asking["asking_for"] else "reminder" if reminds else "plea"
+            said = f"{asking[kind][0].capitalize()} {said}"
         front = text.source.text[command.start : text.ends[first - 1 - (pleads or values.texts.opens(opener))]]
         rest = f", {self._vocabulary.word('then')} {values.texts.written(text, at + 1, last)}" if goes_on else ""
         return f'{front} "{said}"{rest}'

@@ -6,10 +6,10 @@ Each becomes the commands that answer it: what is asked is measured, and said.
 from __future__ import annotations
 
 from btlang.diagnostics.diagnostic import diagnostic
-from btlang.frontends.mission.token import Called, Listed, Remembered, Token, statement_start
+from btlang.frontends.mission.token import JOINTS, STATEMENT_ENDS, Called, Listed, Remembered, Token, statement_start
 from btlang.frontends.mission.tokens.addressed_texts import TELL
 from btlang.frontends.mission.tokens.answers import Answers
-from btlang.frontends.mission.tokens.sentence_reader import latest_question
+from btlang.frontends.mission.tokens.sentence_reader import is_question, latest_question
 from btlang.frontends.mission.tokens.settling import IMPLIED
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
 from btlang.tree.answers import EXAMPLE
@@ -23,6 +23,7 @@ from btlang.vocabulary.values import key_of
 from btlang.vocabulary.word_tree import find
 
 _ANSWER = "Answer"
+_BETWEEN = (*JOINTS, *STATEMENT_ENDS)
 _OF_SEVERAL = "could be that of any of those who were asked"
 _MOST_WORDS = 8  # of the subject of a question
 _DEPENDS = "may begin what is told, as 'whether' does, or say when it is told"
@@ -87,8 +88,21 @@ class Questions(Answers):
         said = self._asked_of() if self._ends(end) else ""
         told = Called(entry, ((slots[PERSON], person[0]), (slots[TEXT], said)))
         if not said:
-            return self._indirect(at, end, told)
+            return self._found_out(at, end, told, slots[TEXT]) or self._indirect(at, end, told)
         self._tokens.append(Token("command", text.starts[at], text.ends[end - 1], told))
+        return end
+
+    def _found_out(self, at: int, end: int, told: Called, slot: str) -> int:
+        """`ask Bob what he wants and tell Alice`, `count the cups and tell me`: the answer, or how many there are."""
+        before = next((token for token in reversed(self._tokens) if token.kind not in _BETWEEN), None)
+        if before is None or not isinstance(before.value, Called | Listed) or not self._ends(end):
+            return 0
+        counts = before.value.entry.id in COUNTING
+        entry = self._vocabulary.entry(COUNT if counts else _ANSWER) if counts or is_question(before) else None
+        if entry is None:
+            return 0
+        command = Token("command", self._text.starts[at], self._text.ends[end - 1], told)
+        self._say(at, Match(Meaning("", entry), end), command, slot)
         return end
 
     def _indirect(self, at: int, first: int, said: Called) -> int:

@@ -200,7 +200,8 @@ class Requests(Questions):
             return 0
         command = Token("command", text.starts[at], text.ends[end - 1], self._saying_of(said))
         if not said:
-            return self._miss_text(at, end, command)
+            slot = next(slot.name for slot in self._saying.slots if slot.type == TEXT)
+            return self._found_out(at, end, self._saying_of(""), slot) or self._miss_text(at, end, command)
         self._tokens.append(command)
         return end
 

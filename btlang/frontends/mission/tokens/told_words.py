@@ -10,16 +10,71 @@ from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, is_q
 from btlang.frontends.mission.tokens.settling import FAILS, WORKS, is_about
 from btlang.frontends.mission.tokens.word_matches import words_of
 from btlang.tree.answers import ABOUT_ANSWERS, ANSWERED
+from btlang.vocabulary.reading_context import ReadingContext
+from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE, TEXT, WORLD
 from btlang.vocabulary.word_tree import find
 
 _ASKED_BY = frozenset(("if", "whenever", "first_time", "as_soon_as", WORKS))
 _IN_CONDITIONS = frozenset(("condition", "not", "either", "neither", "or"))
 _LINE_ENDS = frozenset(("semi", "newline", "otherwise"))
+_DONE = ("command", "at", "wait", "wait_until", "wait_forever")
+_BEHIND = ("politeness", "then", "and", "unless")
 
 
 class ToldWords(SentenceReader):
     """Those of one text."""
+
+    def _ends(self, at: int) -> bool:
+        """Whether a question, or what is said, may end before a word."""
+        if self._is_end(at) or self._text.words[at] == ",":
+            return True
+        match = self._phrase(at)
+        return match is not None and match.meaning.role in _BEHIND
+
+    def _behind_manner(self, at: int) -> int:
+        """Where to go on behind words that say nothing, which may end what is said: `right away`."""
+        silent = self._phrase(at)
+        is_manner = silent is not None and silent.meaning.role == "politeness" and self._ends(silent.last)
+        return silent.last if silent is not None and is_manner else at
+
+    def _goes_on(self, at: int) -> bool:
+        """Whether words follow that are neither a mark nor begin anything."""
+        is_mark = self._is_end(at) or self._text.words[at] in (",", ":")
+        return not is_mark and ((phrase := self._phrase(at)) is None or phrase.meaning.role == "there_are")
+
+    def _end_before_command(self, first: int, last: int, is_told: bool) -> int:
+        """Where a clause ends before a reply, or before `and` and a command whose verb can't go on with it; else 0.
+
+        What is told has its verb by then: `tell Bob that tea is ready and wave`.
+        """
+        text, joints, context = self._text, self._vocabulary.roles["and"], self._context.with_references()
+        texts, replies = self._vocabulary.values.texts, self._vocabulary.replies
+        if at := next((at for at in range(first + 1, last) if find(replies, text.words, at)), 0):
+            return 0 if is_told else at - (text.words[at - 1] == ",")
+        context.latest = dict.fromkeys(context.types, "")  # `and bring him the cup`: who is asked isn't known yet
+        for at in range(first + 1, last - 1):
+            if text.words[at] in joints and self._begins_command(at + 1, context):
+                goes_on = not texts.is_whole(text, first, at) if is_told else texts.may_be_joined(text, first, at)
+                return 0 if goes_on else at - (text.words[at - 1] == ",")
+        return 0
+
+    def _begins_command(self, at: int, context: ReadingContext) -> bool:
+        """Whether a command begins at a word, or a time at which it is done."""
+        behind = longest(self._vocabulary.trie, self._text, at, context)
+        role = behind.meaning.role if behind is not None else ""
+        return at not in self._text.articles and (role in _DONE or self._informs(at) > 0)
+
+    def _informs(self, at: int) -> int:
+        """Where words end that tell a person what was asked, or found out: `and tell Bob`; 0 for others."""
+        asking, words = self._vocabulary.asking, self._text.words
+        if words[at] not in asking["informing"]:
+            return 0
+        person = find(self._vocabulary.values.names_tree(PERSON), words, at + 1)
+        end = person[1] if person is not None else at + 2
+        is_person = person is not None or words[at + 1] in {*self._vocabulary.values.role_words.speaker}
+        end += words[end] in asking["informed"]
+        return end if is_person and self._ends(end) else 0
 
     def _asked_of(self) -> str:
         """The words of the one condition that the command being read depends on, with names for pronouns; else ""."""

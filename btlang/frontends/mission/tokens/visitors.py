@@ -41,8 +41,12 @@ class Visitors(SentenceReader):
         Behind other commands it is a rule for the time of these.
         """
         tokens = self._tokens
-        event, said = self._event(at), tokens[-1].value if tokens else None
-        if event is None or not isinstance(said, Called):
+        said = tokens[-1].value if tokens else None
+        if not isinstance(said, Called):
+            return 0
+        kind = _kind_of(said)
+        event = self._event(at, kind or next(iter(self._vocabulary.asking["somebody"]), ""))
+        if event is None:
             return 0
         last = event.last
         if not self._is_end(last):  # `greet everyone who comes in with "Hello"`
@@ -57,9 +61,9 @@ class Visitors(SentenceReader):
         first = statement_start(tokens, len(tokens))
         joint = run_start(tokens, len(tokens) - 1, JOINTS)
         is_plain = all(token.kind in _SIMPLE for token in tokens[first:])
-        if choice is None or choice.parts or ordinal(choice.how) or not is_plain:
+        if choice is None or (choice.parts and not kind) or ordinal(choice.how) or not is_plain:
             return 0  # `the first person who says yes` is somebody known by then
-        self._calls.note_nearest()
+        self._calls.note(event) if kind else self._calls.note_nearest()
         nearest = self._context.latest[PERSON]
         start, end = tokens[-1].start, self._text.ends[last - 1]
         condition = self._calls.token(event, at)
@@ -76,10 +80,9 @@ class Visitors(SentenceReader):
             tokens[first:] = [rule, condition, Token("comma", end, end), command]
         return last
 
-    def _event(self, at: int) -> Match | None:
+    def _event(self, at: int, somebody: str) -> Match | None:
         """What somebody does who is spoken of: `who comes near`, `you meet`."""
         text, asking = self._text, self._vocabulary.asking
-        somebody = next(iter(asking["somebody"]), "")
         if text.words[at] in asking["who"] and text.words[at + 1] in asking["events"]:
             places, other = [at, *rest_of(text, at + 1)], {0: somebody}
         elif text.words[at] in self._vocabulary.subjects and text.words[at + 1] in asking["events"]:
@@ -89,6 +92,13 @@ class Visitors(SentenceReader):
         found = match_of(text, places, other, (self._vocabulary.trie,), self._context)
         is_event = found is not None and found.meaning.role == "condition"
         return relocated(found, places) if found is not None and is_event else None
+
+
+def _kind_of(said: Called) -> str:
+    """The kind of everybody with whom something is done, "" for others: `greet every guest`."""
+    choices = map(choice_of, said.entry.given(PERSON, said.arguments))
+    parts = next((dict(choice.parts) for choice in choices if choice is not None and choice.how == ALL), {})
+    return parts.get("kind", "") if len(parts) == 1 else ""
 
 
 def with_meetings(tokens: list[Token], vocabulary: Lexicon) -> None:
