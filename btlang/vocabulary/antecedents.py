@@ -146,7 +146,8 @@ class Antecedents:
                 latest = text, first, end, self._likenesses.kind_of(kind, named[0]), named[0]
             for tree in ("kind", "kinds"):
                 of = find(self._names(tree), text.words, first)
-                if of is not None and end < of[1] <= at and kind in self._likenesses.types_of(of[0]):
+                is_longer = of is not None and latest is not None and not latest[4] and of[1] == end  # `coffee cup`
+                if of is not None and (end < of[1] <= at or is_longer) and kind in self._likenesses.types_of(of[0]):
                     end = of[1]
                     latest = text, first, end, of[0], ""
         return latest

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 
 from btlang.support.record import Record
 from btlang.vocabulary.entry import PATH
@@ -28,6 +28,10 @@ class RoleWords(Record):
     def introduces(self, words: Sequence[str], at: int) -> int:
         """How many words at a place come before what fills a role or describes a thing, 0 for one: `next to`."""
         return max((len(phrase) for phrase in self.longer if tuple(words[at : at + len(phrase)]) == phrase), default=0)
+
+    def is_one_elsewhere(self, words: Sequence[str], last: int, ones: Container[str]) -> bool:
+        """Whether words with `one` before a place say what goes there: `... and another one in the hall`."""
+        return words[last - 1] in ones and (words[last],) in self.introducing.get("goal", ())
 
     def ends_at(self, words: Sequence[str], at: int) -> bool:
         """Whether no phrase goes on at a word; `to the lab, going through the hall` goes on at the comma."""

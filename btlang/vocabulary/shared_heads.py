@@ -105,7 +105,7 @@ class SharedHeads:
             before = before or self._several(kind, words, first)
             if before is not None and before[1] == end and " " in before[0]:
                 made = _name(tree, [*before[0].lower().split()[:-1], words[at]])
-                return (made, at + 1) if made is not None else None
+                return (made, at + 1) if made not in (None, before[0]) else None  # `a red cup and a cup` are two
             if is_item:
                 break
         return None

@@ -16,7 +16,7 @@ from btlang.vocabulary.nouns import Description
 from btlang.vocabulary.pattern import Form, Slot
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.references import choice_of, is_related
-from btlang.vocabulary.value_type import KINDS, OBJECT, TEXT, WORLD, ZONE, ValueType
+from btlang.vocabulary.value_type import KINDS, OBJECT, PLACE, TEXT, WORLD, ZONE, ValueType
 from btlang.vocabulary.values import Values
 from btlang.vocabulary.verbs import fill, is_no_way
 from btlang.vocabulary.word_tree import END, NO_WORDS, SLOTS, VERBS
@@ -304,7 +304,7 @@ def _listed(
         return None
     more: list[str] = []
     is_described = is_related(first.text)
-    last, joiner = first.last, ""
+    last, joiner, ones_elsewhere = first.last, "", context.values.role_words.is_one_elsewhere
     while True:
         at = last
         comma = text.words[at] == ","
@@ -321,6 +321,8 @@ def _listed(
         ):
             break
         if _is_command(root, text, at, value[1], context):
+            break
+        if first.type == PLACE and ones_elsewhere(text.words, value[1], context.values.ones):
             break
         if is_described:
             *_, value = value, *context.wider(first.type, text, at, value)

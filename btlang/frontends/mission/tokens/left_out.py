@@ -15,6 +15,7 @@ from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.references import choice_of
 from btlang.vocabulary.trie import TrieNode
+from btlang.vocabulary.value_type import PLACE
 
 _FROM = ("off", "inside", "at", "on")
 """The relations of a thing to where it lies."""
@@ -49,6 +50,8 @@ def left_out(
         added = [value for value in match.values if value.last > len(front)] if match is not None else []
         if added and all(text.words[places[value.first]] in context.values.plural_pronouns for value in added):
             continue  # `go to the lab and the hall, each`: what was said before
+        if len(added) == 1 and added[0].type == PLACE and _has_one_elsewhere(text, places, added[0], context):
+            continue  # `put a cup in the lab and another one in the hall`: no place
         if added and all(map(_is_own, added)):
             continue  # only the way or the manner of the command before: `to the lab, going through the hall`
         if match is None or match.last <= len(front) or match.meaning.role not in ("command", "name"):
@@ -87,6 +90,12 @@ def _with_recipient(
     found = match_of(text, [*wider, *wider[-1:]], {}, tries, context)
     is_so = found is not None and found.meaning.entry is entry and found.last == len(wider)
     return (found, wider) if found is not None and is_so else (match, places)
+
+
+def _has_one_elsewhere(text: Words, places: Sequence[int], value: SlotValue, context: ReadingContext) -> bool:
+    """Whether a place that is read is something else, and where that goes."""
+    values, inside = context.values, places[value.first + 1 : value.last]
+    return any(values.role_words.is_one_elsewhere(text.words, at, values.ones) for at in inside)
 
 
 def _may_be_theme(match: Match, goal: SlotValue) -> bool:

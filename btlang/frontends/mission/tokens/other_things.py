@@ -5,19 +5,32 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.frontends.mission.token import JOINTS, STATEMENT_ENDS, Called, Token, run_start
+from btlang.frontends.mission.token import JOINTS, STATEMENT_ENDS, Called, Listed, Token, arguments_of, run_start
 from btlang.frontends.mission.tokens.ended_rules import GO
 from btlang.frontends.mission.tokens.word_matches import words_of
+from btlang.support.record import Record
 from btlang.text.source import Span
 from btlang.text.words import Words
 from btlang.vocabulary.lexicon import Lexicon
-from btlang.vocabulary.references import ALL, NAMES, RELATIONS, Choice, choice_of
+from btlang.vocabulary.references import ALL, COUNT, NAMES, RELATIONS, Choice, choice_of
 from btlang.vocabulary.value_type import OBJECT
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+Arguments: TypeAlias = "tuple[tuple[str, str], ...]"
 _TAKING, _PLACED = ("PickUp", "Take", "Bring"), {NAMES, *RELATIONS}
 _NEAREST, _OTHER = "nearest", "other_than"
 _REASON = "it may be one that was meant before"
 _SIMPLE = frozenset(("command", "name", "open", "close", *JOINTS, *STATEMENT_ENDS))
+
+
+class _Meant(Record):
+    """A thing that goes somewhere: its name, or a reference to what was chosen, and the names that it may have."""
+
+    other: str
+    names: frozenset[str]
 
 
 def with_other_things(tokens: list[Token], vocabulary: Lexicon, text: Words) -> Iterator[Diagnostic]:
@@ -25,26 +38,58 @@ def with_other_things(tokens: list[Token], vocabulary: Lexicon, text: Words) -> 
 
     The robot remembers the last one that it chose, and no others.
     """
-    counts: dict[tuple[str, Choice], int] = {}
+    before: dict[str, list[_Meant]] = {}
     for token in tokens:
         if token.kind not in _SIMPLE:
-            counts.clear()
+            before.clear()
         value = token.value
-        thing = _chosen(value) if token.kind == "command" and isinstance(value, Called) else None
-        if thing is None or not isinstance(value, Called):
+        if token.kind != "command" or not isinstance(value, Called | Listed):
             continue
-        parts = tuple(part for part in thing.parts if part[0] != _OTHER)
-        which = value.entry.id, thing.replace(parts=parts)
-        is_new = parts != thing.parts or _is_introduced(token, vocabulary, text)
-        counts[which] = counts.get(which, 0) + 1 if is_new else 1
-        if counts[which] > 1:
-            other = thing.replace(parts=tuple(sorted((*parts, (_OTHER, f"{{{thing.key}}}")))))
-            changed = ((name, other.text if said == thing.text else said) for name, said in value.arguments)
-            token.value = value.replace(arguments=tuple(changed))
-        if counts[which] > 2:
-            words, names = Span(text.source, token.start, token.end), vocabulary.values.likenesses.members(which[1])
+        is_list = isinstance(value, Listed)
+        meant = [] if is_list else before.setdefault(value.entry.id, [])
+        rows, unclear = list[Arguments](), None
+        for arguments in arguments_of(value):
+            things = _named_in(value.replace(arguments=(arguments,) if is_list else arguments))
+            thing = _chosen(arguments) if is_list or len(arguments) > 1 else None  # to somebody, or somewhere
+            if thing is not None:
+                one = _Meant(f"{{{thing.key}}}", _names_of(thing, vocabulary))
+                others = meant or (_named_in(value) if is_list else [])  # `a cup and the red cup`, too
+                same = [other for other in others if other.names & one.names]
+                if not (is_list or _is_introduced(token, thing, vocabulary, text)):
+                    meant[:] = [other for other in meant if other not in same]
+                elif same:
+                    arguments = _with_other(thing, arguments, same[-1].other)
+                    is_known = same[-1].other[:1] != "{" or same[-1] is meant[-1]
+                    unclear = unclear or (thing if len(same) > 1 or not is_known else None)
+                meant.append(one)
+            elif is_list or len(arguments) > 1:
+                meant += things
+            rows.append(arguments)
+        token.value = value.replace(arguments=tuple(rows) if is_list else rows[0])
+        if unclear is not None:
+            words, names = Span(text.source, token.start, token.end), vocabulary.values.likenesses.members(unclear)
             example = next(iter(names or ()), words.text)
             yield diagnostic("BT150", words, words=words.text, reason=_REASON, example=example)
+
+
+def _named_in(said: Called | Listed) -> list[_Meant]:
+    """The objects that a command names."""
+    named = (name for arguments in arguments_of(said) for name in said.entry.given(OBJECT, arguments))
+    return [_Meant(name, frozenset((name,))) for name in named if name[:1] != "{"]
+
+
+def _names_of(thing: Choice, vocabulary: Lexicon) -> frozenset[str]:
+    """The names that what is chosen may have, or its kind where the world names none."""
+    parts = tuple(part for part in thing.parts if part[0] not in (_OTHER, COUNT))
+    plain = thing.replace(how=_NEAREST, parts=parts)
+    return frozenset(vocabulary.values.likenesses.members(plain) or (plain.text,))
+
+
+def _with_other(thing: Choice, arguments: Arguments, other: str) -> Arguments:
+    """The arguments with another thing of the kind than one that is named, or was chosen last."""
+    parts = (part for part in thing.parts if part[0] != _OTHER)
+    changed = thing.replace(parts=tuple(sorted((*parts, (_OTHER, other)))))
+    return tuple((name, changed.text if said == thing.text else said) for name, said in arguments)
 
 
 def with_things_there(tokens: list[Token]) -> None:
@@ -75,18 +120,19 @@ def _placed(said: str, place: str) -> str:
     return text
 
 
-def _chosen(value: Called) -> Choice | None:
-    """The object that a command chooses, the nearest of its kind, and takes to somebody or somewhere."""
-    if len(value.arguments) < 2:
-        return None
-    for choice in (choice_of(said) for _, said in value.arguments if said[:1] == "{"):
-        if choice is not None and choice.type == OBJECT and choice.how == _NEAREST and choice.parts:
+def _chosen(arguments: Arguments) -> Choice | None:
+    """The object that a command chooses, the nearest of its kind."""
+    for choice in (choice_of(said) for _, said in arguments if said[:1] == "{"):
+        is_one = choice is not None and (choice.how == _NEAREST or (COUNT, "1") in choice.parts)  # `one cup`
+        if choice is not None and choice.type == OBJECT and is_one and choice.parts:
             return choice
     return None
 
 
-def _is_introduced(token: Token, vocabulary: Lexicon, text: Words) -> bool:
-    """Whether the words of a command introduce something: `a cup` or `one`, not `the cup`."""
+def _is_introduced(token: Token, thing: Choice, vocabulary: Lexicon, text: Words) -> bool:
+    """Whether the words of a command introduce something: `a cup`, `another cup` or `one`, not `the cup`."""
+    if any(name == _OTHER for name, _ in thing.parts):
+        return True
     said, values = words_of(text, token), vocabulary.values
     articles = (text.source.text[slice(*text.articles[at])].lower() for at in said if at in text.articles)
     is_one = any(text.words[at] in values.ones and at not in text.articles for at in said)
