@@ -248,10 +248,12 @@ def _unknown_phrase(
 ) -> Diagnostic:
     span = text.span(at, end)
     start = Span(text.source, before[-1].start, before[-1].end) if before else span
-    if before and before[-1].kind == "command" and _ends_in_a_bare_text(before[-1]) and start.text[-1].isalnum():
+    may_say = before != [] and before[-1].kind in ("command", "condition")  # `until Bob says you can go`
+    if may_say and _ends_in_a_bare_text(before[-1]) and start.text[-1].isalnum():
         verb, _, word = start.text.rpartition(" ")
         is_thing = at - 1 in text.articles  # `show the visitors around`: no words to say
-        quoted = f'{verb} "{word} {span.text}"'
+        gap = "" if span.text[:1] == "'" else " "  # of `it's ok`
+        quoted = f'{verb} "{word}{gap}{span.text}"'
         advice = f"A text of more than one word needs quotes: {quoted}"
         whole = Span(text.source, start.start, span.end)
         fix = None if is_thing else (whole, quoted)

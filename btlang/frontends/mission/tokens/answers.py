@@ -10,6 +10,7 @@ from btlang.frontends.mission.tokens.addressed_texts import AddressedTexts
 from btlang.frontends.mission.tokens.sentence_reader import is_answer, is_question, latest_question
 from btlang.frontends.mission.tokens.silent_words import begins
 from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of
+from btlang.text.source import Span
 from btlang.tree.answers import ABOUT_ANSWERS, ANSWERED, ASK, EXAMPLE, OF_WHICH, UNANSWERED, asking_verbs
 from btlang.vocabulary.antecedents import pronouns_for
 from btlang.vocabulary.match import Match
@@ -23,6 +24,7 @@ _BEFORE_NAME = 3  # words: `and if Bob`
 _BEFORE_REPLY = BEFORE_CONDITIONS | {"semi", "newline", "stop", "comma", "and", "then", "or"}
 _OF_REPLY = frozenset(("if", "unless", "until", "not", "condition", "or", "and", "comma", "then"))
 _STOPS = frozenset(("semi", "newline"))
+_GO_AHEAD = "go ahead"
 
 
 class Answers(AddressedTexts):
@@ -137,9 +139,21 @@ class Answers(AddressedTexts):
     def said(self, token: Token, at: int) -> None:
         """What a condition is about that was read at a word."""
         self._hear(token, at)
+        self._miss_words(token)
         self._end_reply(token)
         if isinstance(token.value, Called) and token.value.entry.id in ABOUT_ANSWERS:
             self.note_answerer()
+
+    def _miss_words(self, token: Token) -> None:
+        """BT012 for `wait until Bob says so`, which doesn't say in which words."""
+        value = token.value
+        if isinstance(value, Called) and value.entry.id in (_PERSON_SAYS, _SOMEBODY_SAYS, ANSWERED):
+            words = Span(self._text.source, token.start, token.end)
+            *front, last = words.text.split()
+            if last.lower() in self._vocabulary.asking["so"] and front:
+                said, example = " ".join(front), f'{" ".join(front)} "{_GO_AHEAD}"'
+                problem = diagnostic("BT012", words, words=said, wanted="a text", example=example)
+                self._calls.problems.append(problem)
 
     def note_question(self, command: Token) -> None:
         """Remember of whom pronouns behind the answers to a question to nobody by name speak."""
