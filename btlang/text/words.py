@@ -90,7 +90,11 @@ class Orthography(Record):
 
     def words(self, text: str) -> list[str]:
         """Return the words of a name, without articles."""
-        return [word for word in map(self.word, text.split()) if word not in self.articles]
+        return [
+            word
+            for at, written in enumerate(text.split())
+            if (word := self.word(written)) not in self.articles or (at > 0 and is_letter(written))
+        ]
 
 
 def without_accents(word: str) -> str:
@@ -219,6 +223,14 @@ class Words:
         return Span(self.source, self.starts[first], self.ends[last - 1])
 
 
+_ENDS_PHRASE = re.compile(r"[ \t]*(?:[,.;:!?)\n]|$)")
+
+
+def is_letter(word: str) -> bool:
+    """Whether a word inside a sentence is a letter, and no article: the `A` of `shelf A`."""
+    return len(word) == 1 and word.isupper()
+
+
 def split(source: Source, orthography: Orthography) -> Words:
     """Split a text into words. Never raises: unterminated quotes and unreadable characters are listed in the result."""
     result = Words(source)
@@ -266,9 +278,10 @@ def split(source: Source, orthography: Orthography) -> Words:
                 starts.append(start)
                 ends.append(middle)
                 word, start = expanded[word][1], middle
-            if word in articles and not (
-                text[start - 1 : start] == "{" and text[end : end + 1] == "}"
-            ):  # a name is `{a}`
+            is_name = text[start - 1 : start] == "{" and text[end : end + 1] == "}"  # `{a}`
+            is_inside = len(words) > first and words[-1] != END_OF_STATEMENT
+            is_last = len(word) == 1 and _ENDS_PHRASE.match(text, end) is not None  # `go to shelf a`
+            if word in articles and not is_name and not (is_inside and (is_last or is_letter(match[kind]))):
                 result.articles[len(words)] = (start, end)
                 titled = end if word in titles else -1
                 continue

@@ -80,6 +80,13 @@ class Antecedents:
                 return (found[0], end + 1) if found is not None and found[1] == len(words) - 1 else None
         return None
 
+    def by_name(self, kind: str, text: Words, chosen: tuple[str, int]) -> tuple[str, int]:
+        """One of a kind whose name stands behind it: `nurse Alice`."""
+        named, choice = find(self._names(kind), text.words, chosen[1]), choice_of(chosen[0])
+        if named is None or choice is None or dict(choice.parts) != {"kind": self._likenesses.kind_of(kind, named[0])}:
+            return chosen
+        return named
+
     def is_same(self, text: Words, at: int, latest: str) -> bool:
         """Whether a noun with a definite article may be that of the place spoken of before: `the room` for the lab.
 

@@ -10,7 +10,7 @@ from itertools import chain
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.text.source import Source, Span
 from btlang.text.spelling import nearest
-from btlang.text.words import Orthography, split
+from btlang.text.words import Orthography, is_letter, split
 from btlang.vocabulary.cache import recent
 from btlang.vocabulary.entry import COMPARISONS, About, Entry, Meaning, Role, SlotSpec
 from btlang.vocabulary.language_tables import (
@@ -327,8 +327,9 @@ class Lexicon:
         }
 
     def _bare(self, words: str) -> str:
-        """Articles do not matter in names either."""
-        return " ".join(word for word in words.split() if word.lower() not in self.articles)
+        """Articles do not matter in names either; the `A` of `shelf A` is none."""
+        said = enumerate(words.split())
+        return " ".join(word for at, word in said if word.lower() not in self.articles or (at and is_letter(word)))
 
     def with_places(self, names: tuple[str, ...]) -> Lexicon:
         """The same words with further places, as a mission names them."""

@@ -112,6 +112,8 @@ class Measures:
         told = _minutes(beside[0])
         meant = told + (minute - told) % _HALF_DAY - (_HALF_DAY if behind is not None else 0)
         time = f"{meant // 60 % 24:02}:{meant % 60:02}"
+        if ":" in text.words[at] and meant // 60 % 24 == hour:
+            return time, end  # as it is written
         text.assumed[at] = time, end, beside[1]
         return time, end
 

@@ -108,6 +108,8 @@ class ReadingContext:
         if found is None and text.words[at] in self.values.pronoun_words and self.types[kind].kind == "names":
             found = self._referred(kind, text, at)
         chosen = self._chosen(kind, text, at) if text.words[at] in self.starts else None
+        if chosen is not None and at not in text.articles:
+            chosen = self.values.antecedents.by_name(kind, text, chosen)
         if kind in WORLD and not self.joiners.isdisjoint(text.words[max(at - 1, 0) : at + 4]):
             shared = self.values.shared_heads.read(kind, text, at)
             found = shared if shared is not None and (found is None or shared[1] > found[1]) else found

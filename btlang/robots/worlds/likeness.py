@@ -33,7 +33,8 @@ def kinds_of(name: str, kind: str) -> tuple[str, ...]:
     and `meeting room` of "meeting room 1".
     """
     words = name.lower().split()
-    named = words if words[-1:] and words[-1].isalpha() else words[:-1]
+    is_numbered = words != [] and (not words[-1].isalpha() or len(words[-1]) == 1)  # `shelf B`
+    named = words[:-1] if is_numbered else words
     heads = named[-1:] if named and named[-1].isalpha() and len(words) > 1 else []
     if heads and named is not words:
         heads.append(" ".join(named))

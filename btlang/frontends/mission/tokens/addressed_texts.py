@@ -21,6 +21,8 @@ TELL = "TellPerson"
 _NO_QUESTION = "begins no question that I know"
 _MATTER = "begins what it is about, but not what to say"
 _PERSON = "is a person, and the question is missing"
+_BEHIND_PERSON = frozenset(("instead", "politeness", "until", "every"))
+"""What may stand behind who is asked the same: `keep asking him until he says yes`."""
 _MEASURES = frozenset(("count", "at_most", "up_to_times", "tries", "within", "by_time", "for", "up_to", "every"))
 _BEFORE_TIME = frozenset((*BEGINS, "and"))
 
@@ -277,7 +279,7 @@ class AddressedTexts(Hearers):
         if named is None:
             return 0
         behind = self._phrase(named[1])
-        is_silent = behind is not None and behind.meaning.role in ("instead", "politeness")
+        is_silent = behind is not None and behind.meaning.role in _BEHIND_PERSON
         likewise = find(self._vocabulary.likewise, self._text.words, named[1])
         if entry.id != ASK and not (given and likewise is not None and self._ends(likewise[1])):
             return 0

@@ -25,6 +25,7 @@ _BEFORE_REPLY = BEFORE_CONDITIONS | {"semi", "newline", "stop", "comma", "and", 
 _OF_REPLY = frozenset(("if", "unless", "until", "not", "condition", "or", "and", "comma", "then"))
 _STOPS = frozenset(("semi", "newline"))
 _GO_AHEAD = "go ahead"
+_WHILE = ["while", "condition"]
 
 
 class Answers(AddressedTexts):
@@ -204,12 +205,13 @@ class Answers(AddressedTexts):
 
     def _hear(self, token: Token, at: int) -> None:
         """`wait until she says stop` where nobody is asked is what is heard; `she says nothing` is silence."""
-        value = token.value
-        if isinstance(value, Called) and value.entry.id in (_PERSON_SAYS, _SOMEBODY_SAYS) and self._may_ask:
+        value, may_ask = token.value, self._may_ask and not self._is_done_until()
+        if isinstance(value, Called) and value.entry.id in (_PERSON_SAYS, _SOMEBODY_SAYS) and may_ask:
             value = token.value = self._answer_of_asked(value)
         if not isinstance(value, Called) or value.entry.id != ANSWERED:
             return
-        if self._may_ask:
+        if may_ask:
+            self._end_asking(value)
             self._silent(token, value.arguments[0][1])
             return
         if find(self._vocabulary.values.pronoun_words, self._text.words, at) is None:
@@ -219,6 +221,20 @@ class Answers(AddressedTexts):
         if heard is not None:
             by_type = {PERSON: person, TEXT: words}
             token.value = Called(heard, tuple((slot.name, by_type[slot.type]) for slot in heard.slots))
+
+    def _is_done_until(self) -> bool:
+        """Whether something else than a question is done until what is said then: `follow Bob until he says stop`."""
+        until = self._tokens[-2:]
+        return [token.kind for token in until] == ["command", "until"] and not is_question(until[0])
+
+    def _end_asking(self, answered: Called) -> None:
+        """`as long as he says no, ask him again, and when he says yes, A`: A when no question is asked any more."""
+        tokens, first = self._tokens, statement_start(self._tokens, len(self._tokens))
+        form = run_start(tokens, len(tokens) - 1, JOINTS)
+        asks = tokens[first + 1].value if [token.kind for token in tokens[first : first + 2]] == _WHILE else None
+        if first < form < len(tokens) - 1 and tokens[-1].kind == "if" and isinstance(asks, Called):
+            if asks.entry.id == ANSWERED and asks != answered:
+                tokens[form:-1] = [Token("semi", tokens[form].start, tokens[-2].end)]
 
     def _answer_of_asked(self, heard: Called) -> Called:
         """`if Bob says yes` behind a question to Bob is about his answer; `if I say yes` where no one is named."""

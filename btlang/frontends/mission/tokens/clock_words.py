@@ -21,7 +21,7 @@ from btlang.frontends.mission.token import (
     statement_start,
 )
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
-from btlang.frontends.mission.tokens.settling import STAYS
+from btlang.frontends.mission.tokens.settling import STAYS, first_word
 from btlang.frontends.mission.tokens.silent_words import BEGINS
 from btlang.text.time_of_day import WEEKDAYS
 from btlang.vocabulary.entry import Entry
@@ -118,13 +118,18 @@ class ClockWords(SentenceReader):
         return at + 2
 
     def _by_then(self, at: int) -> int:
-        """`if nobody is there by 6 pm, A`: asked at that time."""
+        """`if nobody is there by 6 pm, A`: asked at that time, unless the mission has waited until then: `by then`."""
         text, tokens = self._text, self._tokens
         is_by = text.words[at] in self._vocabulary.asking["by_then"] and tokens[-1:] and tokens[-1].kind == "condition"
         form = run_start(tokens, len(tokens), IN_CONDITIONS) - 1 if is_by else -1
         time = self._context.read(_TIME, text, at + 1) if form >= 0 and tokens[form].kind in ("if", "unless") else None
+        waited = [token.value for token in tokens if token.kind == "until_time"]
+        if form >= 0 and time is None and waited and text.words[at + 1] in self._vocabulary.roles["then"]:
+            return at + 2
         if time is None or (form > 0 and tokens[form - 1].kind not in BEGINS):
             return 0
+        if time[0] in waited:
+            return time[1]
         begin = tokens[form].start
         tokens[form:form] = [Token("at", begin, begin, time[0]), Token("comma", begin, begin)]
         return time[1]
@@ -260,7 +265,8 @@ class ClockWords(SentenceReader):
         tokens, start, end = self._tokens, asked.start, asked.end
         first = statement_start(tokens, len(tokens))
         is_from = self._text.words[match.values[0].first - 1] in self._vocabulary.roles["start_at"]
-        if not is_from or any(token.kind not in _SIMPLE for token in tokens[first:]):
+        is_kept_up = first_word(tokens[first], self._text.source) in self._vocabulary.asking["kept_up"]
+        if not (is_from or is_kept_up) or any(token.kind not in _SIMPLE for token in tokens[first:]):
             return 0
         begin = [Token("wait_until", start, start), asked, Token("then", end, end)]
         if tokens[-1].role == STAYS:

@@ -12,7 +12,7 @@ from btlang.frontends.mission.tokens.condition_names import condition_names, set
 from btlang.frontends.mission.tokens.counted_things import with_counted_things
 from btlang.frontends.mission.tokens.ended_rules import with_ends
 from btlang.frontends.mission.tokens.left_out import find_unplaced
-from btlang.frontends.mission.tokens.other_things import with_other_things, with_things_there
+from btlang.frontends.mission.tokens.other_things import with_goals_there, with_other_things, with_things_there
 from btlang.frontends.mission.tokens.repeated_statements import (
     with_questions_each_time,
     with_questions_once,
@@ -109,6 +109,7 @@ class Lexer:
         with_sightings(self.tokens, vocabulary, source)
         self.problems += with_counted_things(self.tokens, self.vocabulary, source)
         with_things_there(self.tokens)
+        with_goals_there(self.tokens, vocabulary, source)
         self.problems += with_other_things(self.tokens, vocabulary, self.text)
         with_rules_behind(self.tokens)
         self.problems += find_counted_rules(self.tokens, source)

@@ -7,13 +7,16 @@ from collections.abc import Iterator
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.token import JOINTS, STATEMENT_ENDS, Called, Listed, Token, arguments_of, run_start
 from btlang.frontends.mission.tokens.ended_rules import GO
+from btlang.frontends.mission.tokens.silent_words import TRAVELS
 from btlang.frontends.mission.tokens.word_matches import words_of
 from btlang.support.record import Record
-from btlang.text.source import Span
+from btlang.text.source import Source, Span
 from btlang.text.words import Words
+from btlang.vocabulary.antecedents import says_there
+from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import ALL, COUNT, NAMES, RELATIONS, Choice, choice_of
-from btlang.vocabulary.value_type import OBJECT
+from btlang.vocabulary.value_type import OBJECT, PLACE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -108,6 +111,28 @@ def with_things_there(tokens: list[Token]) -> None:
         if place[:1] != "{":
             arguments = tuple((name, _placed(text, place)) for name, text in said.arguments)
             tokens[at].value = said.replace(arguments=arguments)
+
+
+def with_goals_there(tokens: list[Token], vocabulary: Lexicon, source: Source) -> None:
+    """Make `if nobody is in the lab, take the cup there` take it to the lab, where the robot hasn't gone before."""
+    take = vocabulary.entry(_TAKING[1])
+    been = set[str]()
+    for token in tokens:
+        said = token.value
+        if token.kind != "command" or not isinstance(said, Called | Listed) or take is None or not take.phrases:
+            continue
+        words, thing = source.text[token.start : token.end].lower(), _chosen(arguments_of(said)[0])
+        place = dict(thing.parts).get("inside", "") if thing is not None else ""
+        is_taken = said.entry.id == _TAKING[0] and words.startswith(take.phrases[0].partition("{")[0])
+        is_goal = place not in ("", *been) and says_there(words, vocabulary.values.pronouns)
+        if thing is not None and is_taken and is_goal:
+            parts = tuple(part for part in thing.parts if part != ("inside", place))
+            named = dict(parts).get(NAME, "") if len(parts) == 1 else ""
+            slots = {slot.type: slot.name for slot in take.slots if slot.name in ("object", "place")}
+            object = named or thing.replace(parts=parts).text
+            token.value = Called(take, ((slots[OBJECT], object), (slots[PLACE], place)))
+        if TRAVELS in said.entry.needs:
+            been.update(said.entry.given(PLACE, arguments_of(said)[-1]))
 
 
 def _placed(said: str, place: str) -> str:

@@ -255,7 +255,7 @@ class PartialCommands:
         for pronoun, types in self._context.pronouns.items():
             match = self.with_front(at, at + 1, (self._text.words[at], pronoun)) if OBJECT in types else None
             theme = theme_of(match) if match is not None else None
-            if match is not None and theme is not None and theme.first == at:
+            if match is not None and theme is not None and theme.first == at and theme.type == OBJECT:
                 self._tokens.append(self._token_of(match, at))
                 return match.last
         return 0

@@ -243,7 +243,7 @@ class Requests(Questions):
         `check that A. If B, C` is the same where both are about one thing.
         """
         tokens, at = self._tokens, len(self._tokens) - 2
-        while at >= 0 and tokens[at].kind in _BETWEEN:
+        while (at >= 0 and tokens[at].kind in _BETWEEN) or tokens[at].kind == "at":  # `check C at 9 pm. If not, A`
             at -= 1
         while at >= 0 and tokens[at].kind in _OF_CONDITIONS:
             at -= 1

@@ -1,0 +1,64 @@
+"""Names with a letter at their end, names behind the kind of thing they are, and nouns that several things share."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import btlang
+from btlang.frontends.mission.reader import PARSERS
+
+WORLD = """
+start = { x = 1, y = 1 }
+places = [{ name = "shelf A", x = 3, y = 8 }, { name = "shelf B", x = 4, y = 7 }]
+people = [{ name = "Amira", kind = "nurse", x = 10, y = 5 }, { name = "Carl", kind = "guest", x = 10, y = 6 }]
+objects = [{ name = "cup 1", kind = "cup", x = 8, y = 2 }]
+doors = [
+  { name = "front door", from = [0, 1], to = [0, 2] },
+  { name = "back door", from = [0, 4], to = [0, 5] },
+]
+"""
+
+
+@pytest.fixture
+def world(tmp_path: Path) -> str:
+    path = tmp_path / "world.toml"
+    path.write_text(WORLD, encoding="utf-8")
+    return str(path)
+
+
+@pytest.mark.parametrize(
+    ("said", "id", "ports"),
+    [
+        ("go to shelf A", "GoTo", {"place": "shelf A"}),
+        ("go to shelf a, please", "GoTo", {"place": "shelf A"}),
+        ("Go to the shelf B", "GoTo", {"place": "shelf B"}),
+        ("go to nurse Amira", "GoToPerson", {"person": "Amira"}),
+        ("tell nurse Amira that the door is open", "TellPerson", {"person": "Amira", "text": "the door is open"}),
+    ],
+)
+def test_the_whole_name_is_read(said: str, id: str, ports: dict[str, str], world: str) -> None:
+    trees = [btlang.parse_tree(said, world=world, parser=parser) for parser in PARSERS]
+    assert trees[0].tree == trees[1].tree
+    assert (trees[0].tree.root.id, dict(trees[0].tree.root.ports)) == (id, ports)
+    for form in ("xml", "json", "english"):
+        assert btlang.parse_tree(str(trees[0].to(form)), world=world).tree == trees[0].tree
+
+
+def test_an_article_behind_a_kind_begins_a_clause(world: str) -> None:
+    tree = btlang.parse_tree("tell a nurse Amira is ill", world=world).tree
+    assert [dict(node.ports).get("text") for node in tree.walk() if node.id == "TellPerson"] == ["Amira is ill"]
+
+
+def test_a_letter_is_no_kind(world: str) -> None:
+    with pytest.raises(btlang.MissionError) as refused:
+        btlang.parse_tree("count the bs", world=world)
+    assert refused.value.diagnostics[0].code == "BT013"
+
+
+def test_one_of_several_doors_must_be_named(world: str) -> None:
+    for said in ("close the door", "pick up the cup and close the door"):
+        with pytest.raises(btlang.MissionError) as refused:
+            btlang.parse_tree(said, world=world)
+        assert refused.value.diagnostics[0].code == "BT013"
