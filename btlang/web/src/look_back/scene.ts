@@ -4,6 +4,7 @@ import { whole } from "../events";
 import { Robot, STATUSES, type Rule, type Status, type Thing, type WorldMap } from "../fleet";
 import { t, type Key } from "../texts";
 import { TreeView, joined, withoutRules, type TreeNode } from "../tree/tree_view";
+import { inWordsOfNode } from "../watch/log";
 import { MapView } from "../watch/map";
 import { RuleStrip } from "../watch/rules";
 import { Speech } from "../watch/speech";
@@ -26,7 +27,7 @@ export interface Film {
   values: [t: number, name: string, value: number][];
   events: { t: number; event: string }[];
   doing: [t: number, task: number, goal: string, says: string, heard: string][];
-  story: [t: number, node: number, words: string][];
+  story: Noted[];
   map: WorldMap;
   ending: { outcome: string; stopped: string; seconds: number; motion: string; words: string; reason: string; context: string[] };
   failed: number;
@@ -34,6 +35,9 @@ export interface Film {
   is_cut: boolean;
   stopped?: string;
 }
+
+/** Something that was done; `ending` is "" for what is no node. */
+export type Noted = [t: number, node: number, words: string, ending: Status | "", reason: string];
 
 /** Rows that begin with their times, in seconds, given out as these come. */
 class Rows<Row extends [number, ...unknown[]]> {
@@ -83,7 +87,7 @@ export class Scene {
   private robot!: Robot;
   private map = new MapView(() => this.robot);
   private speech = new Speech();
-  private story = h("ol", { class: "log story", lang: "en", tabindex: 0 });
+  private story = h("ol", { class: "log story", tabindex: 0 });
   private chosen = -1; // the node that somebody selected, -1 for none
   private now = 0;
   private shown = 0; // the moment that is shown
@@ -102,8 +106,8 @@ export class Scene {
   ) {
     this.rows = this.begin();
     this.tree = new TreeView({ label: t("watch.tree"), select: (node) => { this.chosen = node; this.showWords(); this.selected(node); } });
-    const items = film.story.map(([seconds, node, words]) =>
-      h("li", {}, h("time", {}, clock(seconds)), h("button", { type: "button", class: "plain", onclick: () => jump(seconds, node) }, words)),
+    const items = film.story.map(([seconds, node, ...said]) =>
+      h("li", {}, h("time", {}, clock(seconds)), h("button", { type: "button", class: "plain", dir: "auto", onclick: () => jump(seconds, node) }, inWordsOfNode(...said))),
     );
     fill(this.story, ...items);
     this.place = h("div", { class: "card place" }, this.map.canvas, this.speech.element);
