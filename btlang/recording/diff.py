@@ -85,7 +85,9 @@ def run_differences(one: Iterable[str], other: Iterable[str]) -> Iterator[str]:
         yield f"{'-+'[which]} {time}{words}"
 
 
-def only_in_one(one: Sequence[Item], other: Sequence[Item], key: Callable[[Item], object]) -> Iterator[tuple[int, Item]]:
+def only_in_one(
+    one: Sequence[Item], other: Sequence[Item], key: Callable[[Item], object]
+) -> Iterator[tuple[int, Item]]:
     """Yield what only one of two lists has, by this key, with the number of the list, in the order of both."""
     sides = one, other
     keys = [[key(item) for item in side] for side in sides]

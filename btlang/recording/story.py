@@ -115,8 +115,7 @@ class Story:
 
     def _noted(self) -> list[tuple[float, str]]:
         unfinished = [
-            (began, f"{self._label(node)}: not over when the recording ended")
-            for began, node in self._began.values()
+            (began, f"{self._label(node)}: not over when the recording ended") for began, node in self._began.values()
         ]
         done = [
             (t, words + (f": {_ENDINGS[ending]}" if ending in _ENDINGS else "") + (f" ({reason})" if reason else ""))

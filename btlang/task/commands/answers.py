@@ -45,7 +45,7 @@ def task_line(task: Mapping[str, Any]) -> str:
 
 def shorten(mission: MissionText) -> str:
     """Return the name of a mission or else its text, cut, in one line."""
-    return _cut(mission.name or mission.text)
+    return _cut(mission.title or mission.text)
 
 
 def _cut(text: str, longest: int = _LONGEST) -> str:

@@ -89,6 +89,7 @@ export class Scene {
   private speech = new Speech();
   private story = h("ol", { class: "log story", tabindex: 0 });
   private chosen = -1; // the node that somebody selected, -1 for none
+  private withRules = false; // the tree has the house rules, too
   private now = 0;
   private shown = 0; // the moment that is shown
   private things = new Map<string, Thing>();
@@ -113,16 +114,22 @@ export class Scene {
     this.place = h("div", { class: "card place" }, this.map.canvas, this.speech.element);
     this.log = h("div", { class: "card events" }, h("h2", {}, t("log")), this.story);
     this.outcome = h("div", { class: `outcome ${ending(film)}`, tabindex: 0 }, ...inWords(film));
-    this.tree.setNodes(withoutRules(joined(film.nodes), film.root));
+    this.setNodes();
     this.showWords();
   }
 
-  /** Shows the tree with the house rules, at one of them. */
+  /** Shows the tree with the house rules, at one of them; again without them where it's shown already. */
   private showRules([node]: Rule): void {
     const { statuses } = this.tree.shown;
-    this.tree.setNodes(joined(this.film.nodes));
+    this.withRules = !(this.withRules && this.tree.selected === node);
+    this.setNodes();
     this.tree.setStatuses(statuses.entries());
-    this.select(node);
+    if (this.withRules) this.select(node);
+  }
+
+  private setNodes(): void {
+    const nodes = joined(this.film.nodes);
+    this.tree.setNodes(this.withRules ? nodes : withoutRules(nodes, this.film.root));
   }
 
   close(): void {
