@@ -1,6 +1,8 @@
-"""Help at a place of a text: what was understood there, and what may follow."""
+"""Help at a place of a text: what was understood there, and what may follow; and the colours of its words."""
 
 from __future__ import annotations
+
+from itertools import groupby
 
 from btlang.api import Mission
 from btlang.diagnostics.diagnostic import MissionError
@@ -25,6 +27,9 @@ _LONGEST = 500  # characters of canonical English
 _NAMED = "A name of this mission"
 _ROLES: dict[type, str] = {Remembered: "remember", NodeCall: "do", Each: "each"}
 _MOST = 200
+_OPERANDS = ("command", "condition")
+_UNCOLOURED = ("unknown", "comma", "colon", "open", "close")
+_QUOTES = ('"', "'")
 
 
 def hover(source: Source, at: int, words: RobotWords) -> dict[str, Any]:
@@ -41,6 +46,42 @@ def hover(source: Source, at: int, words: RobotWords) -> dict[str, Any]:
     if frontend_of(source) == "english":
         return {"found": _in_english(source, at, words, mission)}
     return {"found": None if mission is None else _in_tree(source, at, mission)}
+
+
+def tokens(source: Source, words: RobotWords, at: int = 0, to: int | None = None) -> dict[str, Any]:
+    """List the `tokens` between two characters, by default all: `start`, `end`, and the `kind` as which they're read.
+
+    This is "command", "condition", "name" (of a definition), "word" (joins others), "text" or "number" (in any of
+    these), or "comment". What isn't understood has none, nor has XML and JSON. Raises MissionError for words that can't
+    be used.
+    """
+    if frontend_of(source) != "english":
+        return {"tokens": []}
+    lexer = lexed(source, words.vocabulary(source))
+    kinds = [""] * len(source.text)
+
+    def paint(start: int, end: int, kind: str) -> None:
+        kinds[start:end] = [kind] * (end - start)
+
+    for token in lexer.tokens:
+        if token.kind not in _UNCOLOURED:
+            is_name = isinstance(token.value, Called) and token.value.entry.sort == "name"
+            paint(token.start, token.end, "name" if is_name else token.kind if token.kind in _OPERANDS else "word")
+        if isinstance(token.value, Header):
+            paint(token.value.span.start, token.value.span.end, "name")
+    for start, end in zip(lexer.text.starts, lexer.text.ends, strict=True):
+        first = source.text[start:end][:1]
+        if first in _QUOTES or first.isdigit():
+            paint(start, end, "number" if first.isdigit() else "text")
+    for comment in lexer.text.comments:
+        paint(comment.start, comment.end, "comment")
+    found, start = [], at
+    for kind, run in groupby(kinds[at:to]):
+        end = start + sum(1 for _ in run)
+        if kind:
+            found.append({"start": start, "end": end, "kind": kind})
+        start = end
+    return {"tokens": found}
 
 
 def _in_tree(source: Source, at: int, mission: Mission) -> Found | None:

@@ -62,6 +62,9 @@ def test_answers_have_places_as_pages_count_them() -> None:
     at = arguments_of("rename", {"at": unit_of("patrol then"), "name": "round"}, TEXT)
     changes = answer("rename", TEXT, RobotWords(), at)["changes"]
     assert [in_utf16(TEXT, each["start"], each["end"]) for each in changes] == ["patrol", "patrol"]
+    at = arguments_of("tokens", {"at": unit_of("nod"), "to": unit_of("nod") + 3}, TEXT)
+    [token] = answer("tokens", TEXT, RobotWords(), at)["tokens"]
+    assert (in_utf16(TEXT, token["start"], token["end"]), token["kind"]) == ("nod", "command")
     offered = answer("complete", TEXT + "go to the kit", RobotWords())["completions"]
     assert [each["text"] for each in offered] == ["kitchen", "kitchen door"]
     assert {each["start"] for each in offered} == {Utf16Units(TEXT).length + len("go to the ")}

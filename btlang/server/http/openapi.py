@@ -44,8 +44,10 @@ LIBRARY = {
 """The contents of the library, by the paths of its routes."""
 _WORLD = {"type": "string", "description": "The name of a world of the library, instead of the world of the robot."}
 _PAGE = {"type": "string", "description": "Which page of a session asks; only its newest request of a kind waits."}
+_PLACE = {"type": "integer", "minimum": 0, "description": "A place in the text, in UTF-16 units."}
 _ARGUMENTS: dict[str, dict[str, Any]] = {
-    "at": {"type": "integer", "minimum": 0, "description": "A place in the text, in UTF-16 units."},
+    "at": _PLACE,
+    "to": _PLACE,
     "edit": _object(
         "do",
         "node",
