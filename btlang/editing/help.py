@@ -7,7 +7,7 @@ from itertools import groupby
 from btlang.api import Mission
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.editing.words import RobotWords
-from btlang.frontends.mission.completion.completer import completions
+from btlang.frontends.mission.completion.completer import Completion, completions
 from btlang.frontends.mission.reader import lexed
 from btlang.frontends.mission.token import Assigned, Called, Each, Header, Listed, NodeCall, Remembered, Token
 from btlang.frontends.mission.tokens.lexer import Lexer
@@ -173,9 +173,25 @@ def _english(part: ast.Ast, program: ast.Program | None, lexer: Lexer) -> str:
 def complete(source: Source, words: RobotWords, at: int | None = None) -> dict[str, Any]:
     """List completions at a character, by default the end; see `Completion`. None in XML and JSON.
 
-    Raises MissionError for words that can't be used.
+    What the text says elsewhere comes first, most often first, then the values that a phrase waits for, and all others
+    as they fit. Behind a word that is written out are also those behind the blank that would follow. Raises
+    MissionError for words that can't be used.
     """
     if frontend_of(source) != "english":
         return {"completions": []}
-    found = completions(source.text[:at], words.vocabulary(source))
-    return {"completions": [each.as_dict() for each in found[:_MOST]]}
+    vocabulary, before = words.vocabulary(source), source.text[:at]
+    found = list(completions(before, vocabulary))
+    whole = next((each for each in found if each.text == f"{before[each.start :]} "), None)
+    if whole is not None:
+        behind = completions(f"{before} ", vocabulary)
+        further = [each.replace(text=whole.text + each.text, start=whole.start) for each in behind]
+        found = [*further, *(each for each in found if each is not whole)]
+    said = f" {' '.join(source.text.lower().split())} "
+    ranked = sorted(found, key=lambda each: (-_count(each, said), each.kind != "value"))
+    once = {each.text: each.as_dict() for each in reversed(ranked)}
+    return {"completions": [*reversed(once.values())][:_MOST]}
+
+
+def _count(each: Completion, said: str) -> int:
+    """Return how often a text says what is offered; what joins or corrects words counts as never said."""
+    return 0 if each.kind == "connective" or each.spelling else said.count(f" {each.text.strip().lower()} ")

@@ -70,6 +70,22 @@ def test_answers_have_places_as_pages_count_them() -> None:
     assert {each["start"] for each in offered} == {Utf16Units(TEXT).length + len("go to the ")}
 
 
+@pytest.mark.parametrize(
+    ("text", "first"),
+    [
+        ("go to", "to charging dock"),  # where a word is written out, what follows it is offered, too
+        ("go to the ", "charging dock"),  # before `collect`
+        ("go to the lab\ngo to the ", "lab"),  # what was used
+        ("nod\nwave then nod\n", "nod"),
+        ("go to the lab then go to the lab. wave th", "then"),
+    ],
+)
+def test_what_fits_and_was_used_is_offered_first(text: str, first: str) -> None:
+    offered = [each["text"] for each in answer("complete", text, RobotWords())["completions"]]
+    assert offered[0] == first
+    assert len(set(offered)) == len(offered)
+
+
 def test_a_selection_behind_changes_is_counted_in_the_new_text() -> None:
     face = {"start": 0, "end": 1, "text": ROBOT_FACE * 2}
     made = in_units({"changes": [face], "start": 2, "end": 3}, "abc")

@@ -53,6 +53,9 @@ await visit(base, async (page) => {
   await page.keyboard.press("Control+Home");
   await page.keyboard.type("wave then nod\n", { delay: 5 });
   await page.waitForFunction(() => [...document.querySelectorAll(".token-word")].some((each) => each.textContent === "then"));
+  await page.keyboard.press("Control+End");
+  await page.keyboard.type("go to", { delay: 5 });
+  await page.waitForSelector(".cm-tooltip-autocomplete li[aria-selected]:has-text('to cafe')");
   await page.keyboard.press("Escape"); // no completion
   await replace(page, "wave\ngo to the cafe\nwave");
   await understood(page);

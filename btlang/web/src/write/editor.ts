@@ -251,6 +251,8 @@ export class Editor {
     const from = Math.min(...offers.map(({ start }) => start));
     return {
       from,
+      filter: false, // they come in their order
+      getMatch: (option) => (option.label.toLowerCase().startsWith(context.state.sliceDoc(from, context.pos).toLowerCase()) ? [0, context.pos - from] : []),
       options: offers.map(({ text: words, start, kind, help }) => ({ label: text.slice(from, start) + words, detail: kind, ...(help ? { info: help } : {}) })),
     };
   }
