@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import ExitStack
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, suppress
 from operator import itemgetter
 
 from btlang.api import Mission
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.engine.compile import outline
-from btlang.engine.status import IDLE, NAMES
+from btlang.engine.status import FAILURE, IDLE, NAMES
 from btlang.house_rules import describe_rules
 from btlang.passes.scripts import is_prepared
-from btlang.recording.diff import compare_endings, first_pair, mission_differences, only_in_one
-from btlang.recording.reader import RecordedNodes, open_recording
+from btlang.recording.bundle import TREE
+from btlang.recording.diff import compare_endings, first_pair, mission_differences, only_in_one, steps
+from btlang.recording.reader import RecordedNodes, open_recording, read_recording
 from btlang.recording.story import NO_REASON, Story
 from btlang.robots.worlds.world_file import read_world
 from btlang.run.bus import BLOCK
-from btlang.run.events import LOGGED, Event, PeriodPassed, Sampled, StatusesChanged
+from btlang.run.events import LOGGED, Ended, Event, PeriodPassed, Sampled, StatusesChanged
 from btlang.run.logs import as_json
 from btlang.run.robot_state import Movements, round_scan
 from btlang.run.sampler import Sampler
@@ -218,6 +220,33 @@ def side_by_side(one: str, other: str) -> dict[str, Any]:
             "first": first,
             "ended": [] if missions else compare_endings(*events),
         }
+
+
+def count_failures(paths: Sequence[str]) -> dict[str, Any]:
+    """Return what failed in runs of one mission, by their paths; those of others than the first one are left out.
+
+    - `runs`: how many they are; `failed`: how many of them failed;
+    - `failures`: the numbers of nodes, each with the number of runs in which it failed. Questions, whose failure is an
+    answer, are left out where it didn't end the run.
+
+    Raises MissionError for a first one that can't be read.
+    """
+    with open_recording(paths[0]) as (first, mission, nodes):
+        indices = range(nodes.size)
+        parents, at = [nodes.parent(index) for index in indices], {nodes.path(index): index for index in indices}
+        asks = find_questions([nodes.node(index) for index in indices], parents, mission.is_question)
+        counts, runs, failed = Counter[int](), 0, 0
+        for path in paths:
+            with suppress(MissionError):
+                recording = read_recording(path)
+                if recording.files.get(TREE) != first.files.get(TREE):
+                    continue
+                events = list(recording.events(nodes))
+                now = {index for _, index, status, _ in steps(events) if status == FAILURE and not asks[index]}
+                ends = [at[end.path] for end in events if isinstance(end, Ended) and end.path in at and not end.stopped]
+                counts.update(now.union(ends))
+                runs, failed = runs + 1, failed + len(ends)
+        return {"runs": runs, "failed": failed, "failures": sorted(counts.items())}
 
 
 MOST_SECONDS = 3600.0

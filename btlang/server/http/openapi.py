@@ -97,6 +97,7 @@ ROUTES: dict[tuple[str, str], tuple[str, dict[str, Any] | None]] = {
     ("GET", "/api/recordings/{name}"): ("One, as MCAP.", None),
     ("GET", "/api/films/{name}"): ("One as data that a page plays.", None),
     ("GET", "/api/trees/{name}"): ("The tree of one as XML of BehaviorTree.CPP.", None),
+    ("GET", "/api/failures/{name}"): ("What failed in the latest runs of its mission.", None),
     ("GET", "/api/comparisons/{name}"): ("Two as films, and what differs between them.", None),
     ("GET", "/api/urdf"): ("The body of a robot as URDF, an XML file; not of one without links.", None),
     ("GET", "/metrics"): ("Figures for Prometheus.", None),
@@ -105,7 +106,7 @@ ROUTES: dict[tuple[str, str], tuple[str, dict[str, Any] | None]] = {
     ("GET", "/favicon.ico"): ("The icon of the page, as SVG; without log-in.", None),
     ("GET", "/openapi.json"): ("This document; without log-in.", None),
 }
-_RECORDED = ("/api/recordings", "/api/films", "/api/trees", "/api/comparisons")
+_RECORDED = ("/api/recordings", "/api/films", "/api/trees", "/api/failures", "/api/comparisons")
 _OPEN = ("/api/login", "/live", "/ready", "/favicon.ico", "/openapi.json")
 
 

@@ -23,7 +23,7 @@ from btlang.editing.palette import palette
 from btlang.editing.rename import rename
 from btlang.editing.words import RobotWords
 from btlang.frontends.table import frontend_of
-from btlang.recording.film import Film, side_by_side, try_mission
+from btlang.recording.film import Film, count_failures, side_by_side, try_mission
 from btlang.recording.reader import open_recording
 from btlang.server.http.access import AccessError, text_in
 from btlang.server.page.shown_documents import ShownDocuments
@@ -73,6 +73,11 @@ def film(path: str) -> bytes:
 def comparison(one: str, other: str) -> bytes:
     """Return two recordings side by side as JSON (see recording/film.py); runs nothing."""
     return _write_film(partial(_comparison, one, other))
+
+
+def failures(*paths: str) -> bytes:
+    """Return in how many runs of the mission of the first recording each node failed, as JSON; runs nothing."""
+    return _write_film(partial(count_failures, paths))
 
 
 def tree(path: str) -> bytes:

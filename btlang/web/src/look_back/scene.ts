@@ -120,16 +120,24 @@ export class Scene {
 
   /** Shows the tree with the house rules, at one of them; again without them where it's shown already. */
   private showRules([node]: Rule): void {
-    const { statuses } = this.tree.shown;
     this.withRules = !(this.withRules && this.tree.selected === node);
     this.setNodes();
-    this.tree.setStatuses(statuses.entries());
     if (this.withRules) this.select(node);
   }
 
+  /** Marks the nodes that failed in some of many runs; none with no numbers. */
+  markFailed(failures: readonly [node: number, runs: number][], all: number): void {
+    for (const node of this.film.nodes) delete node.failed;
+    for (const [node, runs] of failures) this.film.nodes[node]!.failed = [runs, all];
+    this.setNodes();
+    this.select(this.chosen);
+  }
+
   private setNodes(): void {
+    const { statuses } = this.tree.shown;
     const nodes = joined(this.film.nodes);
     this.tree.setNodes(this.withRules ? nodes : withoutRules(nodes, this.film.root));
+    this.tree.setStatuses(statuses.entries());
   }
 
   close(): void {
