@@ -92,4 +92,12 @@ await visit(base, async (page) => {
   await page.screenshot({ path: `${pictures}/view_spanish.png` });
   await page.reload();
   await until("Darle trabajo", "summary");
+  await page.click(".tabs a[href$='/tasks']");
+  await page.fill(".submit textarea", "wave");
+  await page.fill(".submit input", "on Mondays and Fridays at 9:00");
+  await page.click(".submit .primary");
+  await until("Programado: cada lunes y viernes a las 09:00", ".submit .said");
+  await until("cada lunes y viernes a las 09:00", "ul.tasks .pill");
+  await page.screenshot({ path: `${pictures}/view_spanish_tasks.png` });
+  await page.click("button[aria-label^='Quitar']");
 });

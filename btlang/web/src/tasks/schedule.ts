@@ -3,6 +3,7 @@ import { t, type Key } from "../texts";
 import type { Context } from "../view";
 import { ask } from "../write/ask";
 import { command } from "./queue";
+import { ruleInWords } from "./rule_words";
 
 const DAY = 86_400_000; // milliseconds
 const FIRST = "09:00";
@@ -27,7 +28,7 @@ export function askSchedule(context: Context, name: string, done: (rule: string)
       const zone = Intl.DateTimeFormat().resolvedOptions().timeZone;
       try {
         const { schedule } = await command(context, "schedule", { name, rule: rules[values["when"]!]!(values), zone });
-        done(schedule.rule);
+        done(ruleInWords(schedule));
         return "";
       } catch (error) {
         return (error as Error).message;
