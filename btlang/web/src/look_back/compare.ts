@@ -1,10 +1,9 @@
 // Two runs side by side, at one moment: where they differ first, what ended otherwise, and what only one of them did.
 import { h } from "../dom";
 import { ANSWERS, type Status } from "../fleet";
-import { inWordsOfNode } from "../watch/log";
 import { moment, t } from "../texts";
 import { called } from "../tasks/queue";
-import { Scene, type Film, type Noted } from "./scene";
+import { noted, Scene, type Film, type Noted } from "./scene";
 import { clock, Timeline } from "./timeline";
 
 /** See btlang/recording/film.py. */
@@ -98,7 +97,7 @@ export class Comparison {
       steps && h("div", { class: "first" }, h("h2", {}, t("compare.first")), h("ul", {}, ...steps), h("button", { type: "button", class: "primary", onclick: () => this.toFirst() }, t("compare.go"))),
       nodes.length > 0 && h("div", { class: "ended" }, h("h2", {}, t("compare.ended", { count: leaves.length })), h("div", { class: "controls" }, ...nodes)),
       lines("compare.missions", missions.map(difference)),
-      lines("compare.stories", stories.map(([which, seconds, , ...said]) => side(which, `${clock(seconds)}  ${inWordsOfNode(...said)}`))),
+      lines("compare.stories", stories.map(([which, ...each]) => side(which, `${clock(each[0])}  ${noted(each)}`))),
     );
   }
 

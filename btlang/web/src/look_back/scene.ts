@@ -4,8 +4,7 @@ import { whole } from "../events";
 import { Robot, STATUSES, type Rule, type Status, type Thing, type WorldMap } from "../fleet";
 import { t, type Key } from "../texts";
 import { TreeView, joined, withoutRules, type TreeNode } from "../tree/tree_view";
-import { inWordsOfNode } from "../watch/log";
-import { MapView } from "../watch/map";
+import { MapView, nodeNaming } from "../watch/map";
 import { RuleStrip } from "../watch/rules";
 import { Speech } from "../watch/speech";
 import { nodeAt, Words, type Place } from "../watch/words";
@@ -36,8 +35,14 @@ export interface Film {
   stopped?: string;
 }
 
-/** Something that was done; `ending` is "" for what is no node. */
-export type Noted = [t: number, node: number, words: string, ending: Status | "", reason: string];
+/** Something that was done, since a moment; `ending` is "" for what is no node. */
+export type Noted = [t: number, node: number, words: string, ending: Exclude<Status, "RUNNING"> | "", reason: string];
+
+/** What was done and how it ended: what succeeded are its words alone. */
+export function noted([, , words, ending, reason]: Noted): string {
+  const said = ending && ending !== "SUCCESS" ? t(`film.${ending}`, { name: words }) : words;
+  return reason ? `${said} (${reason})` : said;
+}
 
 /** Rows that begin with their times, in seconds, given out as these come. */
 class Rows<Row extends [number, ...unknown[]]> {
@@ -54,6 +59,7 @@ class Rows<Row extends [number, ...unknown[]]> {
   }
 }
 
+const valuesOf = ({ ports }: TreeNode): string[] => ports.map(([, value]) => value);
 const EMERGENCY = "emergency stop";
 
 /** How a run ended, as a class: "bad" where it failed or the emergency stop was pressed, "quiet" where somebody ended it. */
@@ -85,7 +91,7 @@ export class Scene {
   /** How it ended, and why. */
   readonly outcome: HTMLElement;
   private robot!: Robot;
-  private map = new MapView(() => this.robot);
+  private map = new MapView(() => this.robot, (name) => this.chooseNode(nodeNaming(this.film.nodes.map(valuesOf), name, this.chosen)));
   private speech = new Speech();
   private story = h("ol", { class: "log story", tabindex: 0 });
   private chosen = -1; // the node that somebody selected, -1 for none
@@ -107,8 +113,8 @@ export class Scene {
   ) {
     this.rows = this.begin();
     this.tree = new TreeView({ label: t("watch.tree"), select: (node) => { this.chosen = node; this.showWords(); this.selected(node); } });
-    const items = film.story.map(([seconds, node, ...said]) =>
-      h("li", {}, h("time", {}, clock(seconds)), h("button", { type: "button", class: "plain", dir: "auto", onclick: () => jump(seconds, node) }, inWordsOfNode(...said))),
+    const items = film.story.map((each) =>
+      h("li", {}, h("time", {}, clock(each[0])), h("button", { type: "button", class: "plain", dir: "auto", onclick: () => jump(each[0], each[1]) }, noted(each))),
     );
     fill(this.story, ...items);
     this.place = h("div", { class: "card place" }, this.map.canvas, this.speech.element);
@@ -222,7 +228,10 @@ export class Scene {
 
   /** Selects what is said at a character. */
   private chooseAt(at: number): void {
-    const node = nodeAt(this.film.nodes, at);
+    this.chooseNode(nodeAt(this.film.nodes, at));
+  }
+
+  private chooseNode(node: number): void {
     if (node < 0) return;
     this.select(node);
     this.selected(node);
@@ -240,5 +249,6 @@ export class Scene {
     const lit = [place(this.chosen), ...running];
     this.words.show(text, lit);
     this.light(lit);
+    this.map.mark(nodes[this.chosen] ? valuesOf(nodes[this.chosen]!) : []);
   }
 }

@@ -1,7 +1,7 @@
 // What happened on a robot, in words.
 import { h } from "../dom";
 import { ALARMS, DEFAULTS } from "../events";
-import type { Entry, Status } from "../fleet";
+import type { Entry } from "../fleet";
 import { KEYS, moment, t, type Key } from "../texts";
 
 const NEWEST = 200;
@@ -21,12 +21,6 @@ export function inWords(event: Entry["event"]): string {
   const usual: Key = `log.${event.event}`; // so each kind has one: else this isn't a Key
   const [key] = TEXTS.findLast(([, [, kind, ...conditions]]) => kind === event.event && conditions.every(fits)) ?? [usual];
   return t(key, values);
-}
-
-/** A node and how it ended: of one that was done its words alone. */
-export function inWordsOfNode(words: string, status: Status | "", reason: string): string {
-  const said = status && status !== "SUCCESS" ? t(`log.${status}`, { name: words }) : words;
-  return reason ? `${said} (${reason})` : said;
 }
 
 /** The value of a field; "" for nothing. */
