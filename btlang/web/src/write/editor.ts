@@ -29,6 +29,8 @@ interface Colours {
   tokens: { start: number; end: number; kind: string }[];
 }
 
+type Kind = "command" | "condition" | "name" | "value" | "connective";
+
 const colour = StateEffect.define<Colours>();
 const coloured = StateField.define<DecorationSet>({
   create: () => Decoration.none,
@@ -246,14 +248,14 @@ export class Editor {
     if (!context.explicit && !word?.text && !/[ :,]$/.test(context.state.sliceDoc(Math.max(0, context.pos - 1), context.pos))) return null;
     const text = context.state.sliceDoc();
     const answer = await this.options.reader.service("complete", text, { at: context.pos });
-    const offers = (answer.completions ?? []) as { text: string; start: number; kind: string; help: string }[];
+    const offers = (answer.completions ?? []) as { text: string; start: number; kind: Kind; help: string }[];
     if (!offers.length || context.aborted || !this.view.hasFocus) return null;
     const from = Math.min(...offers.map(({ start }) => start));
     return {
       from,
       filter: false, // they come in their order
       getMatch: (option) => (option.label.toLowerCase().startsWith(context.state.sliceDoc(from, context.pos).toLowerCase()) ? [0, context.pos - from] : []),
-      options: offers.map(({ text: words, start, kind, help }) => ({ label: text.slice(from, start) + words, detail: kind, ...(help ? { info: help } : {}) })),
+      options: offers.map(({ text: words, start, kind, help }) => ({ label: text.slice(from, start) + words, detail: t(`offer.${kind}`), ...(help ? { info: help } : {}) })),
     };
   }
 
