@@ -131,7 +131,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
         "texts",
         "watch/log",
         "watch/rules",
-        "tasks/rule_words",
+        "tasks/schedule",
         "look_back/plots",
         "write/understood",
     )

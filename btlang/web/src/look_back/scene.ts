@@ -40,7 +40,7 @@ export type Noted = [t: number, node: number, words: string, ending: Exclude<Sta
 
 /** What was done and how it ended: what succeeded are its words alone. */
 export function noted([, , words, ending, reason]: Noted): string {
-  const said = ending && ending !== "SUCCESS" ? t(`film.${ending}`, { name: words }) : words;
+  const said = ending && ending !== "SUCCESS" ? t(`log.${ending}`, { name: words }) : words;
   return reason ? `${said} (${reason})` : said;
 }
 

@@ -4,7 +4,6 @@ import { t } from "../texts";
 import type { Context } from "../view";
 import { libraryOf } from "./library";
 import { command } from "./queue";
-import { ruleInWords } from "./rule_words";
 
 /** `done` is called after the robot has taken it. */
 export function submitForm(context: Context, done: () => void = () => undefined): HTMLFormElement {
@@ -28,7 +27,7 @@ export function submitForm(context: Context, done: () => void = () => undefined)
       const made = rule.value
         ? (await command(context, "schedule", { ...what, rule: rule.value }))["schedule"]
         : (await command(context, "submit", what))["task"];
-      fill(said, rule.value ? t("submit.scheduled", { rule: ruleInWords(made) }) : t("submit.queued", { task: made.id }));
+      fill(said, rule.value ? t("submit.scheduled", { rule: (await import("./schedule")).ruleInWords(made) }) : t("submit.queued", { task: made.id }));
       text.value = rule.value = "";
       fill(button, t("submit"));
       done();

@@ -4,7 +4,7 @@ import { fill, h } from "../dom";
 import { moment, t, type Key } from "../texts";
 import type { Context, View } from "../view";
 import { called, command, Queue, type Task } from "./queue";
-import { ruleInWords, type Scheduled } from "./rule_words";
+import { ruleInWords, type Scheduled } from "./schedule";
 import { submitForm } from "./submit";
 
 interface Schedule extends Scheduled {

@@ -112,8 +112,7 @@ export function showStatus(element: SVGGElement, status: Status, node: TreeNode)
   const id = element.querySelector(".id") && node.id;
   const said = whole(node, id);
   const name = shown.endsWith("…") ? `${shown} ${said}` : said; // a name begins with what is seen of it
-  const [runs, all] = node.failed ?? [0, 0];
-  set(element, { "aria-label": `${name}${all ? ` ${runs}/${all}` : ""}, ${t(`status.${answer ?? status}`)}${node.differs ? `, ${t("compare.differs")}` : ""}${all ? `, ${t("often.node", { runs, all })}` : ""}` });
+  set(element, { "aria-label": `${[name, node.failed?.join("/")].join(" ").trim()}, ${t(`status.${answer ?? status}`)}${node.differs ? `, ${t("compare.differs")}` : ""}` });
 }
 
 /** With all that is cut in the drawing, and what is only shown on demand. */

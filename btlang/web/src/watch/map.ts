@@ -25,13 +25,13 @@ export class MapView {
   private marked: readonly string[] = [];
   private pen: Pen | null = null;
 
-  /** `choose` gets the name of the place, person or object that somebody clicks on. */
+  /** `choose` gets the name of the place, person or object that somebody clicks on, "" for none. */
   constructor(
     private robot: () => Robot,
     choose?: (name: string) => void,
   ) {
     this.resized.observe(this.canvas);
-    if (choose) this.canvas.addEventListener("click", ({ offsetX, offsetY }) => this.at(offsetX, offsetY, choose));
+    if (choose) this.canvas.addEventListener("click", ({ offsetX, offsetY }) => choose(this.at(offsetX, offsetY)));
     addEventListener("themechange", this.redraw);
   }
 
@@ -47,12 +47,15 @@ export class MapView {
     this.redraw();
   }
 
-  private at(x: number, y: number, choose: (name: string) => void): void {
-    const { pen } = this;
-    if (!pen) return;
-    const far = (point: Point): number => Math.hypot(pen.at(point)[0] - x, pen.at(point)[1] - y);
-    const [nearest] = namedOn(this.robot()).map((each) => ({ ...each, far: far([each.x, each.y]) })).sort((one, other) => one.far - other.far);
-    if (nearest && nearest.far < NEAR) choose(nearest.name);
+  /** What is nearest to a pixel, "" for nothing. */
+  private at(left: number, top: number): string {
+    let [nearest, distance] = ["", NEAR];
+    for (const { name, x, y } of namedOn(this.robot())) {
+      const [across, down] = this.pen?.at([x, y]) ?? [0, 0];
+      const far = Math.hypot(across - left, down - top);
+      if (far < distance) [nearest, distance] = [name, far];
+    }
+    return nearest;
   }
 
   private draw(): void {
@@ -84,8 +87,8 @@ const namedOn = (robot: Robot): { name: string; x: number; y: number }[] => [...
 
 /** The next node behind one whose values name something, -1 for none; `values` are those of each node. */
 export function nodeNaming(values: readonly (readonly string[])[], name: string, behind: number): number {
-  const order = values.map((_, step) => (behind + 1 + step) % values.length);
-  return order.find((node) => values[node]!.includes(name)) ?? -1;
+  const next = values.findIndex((each, node) => node > behind && each.includes(name));
+  return next < 0 ? values.findIndex((each) => each.includes(name)) : next;
 }
 
 function drawMap(pen: Pen, robot: Robot, marked: readonly string[]): void {

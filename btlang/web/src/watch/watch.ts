@@ -49,7 +49,7 @@ class Watch implements View {
   private rules = new RuleStrip((rule) => this.showRule(rule));
   private withRules = false; // the tree has the house rules, too
   private text = h("div", { class: "card text-card", hidden: true }, this.words.element);
-  private map = new MapView(() => this.robot, (name) => this.choose(nodeNaming(this.run?.nodes.map(valuesOf) ?? [], name, this.chosen), true));
+  private map = new MapView(() => this.robot, (name) => this.choose(nodeNaming((this.run?.nodes ?? []).map((_, node) => this.valuesOf(node)), name, this.chosen), true));
   private log = new LogView((node) => this.choose(node, true));
   private visitor = h("button", { type: "button", class: "visitor", hidden: true, onclick: () => void this.act("visitor", {}) }, t("visitor"));
   private place: HTMLElement;
@@ -220,17 +220,19 @@ class Watch implements View {
     this.choose(nodeAt(places, at), true);
   }
 
+  private valuesOf(node: number): string[] {
+    return Object.values(this.run?.nodes[node]?.[3] ?? {});
+  }
+
   /** Shows a node in the text, too; with `inTree` in the tree. */
   private choose(node: number, inTree = false): void {
     if (node < 0) return;
     this.chosen = node;
-    this.map.mark(valuesOf(this.run?.nodes[node] ?? ["", "", ""]));
+    this.map.mark(this.valuesOf(node));
     if (inTree) this.tree.select(node);
     this.refresh();
   }
 }
-
-const valuesOf = ([, , , ports]: Run["nodes"][number]): string[] => Object.values(ports ?? {});
 
 /** The nodes of a run as a tree shows them; they come in preorder, with paths such as /0/1. */
 function nodesOf(run: Run): TreeNode[] {

@@ -114,6 +114,7 @@ export class Editor {
           indentUnit.of("  "), EditorView.lineWrapping, coloured, marked, colours,
           autocompletion({ override: [(context) => this.complete(context)] }),
           hoverTooltip((_, at) => this.about(at)),
+          EditorView.domEventHandlers({ beforeinput: (event, view) => replaceSelected(event, view) }),
           EditorView.updateListener.of((update) => {
             if (update.docChanged) options.changed(this.text);
             if (update.docChanged || update.viewportChanged) this.colourSoon();
@@ -266,6 +267,17 @@ export class Editor {
     const lines = [words && h("strong", {}, words), help && h("span", {}, help), example && h("code", {}, example)];
     return { pos: found.start, end: found.end, above: true, create: () => ({ dom: h("div", { class: "about", dir: "auto", lang: "en" }, ...lines) }) };
   }
+}
+
+/** Puts what is typed in the place of what is selected. Chromium would keep its colours in a style of the element, which
+ *  the page's policy refuses.
+ */
+function replaceSelected({ inputType, data }: InputEvent, view: EditorView): boolean {
+  const { from, to, empty } = view.state.selection.main;
+  if (inputType !== "insertText" || !data || empty || view.composing) return false;
+  const insert = () => view.state.update(view.state.replaceSelection(data), { userEvent: "input.type", scrollIntoView: true });
+  if (!view.state.facet(EditorView.inputHandler).some((handle) => handle(view, from, to, data, insert))) view.dispatch(insert());
+  return true;
 }
 
 /** The page's policy lets only what has its nonce bring styles. */
