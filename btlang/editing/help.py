@@ -27,7 +27,9 @@ _LONGEST = 500  # characters of canonical English
 _NAMED = "A name of this mission"
 _ROLES: dict[type, str] = {Remembered: "remember", NodeCall: "do", Each: "each"}
 _MOST = 200
-_OPERANDS = ("command", "condition")
+_OPERANDS = {"condition": "condition"} | dict.fromkeys(
+    ("command", "wait", "wait_time", "wait_forever", "nothing", "fail"), "command"
+)
 _UNCOLOURED = ("unknown", "comma", "colon", "open", "close")
 _QUOTES = ('"', "'")
 
@@ -66,7 +68,7 @@ def tokens(source: Source, words: RobotWords, at: int = 0, to: int | None = None
     for token in lexer.tokens:
         if token.kind not in _UNCOLOURED:
             is_name = isinstance(token.value, Called) and token.value.entry.sort == "name"
-            paint(token.start, token.end, "name" if is_name else token.kind if token.kind in _OPERANDS else "word")
+            paint(token.start, token.end, "name" if is_name else _OPERANDS.get(token.kind, "word"))
         if isinstance(token.value, Header):
             paint(token.value.span.start, token.value.span.end, "name")
     for start, end in zip(lexer.text.starts, lexer.text.ends, strict=True):

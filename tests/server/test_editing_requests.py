@@ -70,6 +70,17 @@ def test_answers_have_places_as_pages_count_them() -> None:
     assert {each["start"] for each in offered} == {Utf16Units(TEXT).length + len("go to the ")}
 
 
+def test_words_have_the_kinds_that_they_are_read_as() -> None:
+    text = '# Tea\ngreet is say "hi"\nif the battery is low, wait 5 s otherwise greet\nblurp then fail\n'
+    found = answer("tokens", text, RobotWords())["tokens"]
+    assert [(text[each["start"] : each["end"]].strip(), each["kind"]) for each in found] == [
+        ("# Tea", "comment"), ("greet", "name"), ("is", "word"), ("say", "command"), ('"hi"', "text"), ("if", "word"),
+        ("battery is low", "condition"), ("wait", "command"), ("5", "number"), ("s", "command"), ("otherwise", "word"),
+        ("greet", "name"), ("then", "word"), ("fail", "command"),
+    ]  # fmt: skip
+    assert answer("tokens", "<root/>", RobotWords())["tokens"] == []
+
+
 @pytest.mark.parametrize(
     ("text", "first"),
     [

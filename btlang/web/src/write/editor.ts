@@ -20,7 +20,7 @@ export interface EditorOptions {
   keys: { key: string; run: () => void }[];
 }
 
-const PAUSE = 150; // milliseconds at least until what was written gets its colours
+const [LEAST, MOST] = [150, 500]; // milliseconds until what was written gets its colours
 
 /** A part of the text, and as what its words are read; see `tokens` in btlang/editing/help.py. */
 interface Colours {
@@ -92,7 +92,7 @@ export class Editor {
   private readOnly = new Compartment();
   private silent = false;
   private timer = 0;
-  private pause = PAUSE;
+  private pause = LEAST;
 
   constructor(text: string, label: string, options: EditorOptions) {
     this.options = options;
@@ -211,7 +211,7 @@ export class Editor {
     const { from, to } = this.view.viewport;
     const began = performance.now();
     const { tokens } = await this.options.reader.service("tokens", text, { at: from, to });
-    this.pause = Math.max(PAUSE, 2 * (performance.now() - began));
+    this.pause = Math.min(Math.max(LEAST, 2 * (performance.now() - began)), MOST);
     if (tokens && text === this.text) this.view.dispatch({ effects: colour.of({ from, to, tokens }) });
   }
 
