@@ -55,6 +55,15 @@ class HouseRules:
         )
         return around
 
+    def inside(self, mission: Mission) -> Mission:
+        """Return the mission that `around` was given, of what it returned."""
+        root = mission.tree.root
+        for _ in self.rules:
+            root = root.children[-1] if root.children else root
+        own = tuple(each for each in mission.tree.subtrees if not each[0].startswith(_PREFIX))
+        inner: Mission = mission.replace(tree=Tree(root, own))
+        return inner
+
     @property
     def reactions(self) -> list[str]:
         """The paths of what the rules do, in the tree of a mission under them."""

@@ -1,11 +1,13 @@
-"""Help at a place of a text: what was understood there, and what may follow."""
+"""Help at a place of a text: what was understood there, and what may follow; and the colours of its words."""
 
 from __future__ import annotations
+
+from itertools import groupby
 
 from btlang.api import Mission
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.editing.words import RobotWords
-from btlang.frontends.mission.completion.completer import completions
+from btlang.frontends.mission.completion.completer import Completion, completions
 from btlang.frontends.mission.reader import lexed
 from btlang.frontends.mission.token import Assigned, Called, Each, Header, Listed, NodeCall, Remembered, Token
 from btlang.frontends.mission.tokens.lexer import Lexer
@@ -25,6 +27,11 @@ _LONGEST = 500  # characters of canonical English
 _NAMED = "A name of this mission"
 _ROLES: dict[type, str] = {Remembered: "remember", NodeCall: "do", Each: "each"}
 _MOST = 200
+_OPERANDS = {"condition": "condition"} | dict.fromkeys(
+    ("command", "wait", "wait_time", "wait_forever", "nothing", "fail"), "command"
+)
+_UNCOLOURED = ("unknown", "comma", "colon", "open", "close")
+_QUOTES = ('"', "'")
 
 
 def hover(source: Source, at: int, words: RobotWords) -> dict[str, Any]:
@@ -41,6 +48,42 @@ def hover(source: Source, at: int, words: RobotWords) -> dict[str, Any]:
     if frontend_of(source) == "english":
         return {"found": _in_english(source, at, words, mission)}
     return {"found": None if mission is None else _in_tree(source, at, mission)}
+
+
+def tokens(source: Source, words: RobotWords, at: int = 0, to: int | None = None) -> dict[str, Any]:
+    """List the `tokens` between two characters, by default all: `start`, `end`, and the `kind` as which they're read.
+
+    This is "command", "condition", "name" (of a definition), "word" (joins others), "text" or "number" (in any of
+    these), or "comment". What isn't understood has none, nor has XML and JSON. Raises MissionError for words that can't
+    be used.
+    """
+    if frontend_of(source) != "english":
+        return {"tokens": []}
+    lexer = lexed(source, words.vocabulary(source))
+    kinds = [""] * len(source.text)
+
+    def paint(start: int, end: int, kind: str) -> None:
+        kinds[start:end] = [kind] * (end - start)
+
+    for token in lexer.tokens:
+        if token.kind not in _UNCOLOURED:
+            is_name = isinstance(token.value, Called) and token.value.entry.sort == "name"
+            paint(token.start, token.end, "name" if is_name else _OPERANDS.get(token.kind, "word"))
+        if isinstance(token.value, Header):
+            paint(token.value.span.start, token.value.span.end, "name")
+    for start, end in zip(lexer.text.starts, lexer.text.ends, strict=True):
+        first = source.text[start:end][:1]
+        if first in _QUOTES or first.isdigit():
+            paint(start, end, "number" if first.isdigit() else "text")
+    for comment in lexer.text.comments:
+        paint(comment.start, comment.end, "comment")
+    found, start = [], at
+    for kind, run in groupby(kinds[at:to]):
+        end = start + sum(1 for _ in run)
+        if kind:
+            found.append({"start": start, "end": end, "kind": kind})
+        start = end
+    return {"tokens": found}
 
 
 def _in_tree(source: Source, at: int, mission: Mission) -> Found | None:
@@ -132,9 +175,25 @@ def _english(part: ast.Ast, program: ast.Program | None, lexer: Lexer) -> str:
 def complete(source: Source, words: RobotWords, at: int | None = None) -> dict[str, Any]:
     """List completions at a character, by default the end; see `Completion`. None in XML and JSON.
 
-    Raises MissionError for words that can't be used.
+    What the text says elsewhere comes first, most often first, then the values that a phrase waits for, and all others
+    as they fit. Behind a word that is written out are also those behind the blank that would follow. Raises
+    MissionError for words that can't be used.
     """
     if frontend_of(source) != "english":
         return {"completions": []}
-    found = completions(source.text[:at], words.vocabulary(source))
-    return {"completions": [each.as_dict() for each in found[:_MOST]]}
+    vocabulary, before = words.vocabulary(source), source.text[:at]
+    found = list(completions(before, vocabulary))
+    whole = next((each for each in found if each.text == f"{before[each.start :]} "), None)
+    if whole is not None:
+        behind = completions(f"{before} ", vocabulary)
+        further = [each.replace(text=whole.text + each.text, start=whole.start) for each in behind]
+        found = [*further, *(each for each in found if each is not whole)]
+    said = f" {' '.join(source.text.lower().split())} "
+    ranked = sorted(found, key=lambda each: (-_count(each, said), each.kind != "value"))
+    once = {each.text: each.as_dict() for each in reversed(ranked)}
+    return {"completions": [*reversed(once.values())][:_MOST]}
+
+
+def _count(each: Completion, said: str) -> int:
+    """Return how often a text says what is offered; what joins or corrects words counts as never said."""
+    return 0 if each.kind == "connective" or each.spelling else said.count(f" {each.text.strip().lower()} ")

@@ -6,9 +6,11 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from functools import lru_cache
 
+from btlang.printer.exact import node_head
 from btlang.printer.phrase import is_sentence, phrase_of, seconds
 from btlang.printer.printer import Printer
-from btlang.text.source import Span
+from btlang.text.source import NOWHERE, Span
+from btlang.tree import ast
 from btlang.tree.catalogue import CONSTRAINTS, SEQUENCE, SUBTREE, zone_names
 from btlang.tree.dump import describe_node
 from btlang.tree.node import Node
@@ -32,13 +34,15 @@ def words_of_node(node: Node, vocabulary: Lexicon) -> str:
     """Return the words of a node.
 
     Those of one that leads others are what the mission says of it, without what it says of these: `try up to 4 times`.
-    Where the mission has no words for it alone, they are those of its language: `then`, `without entering kitchen`.
+    Where the mission has no words for it alone, they are those of its language: `then`, `without entering kitchen`; of
+    a node that no phrase says, such as one of a tree in XML, those that name its id: `open gripper with width 0.05`.
     """
     if node.id == SUBTREE:
         return _round_of(node)[1] or phrase_of(node, vocabulary)
-    if not node.children:
-        return phrase_of(node, vocabulary)
-    return _own_words(node, _leading_words(vocabulary)) or _usual_words(node, vocabulary)
+    if node.children:
+        return _own_words(node, _leading_words(vocabulary)) or _usual_words(node, vocabulary)
+    said = phrase_of(node, vocabulary)
+    return _exact_words(node, vocabulary) if said == describe_node(node) else said
 
 
 @lru_cache(maxsize=4)
@@ -123,7 +127,14 @@ def _words_between(text: str, is_behind: bool, is_before: bool) -> str:
 
 def _usual_words(node: Node, vocabulary: Lexicon) -> str:
     say = _WORDS.get(node.id)
-    return (say(node, _printer(vocabulary)) if say is not None else "") or describe_node(node)
+    return (say(node, _printer(vocabulary)) if say is not None else "") or _exact_words(node, vocabulary)
+
+
+def _exact_words(node: Node, vocabulary: Lexicon) -> str:
+    """Return what the English of a tree in XML says, without the `do` before it."""
+    leaf = ast.Exact(node.id, node.ports, "", (), False, NOWHERE)
+    said = node_head(leaf.replace(items=(leaf,)) if node.children else leaf, _printer(vocabulary))
+    return said.removeprefix(f"{vocabulary.word('do')} ")
 
 
 @lru_cache(maxsize=4)
@@ -138,6 +149,10 @@ def _role(role: str) -> Words:
 def _sequence(node: Node, printer: Printer) -> str:
     key = _round_of(node.children[0])[0]
     return f"{printer.vocabulary.word('each')} {key.replace('_', ' ')}" if key else printer.word("then").text
+
+
+def _parallel(node: Node, printer: Printer) -> str:
+    return "" if node.ports else printer.word("in_parallel").text
 
 
 def _repeat(node: Node, printer: Printer) -> str:
@@ -177,7 +192,7 @@ _CONSTRAINED = {"keep out": "without_entering", "keep in": "without_leaving"}
 _WORDS: dict[str, Words] = {
     SEQUENCE: _sequence,
     "Fallback": _role("otherwise"),
-    "Parallel": _role("in_parallel"),
+    "Parallel": _parallel,
     "IfThenElse": _role("if"),
     "WhileDoElse": _role("while"),
     "ReactiveSequence": _role("provided"),

@@ -5,12 +5,12 @@ from __future__ import annotations
 import os
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 
 from btlang.api import Mission, parse_tree
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.frontends.mission.symbols.needs import WORDS as NEEDED_WORDS
-from btlang.house_rules import read_house_rules
+from btlang.house_rules import no_house_rules, read_house_rules
 from btlang.text.source import Source
 from btlang.tree.ast import Include, Program
 from btlang.tree.node import Node
@@ -102,17 +102,16 @@ def open_mission(
             return parse_tree(source, keywords=found if keywords is None else keywords, world=world, **more)
 
         tree = _read_tree(text(TREE, name, folder), read)
-        if MISSION not in files:
-            yield tree
-            return
-        try:
-            mission = read(text(MISSION, name, folder), language=language, values=values)
+        rules, missions = no_house_rules(), [tree]
+        with suppress(MissionError):
             if _RULES_TEXT in files:
-                rules = read(text(_RULES_TEXT, f"{_RULES}.txt", os.path.join(folder, _RULES)), language=language)
-                mission = read_house_rules(rules).around(mission)
-        except MissionError:
-            mission = tree
-        yield mission if mission.tree == tree.tree else tree
+                read_rules = read(text(_RULES_TEXT, f"{_RULES}.txt", os.path.join(folder, _RULES)), language=language)
+                rules = read_house_rules(read_rules)
+                missions = [rules.inside(tree)]
+        with suppress(MissionError):
+            if MISSION in files:
+                missions.insert(0, read(text(MISSION, name, folder), language=language, values=values))
+        yield next((each for each in map(rules.around, missions) if each.tree == tree.tree), tree)
 
 
 def _read_tree(source: Source, read: Callable[..., Mission]) -> Mission:

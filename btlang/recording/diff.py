@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import ExitStack, suppress
 from difflib import SequenceMatcher
 from itertools import zip_longest
+from operator import itemgetter
 
 from btlang.api import Mission, parse_file
 from btlang.backends.tree_diff import find_differences
@@ -23,7 +24,9 @@ from btlang.tree.visit import children_first
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     import argparse
-    from typing import TypeAlias
+    from typing import TypeAlias, TypeVar
+
+    Item = TypeVar("Item")
 
     Step: TypeAlias = tuple[float, int, int, str]
 
@@ -78,11 +81,21 @@ def compare_endings(one: Iterable[Event], other: Iterable[Event]) -> list[int]:
 def run_differences(one: Iterable[str], other: Iterable[str]) -> Iterator[str]:
     """Yield what only one of the stories of two runs has, whenever it was: `-` the first one, `+` the second."""
     lines = [[_split(line) for text in story for line in text.splitlines()] for story in (one, other)]
-    done = [[words for _, words in story] for story in lines]
-    for tag, first, last, begin, end in SequenceMatcher(a=done[0], b=done[1], autojunk=False).get_opcodes():
+    for which, (time, words) in only_in_one(lines[0], lines[1], itemgetter(1)):
+        yield f"{'-+'[which]} {time}{words}"
+
+
+def only_in_one(
+    one: Sequence[Item], other: Sequence[Item], key: Callable[[Item], object]
+) -> Iterator[tuple[int, Item]]:
+    """Yield what only one of two lists has, by this key, with the number of the list, in the order of both."""
+    sides = one, other
+    keys = [[key(item) for item in side] for side in sides]
+    for tag, *bounds in SequenceMatcher(a=keys[0], b=keys[1], autojunk=False).get_opcodes():
         if tag != "equal":
-            yield from (f"- {time}{words}" for time, words in lines[0][first:last])
-            yield from (f"+ {time}{words}" for time, words in lines[1][begin:end])
+            for which, side in enumerate(sides):
+                first, last = bounds[2 * which : 2 * which + 2]
+                yield from ((which, item) for item in side[first:last])
 
 
 def _split(line: str) -> tuple[str, str]:

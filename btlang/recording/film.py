@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import ExitStack
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, suppress
+from operator import itemgetter
 
 from btlang.api import Mission
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.engine.compile import outline
-from btlang.engine.status import NAMES
+from btlang.engine.status import FAILURE, IDLE, NAMES
 from btlang.house_rules import describe_rules
 from btlang.passes.scripts import is_prepared
-from btlang.recording.diff import compare_endings, describe_step, first_pair, mission_differences, run_differences
-from btlang.recording.reader import RecordedNodes, open_recording
-from btlang.recording.story import Story
+from btlang.recording.bundle import TREE
+from btlang.recording.diff import compare_endings, first_pair, mission_differences, only_in_one, steps
+from btlang.recording.reader import RecordedNodes, open_recording, read_recording
+from btlang.recording.story import NO_REASON, Story
 from btlang.robots.worlds.world_file import read_world
 from btlang.run.bus import BLOCK
-from btlang.run.events import LOGGED, Event, PeriodPassed, Sampled, StatusesChanged
+from btlang.run.events import LOGGED, Ended, Event, PeriodPassed, Sampled, StatusesChanged
 from btlang.run.logs import as_json
 from btlang.run.robot_state import Movements, round_scan
 from btlang.run.sampler import Sampler
@@ -51,7 +54,7 @@ class Film:
     def __init__(self, mission: Mission, about: dict[str, str] | None = None) -> None:
         self._mission, self._about = mission, about or {}
         self._nodes = RecordedNodes(*outline(mission.tree))
-        self._story = Story(mission, self._nodes, self._about)
+        self._story = Story(mission, self._nodes, self._about, mission.words)
         indices = range(self._nodes.size)
         self._state = RunState(
             Shape([self._nodes.parent(at) for at in indices]), [self._nodes.node(at) for at in indices]
@@ -136,7 +139,8 @@ class Film:
         these is new; of people who walk and of what the robot doesn't know by its world;
         - `values`: time, name and number of what the mission counts or measures, where it is new;
         - `scans`: time and metres, counter-clockwise from straight ahead; `events`: see btlang/run/events.schema.json;
-        - `story`: time, node (-1: none) and words; `why`, `ending`: how it ended, as text and for a page;
+        - `story`: time, node (-1: none) and words, of a node how it ended (see `names`) and why; `ending`: how the
+        run ended (see Story.ending_data);
         - `failed`: the node that failed, or -1;
         - `rules`, `root`: the house rules round it, and the first node of the mission itself (see describe_rules);
         - `seconds`: how long it is; `is_cut`: whether more happened than is kept; `map`: see World.as_map.
@@ -170,8 +174,7 @@ class Film:
             "scans": self._scans,
             "values": self._values,
             "events": self._events,
-            "story": [[round(t, 3), index, words] for t, index, words in self._story.notes],
-            "why": "\n".join(self._story.ending()),
+            "story": [[round(t, 3), *more] for t, *more in self._story.notes],
             "ending": self._story.ending_data(),
             "failed": self._story.failed,
             "seconds": round(self._end, 3),
@@ -191,36 +194,59 @@ def _numbers(values: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
 def side_by_side(one: str, other: str) -> dict[str, Any]:
     """Return two recordings, by their paths, as JSON has it; runs nothing. Raises MissionError for what can't be read.
 
-    - `films`: see Film.data; `stories`: what only one of the runs did, as `btc diff` writes it;
+    - `films`: see Film.data; `stories`: what only one of the runs did: its number, then as in the `story` of a film;
     - `missions`: what differs between their trees, as `btc diff` writes it; nodes are compared only where nothing does:
-    - `first`: of each run the time, node and words of the first change of status that the other one doesn't have, with
-    None and -1 for a run that has no more; None if there is none. Times don't count;
+    - `first`: of each run the time, node, status and reason of the first change of status that the other one doesn't
+    have, with None and -1 for a run that has no more; None if there is none. Times don't count;
     - `ended`: the numbers of the nodes whose last status isn't the same.
     """
     with ExitStack() as stack:
         sides = [stack.enter_context(open_recording(path)) for path in (one, other)]
         films = [Film(mission, dict(recording.about)) for recording, mission, _ in sides]
         events = [list(recording.events(nodes)) for recording, _, nodes in sides]
-        stories = [
-            Story(mission, nodes, {}).take(happened)
-            for (_, mission, nodes), happened in zip(sides, events, strict=True)
-        ]
+        data = [film.take(happened).data() for film, happened in zip(films, events, strict=True)]
+        stories = [each["story"] for each in data]
         missions = list(mission_differences(sides[0][1], sides[1][1]))
         pair = None if missions else first_pair(*events)
+        none = (None, -1, IDLE, "")
         first = pair and [
-            {
-                "t": None if step is None else step[0], "node": -1 if step is None else step[1],
-                "words": describe_step(step, nodes.node, mission.words),
-            }
-            for step, (_, mission, nodes) in zip(pair, sides, strict=True)
-        ]  # fmt: skip
+            {"t": t, "node": node, "status": NAMES[status], "reason": "" if reason in NO_REASON else reason}
+            for t, node, status, reason in (step or none for step in pair)
+        ]
         return {
-            "films": [film.take(happened).data() for film, happened in zip(films, events, strict=True)],
-            "stories": list(run_differences(*(story.body() for story in stories))),
+            "films": data,
+            "stories": [[which, *row] for which, row in only_in_one(stories[0], stories[1], itemgetter(2, 3))],
             "missions": missions,
             "first": first,
             "ended": [] if missions else compare_endings(*events),
         }
+
+
+def count_failures(paths: Sequence[str]) -> dict[str, Any]:
+    """Return what failed in runs of one mission, by their paths; those of others than the first one are left out.
+
+    - `runs`: how many they are; `failed`: how many of them failed;
+    - `failures`: the numbers of nodes, each with the number of runs in which it failed. Questions, whose failure is an
+    answer, are left out where it didn't end the run.
+
+    Raises MissionError for a first one that can't be read.
+    """
+    with open_recording(paths[0]) as (first, mission, nodes):
+        indices = range(nodes.size)
+        parents, at = [nodes.parent(index) for index in indices], {nodes.path(index): index for index in indices}
+        asks = find_questions([nodes.node(index) for index in indices], parents, mission.is_question)
+        counts, runs, failed = Counter[int](), 0, 0
+        for path in paths:
+            with suppress(MissionError):
+                recording = read_recording(path)
+                if recording.files.get(TREE) != first.files.get(TREE):
+                    continue
+                events = list(recording.events(nodes))
+                now = {index for _, index, status, _ in steps(events) if status == FAILURE and not asks[index]}
+                ends = [at[end.path] for end in events if isinstance(end, Ended) and end.path in at and not end.stopped]
+                counts.update(now.union(ends))
+                runs, failed = runs + 1, failed + len(ends)
+        return {"runs": runs, "failed": failed, "failures": sorted(counts.items())}
 
 
 MOST_SECONDS = 3600.0

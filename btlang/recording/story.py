@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from operator import itemgetter
 
 from btlang.api import Mission
@@ -23,8 +23,9 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-_NO_REASON = ("", "it is not true")  # which say no more than "false"
-_ENDINGS = {FAILURE: "failed", IDLE: "was halted", SKIPPED: "was skipped"}
+NO_REASON = ("", "it is not true")
+"""The reasons of a condition that say no more than that it's false."""
+_ENDINGS = {NAMES[FAILURE]: "failed", NAMES[IDLE]: "was halted", NAMES[SKIPPED]: "was skipped"}
 
 
 class _Triggered:
@@ -43,14 +44,22 @@ class _Triggered:
 
 
 class Story:
-    """A story of a run: it follows the events, and `lines` describes it."""
+    """A story of a run: it follows the events, and `lines` describes it; `label` gives the words for a node."""
 
-    def __init__(self, mission: Mission, nodes: RecordedNodes, about: Mapping[str, str]) -> None:
+    def __init__(
+        self,
+        mission: Mission,
+        nodes: RecordedNodes,
+        about: Mapping[str, str],
+        label: Callable[[Node], str] | None = None,
+    ) -> None:
         self._mission, self._nodes, self._about = mission, nodes, about
+        self._label = label or mission.label
         self._history = FailureHistory(nodes)  # type: ignore[arg-type]  # which asks for nodes and parents only
         self._began: dict[int, tuple[float, Node]] = {}
-        self.notes: list[tuple[float, int, str]] = []
-        """The things that were done: when each began, the number of the node (-1: none), and the words."""
+        self.notes: list[tuple[float, int, str, str, str]] = []
+        """The things that were done: when each began, the number of the node (-1: none), and the words; of a node how
+        it ended, and why."""
         # conditions that were false, and choices that found nothing: when, what, and why
         self._answers: list[tuple[float, str, str]] = []
         self._rules: list[_Triggered] = []
@@ -70,9 +79,9 @@ class Story:
                     if self._is_said(node) or is_asked_wait(change.node):
                         self._take_change(change.index, change.status, change.t, node, change.reason)
                     elif change.status == FAILURE and self._is_question(node) and not self._is_watched(change.index):
-                        reason = "" if change.reason in _NO_REASON else f" ({change.reason})"
+                        reason = "" if change.reason in NO_REASON else f" ({change.reason})"
                         answer = "false" if self._mission.is_question(node) else "failed"
-                        self._answers.append((change.t, f"{self._mission.label(node)}: {answer}", reason))
+                        self._answers.append((change.t, f"{self._label(node)}: {answer}", reason))
             elif isinstance(event, Chosen):
                 self._note(event.t, -1, f"It chooses {event.name}, the {event.how} {event.type}.")
             elif isinstance(event, FaultInjected | Notice | PartChanged) and event.text:
@@ -106,10 +115,13 @@ class Story:
 
     def _noted(self) -> list[tuple[float, str]]:
         unfinished = [
-            (began, f"{self._mission.label(node)}: not over when the recording ended")
-            for began, node in self._began.values()
+            (began, f"{self._label(node)}: not over when the recording ended") for began, node in self._began.values()
         ]
-        return [(t, text) for t, _, text in self.notes] + unfinished  # a command is noted when it ends
+        done = [
+            (t, words + (f": {_ENDINGS[ending]}" if ending in _ENDINGS else "") + (f" ({reason})" if reason else ""))
+            for t, _, words, ending, reason in self.notes
+        ]
+        return done + unfinished  # a command is noted when it ends
 
     def ending(self) -> Iterator[str]:
         """Yield how it ended, and why."""
@@ -121,7 +133,7 @@ class Story:
         if ended.stopped:
             yield f"{who.get(ended.stopped, f'It was stopped ({ended.stopped})')} after {ended.seconds:.1f} s."
         elif ended.outcome == NAMES[FAILURE]:
-            yield failure_report(self._failure(ended), self._history, self._mission.label)
+            yield failure_report(self._failure(ended), self._history, self._label)
         else:
             skipped = ended.outcome == NAMES[SKIPPED]
             yield f"{'There was nothing to do' if skipped else 'The mission succeeded'} after {ended.seconds:.1f} s."
@@ -143,8 +155,8 @@ class Story:
         data["motion"] = one_line(ended.motion) if ended.still is not True else ""
         if self.failed >= 0:
             failure = self._failure(ended)
-            context = failure_context(failure, self._history, self._mission.label)
-            words = self._mission.words(self._nodes.node(failure.index))
+            context = failure_context(failure, self._history, self._label)
+            words = self._label(self._nodes.node(failure.index))
             data |= {"words": one_line(words), "reason": one_line(failure.reason), "context": context}
         return data
 
@@ -167,14 +179,14 @@ class Story:
             above = self._nodes.parent(index)
             if index == above + 1 and above >= 0 and is_rule(self._nodes.node(above)):
                 node, span = self._nodes.node(index), self._nodes.span(index)
-                words = self._mission.label(node) if not node.children or span is None else span.text.splitlines()[0]
+                words = self._label(node) if not node.children or span is None else span.text.splitlines()[0]
                 below = range(index, index + sum(1 for _ in Tree(node).walk()))
                 told = [text for at, (when, text) in self._measured.items() if when == t and at in below]
                 self._rules.append(_Triggered(t, above, words, told))
         elif status == IDLE and index in self._began and self._rules:
             rule, node = self._rules[-1], self._nodes.node(index)
             if rule.t == t and self._is_said(node) and self._is_below(index, rule.index):
-                rule.halted.append(self._mission.label(self._began[index][1]))
+                rule.halted.append(self._label(self._began[index][1]))
 
     def _is_below(self, index: int, above: int) -> bool:
         while index > above:
@@ -190,13 +202,10 @@ class Story:
         if status == RUNNING:
             self._began[index] = t, node
             return
-        began = self._began.pop(index, (t, node))[0]
-        ending = _ENDINGS.get(status, "")
-        words = self._mission.label(node) + (f": {ending}" if ending else "") + (f" ({reason})" if reason else "")
-        self._note(began, index, words)
+        self._note(self._began.pop(index, (t, node))[0], index, self._label(node), NAMES[status], reason)
 
-    def _note(self, t: float, index: int, text: str) -> None:
-        self.notes.append((t, index, one_line(text)))
+    def _note(self, t: float, index: int, text: str, ending: str = "", reason: str = "") -> None:
+        self.notes.append((t, index, one_line(text), ending, one_line(reason)))
 
     def _is_question(self, node: Node) -> bool:
         """Return whether it is a condition, or chooses what a command is about."""

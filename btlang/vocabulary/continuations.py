@@ -85,11 +85,14 @@ def meanings(node: TrieNode) -> Iterator[Meaning]:
 def values_on(kind: str, values: Values, written: Sequence[str], start: str) -> Iterator[str]:
     """What can follow the `written` words of a value of a type; the next word begins with `start`.
 
-    A number that is written in full is followed by units; where nothing is written an example is given.
+    Names come before their other words. A number that is written in full is followed by units; where nothing is written
+    an example is given.
     """
     value_type = values.types[kind]
     if value_type.kind == "names":
-        yield from sorted(_names_on(values.names_tree(kind), written, start, values.said_names(kind)))
+        own = values.said_names(kind)
+        found = _names_on(values.names_tree(kind), written, start, own)
+        yield from sorted(found, key=lambda words: (" ".join((*written, words)) not in own, words))
         known = len(written)
         for words in values.choices(kind) if known or start else ():
             if words[:known] == list(written) and len(words) > known and words[known].startswith(start):

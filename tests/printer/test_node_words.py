@@ -64,3 +64,20 @@ def test_nodes_of_xml_have_the_words_of_the_language() -> None:
     body = '<RetryUntilSuccessful num_attempts="4"><Sequence><Wave/><Nod/></Sequence></RetryUntilSuccessful>'
     words = words_of(f'<root BTCPP_format="4"><BehaviorTree ID="T">{body}</BehaviorTree></root>')
     assert words == ["retry 4 times", "then", "wave", "nod"]
+
+
+@pytest.mark.parametrize(
+    ("xml", "words"),
+    [
+        ("<KeepRunningUntilFailure><Wave/></KeepRunningUntilFailure>", "again and again until it fails"),
+        ('<Parallel success_count="1"><Wave/><Nod/></Parallel>', "at the same time, until 1 succeeded"),
+        ("<Parallel><Wave/><Nod/></Parallel>", "at the same time"),
+        ('<RateController hz="0.3"><Wave/></RateController>', "at most 0.3 times a second"),
+        ('<AsyncSequence name="tea"><Wave/></AsyncSequence>', "tea"),
+        ('<DriveAlong corridor="{door}" fast="true"/>', 'drive along with corridor {door}, fast "true"'),
+        ("<Wave/>", "wave"),
+    ],
+)
+def test_nodes_without_words_are_said_as_in_the_english_of_the_tree(xml: str, words: str) -> None:
+    tree = f'<root BTCPP_format="4"><BehaviorTree ID="T">{xml}</BehaviorTree></root>'
+    assert words_of(tree)[0] == words

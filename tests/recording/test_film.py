@@ -93,8 +93,8 @@ def test_a_trial() -> None:
     assert shown[:2] == [(-1, "Sequence", "then"), (0, "GoTo", "go to lab")]
     failed = data["failed"]
     assert said[failed] == "battery is low"
-    assert "battery is low" in data["why"]
-    assert [words for _, _, words in data["story"]][:3] == ["go to lab", "say hello", "wave"]
+    assert data["ending"]["words"] == "battery is low"
+    assert [words for _, _, words, *_ in data["story"]][:3] == ["go to lab", "say hello", "wave"]
     assert final(data)[1] == "SUCCESS"
     assert final(data)[failed] == "FAILURE"
     times = [row[0] for row in data["robot"]]

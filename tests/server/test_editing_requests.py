@@ -62,9 +62,39 @@ def test_answers_have_places_as_pages_count_them() -> None:
     at = arguments_of("rename", {"at": unit_of("patrol then"), "name": "round"}, TEXT)
     changes = answer("rename", TEXT, RobotWords(), at)["changes"]
     assert [in_utf16(TEXT, each["start"], each["end"]) for each in changes] == ["patrol", "patrol"]
+    at = arguments_of("tokens", {"at": unit_of("nod"), "to": unit_of("nod") + 3}, TEXT)
+    [token] = answer("tokens", TEXT, RobotWords(), at)["tokens"]
+    assert (in_utf16(TEXT, token["start"], token["end"]), token["kind"]) == ("nod", "command")
     offered = answer("complete", TEXT + "go to the kit", RobotWords())["completions"]
     assert [each["text"] for each in offered] == ["kitchen", "kitchen door"]
     assert {each["start"] for each in offered} == {Utf16Units(TEXT).length + len("go to the ")}
+
+
+def test_words_have_the_kinds_that_they_are_read_as() -> None:
+    text = '# Tea\ngreet is say "hi"\nif the battery is low, wait 5 s otherwise greet\nblurp then fail\n'
+    found = answer("tokens", text, RobotWords())["tokens"]
+    assert [(text[each["start"] : each["end"]].strip(), each["kind"]) for each in found] == [
+        ("# Tea", "comment"), ("greet", "name"), ("is", "word"), ("say", "command"), ('"hi"', "text"), ("if", "word"),
+        ("battery is low", "condition"), ("wait", "command"), ("5", "number"), ("s", "command"), ("otherwise", "word"),
+        ("greet", "name"), ("then", "word"), ("fail", "command"),
+    ]  # fmt: skip
+    assert answer("tokens", "<root/>", RobotWords())["tokens"] == []
+
+
+@pytest.mark.parametrize(
+    ("text", "first"),
+    [
+        ("go to", "to dock"),  # where a word is written out, what follows it is offered, too
+        ("go to the ", "dock"),  # before `collect` and `charging dock`
+        ("go to the lab\ngo to the ", "lab"),  # what was used
+        ("nod\nwave then nod\n", "nod"),
+        ("go to the lab then go to the lab. wave th", "then"),
+    ],
+)
+def test_what_fits_and_was_used_is_offered_first(text: str, first: str) -> None:
+    offered = [each["text"] for each in answer("complete", text, RobotWords())["completions"]]
+    assert offered[0] == first
+    assert len(set(offered)) == len(offered)
 
 
 def test_a_selection_behind_changes_is_counted_in_the_new_text() -> None:

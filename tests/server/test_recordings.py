@@ -101,6 +101,7 @@ def test_recordings_of_a_folder(tmp_path: Path, capsys: pytest.CaptureFixture[st
         "/api/recordings/x.mcap",
         "/api/films/x.mcap",
         "/api/trees/x.mcap",
+        "/api/failures/x.mcap",
         "/api/comparisons/x.mcap?with=y.mcap",
     ],
 )
@@ -122,6 +123,15 @@ def test_two_runs_are_compared(door: Door, names: list[str]) -> None:
     assert door.ask("GET", f"/api/comparisons/{one}?with={one}", **vic).data["first"] is None
     for wrong in (f"{one}", f"{one}?with=../{other}", f"x.mcap?with={other}"):
         assert door.ask("GET", f"/api/comparisons/{wrong}", **vic).status == 404
+
+
+def test_failures_of_all_runs_of_a_mission_are_counted(door: Door, robot: TaskLayer, names: list[str]) -> None:
+    vic = door.log_in("vic")
+    wait_for(robot, submit(robot, "wave"), TaskState.COMPLETED)  # another mission
+    data = door.ask("GET", f"/api/failures/{names[0]}", **vic).data
+    nodes = door.ask("GET", f"/api/films/{names[0]}", **vic).data["nodes"]
+    assert (data["ok"], data["runs"], data["failed"]) == (True, 2, 1)
+    assert {nodes[node]["label"]: count for node, count in data["failures"]} == {"then": 1, "not": 1}
 
 
 def test_the_tree_of_a_recording(door: Door, names: list[str]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -13,7 +14,7 @@ from btlang.task.execution.missions import MissionReader
 from btlang.task.layer import TaskLayer
 from btlang.task.store.records import TaskState
 from tests.components.robots import machine, robot_file
-from tests.task.layers import submit, wait_for
+from tests.task.layers import ask, layer_in, submit, wait_for
 
 RULES = """\
 # What holds all day.
@@ -53,8 +54,25 @@ def test_a_recording_has_the_words_of_mission_component_and_rules(done: tuple[di
     assert said[-2:] == ["brew tea", "battery is low"]
     assert all(node["start"] is None for node in data["nodes"][: data["root"]])
     assert data["nodes"][data["failed"]]["label"] == "battery is low"
-    assert "Brew" not in data["why"]
-    assert "{" not in data["why"]
+    assert "Brew" not in str(data["story"]) + str(data["ending"])
+    assert "{" not in str(data["ending"]["context"])
+
+
+def test_a_tree_in_xml_keeps_the_rules_and_its_name(tmp_path: Path) -> None:
+    (tmp_path / "rules.txt").write_text(RULES, encoding="utf-8")
+    options: dict[str, Any] = {"rules": str(tmp_path / "rules.txt"), "recordings": str(tmp_path / "recordings")}
+    xml = (
+        '<root BTCPP_format="4"><BehaviorTree ID="Tea"><ForceFailure><BatteryLow/></ForceFailure></BehaviorTree></root>'
+    )
+    with layer_in(tmp_path, **options) as layer:
+        number = submit(layer, xml)
+        wait_for(layer, number, TaskState.FAILED)
+        listed = ask(layer, "list", states=["failed"])["tasks"][0]
+    assert (listed["mission"], listed["reason"]) == ("Tea", "battery is low: it is not true")
+    data = json.loads(film(str(next((tmp_path / "recordings").iterdir()))))
+    assert data["about"]["mission"] == "Tea"
+    assert len(data["rules"]) == 2
+    assert [node["label"] for node in data["nodes"][data["root"] :]] == ["failing in any case", "battery is low"]
 
 
 def test_live_and_replay_tell_the_same(done: tuple[dict[str, Any], list[str]]) -> None:

@@ -4,6 +4,7 @@ import { accessible, logIn, replace, understood, untilWritten, visit } from "./b
 
 const [base, password, pictures] = process.argv.slice(2);
 const LONG = Array.from({ length: 300 }, (_, number) => `say "number ${number}" then wave`).join("\n");
+const COLOURED = '# A greeting\ngreet is say "Hi"\nif the battery is below 30%, greet 2 times otherwise nod\n';
 
 await visit(base, async (page) => {
   await page.setViewportSize({ width: 1440, height: 900 });
@@ -36,6 +37,27 @@ await visit(base, async (page) => {
   await page.screenshot({ path: `${pictures}/desk_messages.png` });
   await page.click(".messages .fix");
   await untilWritten(page, "wave\ngo to the cafe\nwave");
+  await understood(page);
+
+  // Words have the colours of what they are read as, in both themes; what is written has them when nobody types.
+  await replace(page, COLOURED);
+  await page.waitForSelector(".token-comment");
+  const coloured = (kind) => page.$$eval(`.token-${kind}`, (all) => all.map((each) => each.textContent.trim()));
+  assert.deepEqual([await coloured("name"), await coloured("text"), await coloured("number")], [["greet", "greet"], ['"Hi"'], ["30", "2"]]);
+  assert.deepEqual(await coloured("word"), ["is", "if", "times", "otherwise"]);
+  for (const theme of ["dark", "light"]) {
+    await page.evaluate((theme) => (document.documentElement.dataset.theme = theme), theme);
+    await accessible(page, `colours, ${theme}`);
+    await page.screenshot({ path: `${pictures}/desk_colours_${theme}.png` });
+  }
+  await page.keyboard.press("Control+Home");
+  await page.keyboard.type("wave then nod\n", { delay: 5 });
+  await page.waitForFunction(() => [...document.querySelectorAll(".token-word")].some((each) => each.textContent === "then"));
+  await page.keyboard.press("Control+End");
+  await page.keyboard.type("go to", { delay: 5 });
+  await page.waitForSelector(".cm-tooltip-autocomplete li[aria-selected]:has-text('to cafe')");
+  await page.keyboard.press("Escape"); // no completion
+  await replace(page, "wave\ngo to the cafe\nwave");
   await understood(page);
 
   // The trial stands beside the text, in which what runs is lit.

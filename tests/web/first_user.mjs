@@ -35,6 +35,7 @@ await visit(base, async (page) => {
   await page.evaluate(() => (location.hash = "#/write/tea"));
   await replace(page, WRONG);
   await page.waitForFunction(() => document.querySelectorAll(".messages .error").length === 2);
+  await page.waitForSelector(".token-number"); // colours come when nobody types
   await look("mistakes");
   for (const line of [1, 2]) {
     await page.keyboard.press("Control+Home");

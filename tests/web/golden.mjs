@@ -21,6 +21,20 @@ function coarse(picture) {
 
 const written = (picture) => PNG.sync.write(picture, { colorType: 2, deflateLevel: 9, deflateStrategy: 0, filterType: 0 });
 
+/** A picture of the page once it no longer changes: colours of words come later on a busy computer. */
+async function settled(page) {
+  const take = () => page.screenshot({ animations: "allow", caret: "initial" });
+  await page.waitForTimeout(300);
+  let before = await take();
+  for (let round = 0; round < 5; round++) {
+    await page.waitForTimeout(500);
+    const now = await take();
+    if (now.equals(before)) break;
+    before = now;
+  }
+  return before;
+}
+
 /** A function that looks at a page under a name, for people in `found`, and compares it where fonts are those of the golden
  *  pictures in `folder`; without a folder nothing is done.
  */
@@ -43,8 +57,7 @@ export async function gallery(page, folder, found) {
       style.replaceSync(text);
       document.adoptedStyleSheets = [...document.adoptedStyleSheets, style];
     }, STYLE);
-    await page.waitForTimeout(300);
-    const now = coarse(PNG.sync.read(await page.screenshot({ animations: "allow", caret: "initial" })));
+    const now = coarse(PNG.sync.read(await settled(page)));
     await page.evaluate(() => (document.adoptedStyleSheets = document.adoptedStyleSheets.slice(0, -1)));
     await page.setViewportSize(before);
     const file = `${folder}/${name}.png`;

@@ -28,6 +28,16 @@ await visit(base, async (page) => {
     await page.mouse.click(...at);
   };
   const selects = async () => {
+    await page.locator(".node", { hasText: /go to cafe/ }).first().click();
+    await page.waitForSelector(".map[aria-label='Map: cafe']");
+    await page.locator(".node", { hasText: /^\s*wave/ }).first().click();
+    await page.waitForSelector(".map[aria-label='Map']");
+    const { width, height } = await page.locator(".map").boundingBox();
+    for (let x = 10; x < width && !/cafe/.test(await selected()); x += 30) {
+      for (let y = 10; y < height && !/cafe/.test(await selected()); y += 30) await page.locator(".map").click({ position: { x, y } });
+    }
+    assert.match(await selected(), /go to cafe/, "the map selects nothing");
+    await page.waitForSelector(".map[aria-label='Map: cafe']");
     await page.locator(".node", { hasText: /^\s*wave/ }).first().click();
     await until("wave", ".film-text mark");
     await clickOn("repeat 2 times");
@@ -66,6 +76,7 @@ await visit(base, async (page) => {
   assert.ok((await page.$eval(".outcome", (each) => each.className)).includes("quiet"));
   for (const where of [".story", ".film-text", ".film .tree", ".map", ".timeline"]) assert.ok(await onScreen(where), `${where} is below the fold`);
   await selects();
+  assert.match(await page.textContent(".story"), /wait 600 s: was halted/); // at the time when it began
   const plots = await page.$$eval(".plots li", (all) => all.map((each) => each.firstElementChild.textContent));
   for (const wanted of ["battery, %", "cups"]) assert.ok(plots.includes(wanted), String(plots));
   const picture = page.locator(".plots li", { hasText: "cups" }).locator("svg");
@@ -90,6 +101,18 @@ await visit(base, async (page) => {
   await page.click(".tabs a[href*='/robots/']:not([href$='/tasks'])");
   await until("Lo que ha pasado", ".events h2");
   await page.screenshot({ path: `${pictures}/view_spanish.png` });
+  await page.click(".tabs a[href$='/runs']");
+  await page.locator("li", { hasText: "set cups" }).getByRole("link", { name: "Reproducir" }).click();
+  await until("wait 600 s: se interrumpió", ".story");
+  await page.click(".tabs a[href*='/robots/']:not([href$='/tasks'])");
   await page.reload();
   await until("Darle trabajo", "summary");
+  await page.click(".tabs a[href$='/tasks']");
+  await page.fill(".submit textarea", "wave");
+  await page.fill(".submit input", "on Mondays and Fridays at 9:00");
+  await page.click(".submit .primary");
+  await until("Programado: cada lunes y viernes a las 09:00", ".submit .said");
+  await until("cada lunes y viernes a las 09:00", "ul.tasks .pill");
+  await page.screenshot({ path: `${pictures}/view_spanish_tasks.png` });
+  await page.click("button[aria-label^='Quitar']");
 });

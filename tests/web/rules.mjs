@@ -4,6 +4,7 @@ import { accessible, logIn, submit, visit } from "./browser.mjs";
 
 const [base, password, pictures] = process.argv.slice(2);
 const MISSION = 'brew tea\ntry up to 2 times: check that the battery is low\notherwise say "it is full"\nif the battery is low then say "Help" otherwise say "good"\ngo to the lab\nwait 10 minutes';
+const XML = '<root BTCPP_format="4"><BehaviorTree ID="Tea"><KeepRunningUntilFailure><Sequence><Wave/><BatteryLow/></Sequence></KeepRunningUntilFailure></BehaviorTree></root>';
 
 await visit(base, async (page) => {
   const until = (text, where) => page.waitForFunction(([text, where]) => [...document.querySelectorAll(where)].some((each) => each.textContent.includes(text)), [text, where]);
@@ -79,5 +80,24 @@ await visit(base, async (page) => {
   await page.waitForSelector(".compared .sides");
   assert.deepEqual(await page.$$eval(".one h2 span", (all) => all.map((each) => each.textContent)), ["brew tea", "brew tea"]);
   assert.equal(await page.$$eval(".one .rules li", (all) => all.length), 4);
+  assert.match(await page.textContent(".summary .first"), /at lab: false/);
+  assert.doesNotMatch(await page.textContent(".summary"), /FAILURE|SUCCESS/);
   await page.screenshot({ path: `${pictures}/rules_compared.png` });
+
+  await page.click(".tabs a[href*='/robots/']:not([href$='/tasks'])"); // a tree in XML, too
+  await submit(page, XML);
+  await until("Failed at battery is low", ".failure");
+  const [live, log] = [await words(), await page.textContent(".log")];
+  assert.ok(live.some((each) => each.endsWith("again and again until it fails")), String(live));
+  assert.equal(log.split("the mission was ended").length, 3, "the rules between missions are a mission");
+  await page.click(".tabs a[href$='/runs']");
+  await page.locator("li", { hasText: "battery is low: it is not true" }).getByRole("link", { name: "Replay" }).click();
+  await page.waitForSelector(".film .outcome.bad");
+  assert.deepEqual((await words()).sort(), live.sort());
+  assert.equal((await page.textContent("h1")).trim(), "Tea");
+  assert.equal(await page.$$eval(".rules li", (all) => all.length), 2);
+  await page.click(".rules button");
+  await until("whenever", ".node .words");
+  await page.click(".rules button");
+  await page.waitForFunction(() => ![...document.querySelectorAll(".node .words")].some((each) => /whenever/.test(each.textContent)));
 });

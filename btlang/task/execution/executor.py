@@ -366,7 +366,7 @@ class Executor:
             change(TaskState.BLOCKED, f"a house rule failed: {reason}", saved=self._latest)
             self._ask_for_help(reason)
         elif outcome.failure is not None:
-            change(TaskState.FAILED, reason_of(outcome))
+            change(TaskState.FAILED, reason_of(outcome.failure, run.mission.vocabulary))
         elif not outcome.stopped:
             change(TaskState.COMPLETED, NOTHING_TO_DO if outcome.status == SKIPPED else " ".join(outcome.unanswered))
         elif outcome.stopped == EMERGENCY and len(self._emergency.stops) > self._stops:  # perhaps it's released already

@@ -11,6 +11,8 @@ from contextlib import suppress
 from btlang.api import Mission
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.engine.status import FAILURE, RUNNING, SUCCESS
+from btlang.printer.node_words import words_of_node
+from btlang.printer.phrase import is_sentence
 from btlang.recording.latest import note_latest
 from btlang.recording.recorder import Recorder, recorder_in
 from btlang.run.bus import INLINE
@@ -20,12 +22,12 @@ from btlang.vocabulary.shipped import ENGLISH
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.api import Mission
+    from btlang.engine.engine import Failure
     from btlang.run.events import Sink
-    from btlang.run.outcome import Outcome
     from btlang.run.robot_state import RobotState
     from btlang.session import Run
     from btlang.task.store.records import Task
+    from btlang.vocabulary.lexicon import Lexicon
 
 
 class RunWatch:
@@ -96,11 +98,11 @@ def commands_of(run: Run, mission: Mission) -> list[int]:
     return found
 
 
-def reason_of(outcome: Outcome) -> str:
+def reason_of(failure: Failure, vocabulary: Lexicon) -> str:
     """Return why a mission failed, in one line."""
-    failure = outcome.failure
-    assert failure is not None
-    words = failure.span.text if failure.span is not None else failure.node.id
+    node, span = failure.node, failure.span
+    said = span.text if span is not None and is_sentence(span) else ""
+    words = said or node.name or words_of_node(node, vocabulary)
     return f"{words}: {failure.reason}"
 
 
@@ -134,7 +136,7 @@ class Recordings:
         self.make_room()
         text = task.mission
         about = {
-            "task": str(task.id), "mission": text.name, "language": self._language,
+            "task": str(task.id), "mission": text.title, "language": self._language,
             "values": json.dumps(dict(text.values), default=str),
         }  # fmt: skip
         keywords = [*self._keywords, *text.keywords]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from enum import StrEnum
 
@@ -11,6 +12,8 @@ from btlang.support.record import Record
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
+
+_MAIN_TREE = re.compile(r"""\b(?:main_tree_to_execute|BehaviorTree\s+ID)=(["'])(.*?)\1""")
 
 
 def is_storable(value: Any) -> bool:
@@ -111,6 +114,12 @@ class MissionText(Record):
     values: Mapping[str, Any] = {}
     keywords: tuple[str, ...] = ()
     file: str = ""
+
+    @property
+    def title(self) -> str:
+        """The name, of a nameless tree in XML that of its main tree; "" if it has none."""
+        found = _MAIN_TREE.search(self.text) if not self.name and self.text.lstrip()[:1] == "<" else None
+        return self.name if found is None else found[2]
 
 
 class Task(Record):

@@ -67,7 +67,7 @@ export type Rule = [node: number, does: number, words: string];
 export interface Entry {
   task: number;
   wall: number;
-  event: RunEvent | { event: Exclude<Status, "IDLE"> | "TRUE" | "FALSE"; name: string; node?: number };
+  event: RunEvent | { event: Status | "TRUE" | "FALSE"; name: string; node?: number };
 }
 
 export interface Component {
@@ -152,7 +152,7 @@ export class Robot {
     else if (news.type === "statuses") this.change(news);
     else {
       this.fresh = false;
-      if (news.type === "event") this.log(entryOf(news));
+      if (news.type === "event" && (news["task"] || news["event"].event !== "end")) this.log(entryOf(news)); // rules alone end with each task
       else if (news.type === "robot") this.move(news);
       else if (news.type === "map") this.map = news as unknown as WorldMap;
       else if (news.type === "things") this.things = news["things"];
@@ -209,11 +209,12 @@ export class Robot {
       if (node) node[2] = words;
     }
     for (const [index, status] of news["changes"] as [number, Status][]) {
+      const wasRunning = run.statuses[index] === "RUNNING";
       run.statuses[index] = status;
       const asks = run.asks.has(index);
       const isNews = !this.fresh && run.task && run.leaves[index] && !(asks && index < run.root); // rules ask all the time
       const event = asks ? ANSWERS[status] : status;
-      if (isNews && event && event !== "IDLE") this.log({ task: run.task, wall: news["t"], event: { event, name: run.nodes[index]![2], node: index } });
+      if (isNews && event && (event !== "IDLE" || wasRunning)) this.log({ task: run.task, wall: news["t"], event: { event, name: run.nodes[index]![2], node: index } });
     }
   }
 

@@ -38,7 +38,7 @@ export function t(key: Key, values: Record<string, string | number> = {}): strin
 }
 
 /** How people here write times, in the language of the page. */
-function locale(): string {
+export function locale(): string {
   const valid = /^[\w-]+$/; // Chromium says "en-US@posix" where the system has no language
   return navigator.languages.find((each) => each.startsWith(language()) && valid.test(each)) ?? language();
 }

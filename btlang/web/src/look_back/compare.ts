@@ -1,14 +1,15 @@
 // Two runs side by side, at one moment: where they differ first, what ended otherwise, and what only one of them did.
 import { h } from "../dom";
+import { ANSWERS, type Status } from "../fleet";
 import { moment, t } from "../texts";
 import { called } from "../tasks/queue";
-import { Scene, type Film } from "./scene";
-import { Timeline } from "./timeline";
+import { noted, Scene, type Film, type Noted } from "./scene";
+import { clock, Timeline } from "./timeline";
 
 /** See btlang/recording/film.py. */
 export interface Compared {
   films: [Film, Film];
-  stories: string[];
+  stories: [which: number, ...Noted][];
   missions: string[];
   first: [Step, Step] | null;
   ended: number[];
@@ -17,7 +18,8 @@ export interface Compared {
 interface Step {
   t: number | null;
   node: number;
-  words: string;
+  status: Status;
+  reason: string;
 }
 
 const NAMES = ["A", "B"];
@@ -81,9 +83,9 @@ export class Comparison {
 
   private summary(): HTMLElement {
     const { missions, first, stories, ended, films } = this.compared;
-    const lines = (key: "compare.missions" | "compare.stories", found: string[]): HTMLElement | false =>
-      found.length > 0 && h("details", {}, h("summary", {}, t(key, { count: found.length })), h("ul", { class: "only", lang: "en" }, ...found.map(difference)));
-    const steps = first?.map((step, which) => h("li", {}, badge(which), h("span", { lang: "en", dir: "auto" }, step.words)));
+    const lines = (key: "compare.missions" | "compare.stories", found: HTMLElement[]): HTMLElement | false =>
+      found.length > 0 && h("details", {}, h("summary", {}, t(key, { count: found.length })), h("ul", { class: "only" }, ...found));
+    const steps = first?.map((step, which) => side(which, stepInWords(films[which]!, step)));
     const parents = new Set(films[0].nodes.map(({ parent }) => parent));
     const leaves = ended.filter((node) => !parents.has(node)); // those above follow from them
     const nodes = leaves.slice(0, MOST).map((node) => h("button", { type: "button", dir: "auto", onclick: () => this.jump(this.lastOf(node), node) }, films[0].nodes[node]!.label));
@@ -94,8 +96,8 @@ export class Comparison {
       !missions.length && !first && h("p", {}, t("compare.same")),
       steps && h("div", { class: "first" }, h("h2", {}, t("compare.first")), h("ul", {}, ...steps), h("button", { type: "button", class: "primary", onclick: () => this.toFirst() }, t("compare.go"))),
       nodes.length > 0 && h("div", { class: "ended" }, h("h2", {}, t("compare.ended", { count: leaves.length })), h("div", { class: "controls" }, ...nodes)),
-      lines("compare.missions", missions),
-      lines("compare.stories", stories),
+      lines("compare.missions", missions.map(difference)),
+      lines("compare.stories", stories.map(([which, ...each]) => side(which, `${clock(each[0])}  ${noted(each)}`))),
     );
   }
 
@@ -130,8 +132,17 @@ const badge = (which: number): HTMLElement => h("b", { class: `badge side${which
 
 /** A line of `btc diff`: what only the first one has begins with a minus, what only the second one has with a plus. */
 function difference(line: string): HTMLElement {
-  const which = line.startsWith("- ") ? 0 : line.startsWith("+ ") ? 1 : -1;
-  return h("li", {}, which >= 0 && badge(which), h("span", { dir: "auto" }, which >= 0 ? line.slice(2) : line));
+  const which = ["- ", "+ "].indexOf(line.slice(0, 2));
+  return which < 0 ? h("li", { lang: "en", dir: "auto" }, line) : side(which, line.slice(2));
+}
+
+const side = (which: number, words: string): HTMLElement => h("li", {}, badge(which), h("span", { dir: "auto" }, words));
+
+/** A change of status; null is the time of a run that has no more. */
+function stepInWords({ nodes }: Film, { t: seconds, node, status, reason }: Step): string {
+  if (seconds === null) return t("compare.no_more");
+  const { label, asks } = nodes[node]!;
+  return `${clock(seconds)}  ${t(`log.${(asks && ANSWERS[status]) || status}`, { name: label })}${reason && ` (${reason})`}`;
 }
 
 /** The first line of a mission that says something, or its name. */

@@ -1,7 +1,7 @@
 // What the robots did: the tasks that are over, newest first, the films of those that were recorded, and two side by side.
 import { address } from "../address";
 import { request } from "../api";
-import { fill, h, menuButton } from "../dom";
+import { fill, h, menuButton, set } from "../dom";
 import { downloadItems, pictures, textBlob, type Offer } from "../download";
 import { called, command, type Task } from "../tasks/queue";
 import { moment, t, type Key } from "../texts";
@@ -19,6 +19,7 @@ interface Recording {
 const OVER = ["completed", "failed", "canceled", "killed", "error", "skipped"];
 const BAD = ["failed", "killed", "error"];
 const WITH = "with";
+const MOST = 12; // steps that are listed
 
 /** See `View`. #/runs lists; #/runs/ROBOT/NAME plays a recording, #/runs/ROBOT/NAME/12.5 from that moment on;
  * #/runs/ROBOT/NAME/with lists those to compare it with, #/runs/ROBOT/NAME/with/OTHER/12.5 compares. */
@@ -69,10 +70,36 @@ function openFilm({ me }: Context, robot: string, name: string, at: number): Vie
     const began = Number(film.about["wall"]) || 0;
     const download = menuButton(t("download"), () => downloadItems(() => [titleOf(film), began], offers(), (text) => fill(problem, text)));
     const compare = h("a", { class: "button", href: address("runs", robot, name, WITH) }, t("compare.with"));
-    const others = me.screen.length ? [] : [compare, share()];
+    const often = h("div", { class: "card summary often", hidden: true, tabindex: 0 });
+    const show = async (): Promise<void> => {
+      often.hidden = !often.hidden;
+      set(heat, { "aria-pressed": String(!often.hidden) });
+      if (often.hidden) return player.scene.markFailed([], 0);
+      const answer = await request("GET", `/api/failures${of}`).catch((error: Error) => ({ ok: false, text: error.message }));
+      if (answer.ok) showFailures(often, film, answer, player);
+      else fill(problem, answer.text);
+    };
+    const heat = h("button", { type: "button", "aria-pressed": "false", onclick: () => void show() }, t("often"));
+    player.element.prepend(often);
+    const others = me.screen.length ? [] : [heat, compare, share()];
     const title = h("div", { class: "title" }, h("h1", { dir: "auto" }, titleOf(film)), h("div", { class: "controls" }, ...others, download), problem);
     return { title, element: player.element, close: () => player.close() };
   });
+}
+
+/** What failed in the latest runs of a mission; see count_failures in btlang/recording/film.py. */
+interface Failures {
+  runs: number;
+  failed: number;
+  failures: [node: number, runs: number][];
+}
+
+function showFailures(element: HTMLElement, { nodes, root }: Film, { runs, failed, failures }: Failures, { scene }: Player): void {
+  const inner = new Set(nodes.map(({ parent }) => parent));
+  const steps = failures.filter(([node]) => node >= root && !inner.has(node)).sort(([, one], [, other]) => other - one);
+  const buttons = steps.slice(0, MOST).map(([node, count]) => h("button", { type: "button", dir: "auto", onclick: () => scene.select(node) }, `${nodes[node]!.label}: ${count}/${runs}`));
+  fill(element, h("p", {}, t("often.sum", { failed, runs })), h("div", { class: "controls" }, ...buttons));
+  scene.markFailed(failures, runs);
 }
 
 function openComparison(robot: string, name: string, other: string, at: number | null): View {

@@ -4,7 +4,7 @@ import { whole } from "../events";
 import { Robot, STATUSES, type Rule, type Status, type Thing, type WorldMap } from "../fleet";
 import { t, type Key } from "../texts";
 import { TreeView, joined, withoutRules, type TreeNode } from "../tree/tree_view";
-import { MapView } from "../watch/map";
+import { MapView, nodeNaming } from "../watch/map";
 import { RuleStrip } from "../watch/rules";
 import { Speech } from "../watch/speech";
 import { nodeAt, Words, type Place } from "../watch/words";
@@ -26,13 +26,22 @@ export interface Film {
   values: [t: number, name: string, value: number][];
   events: { t: number; event: string }[];
   doing: [t: number, task: number, goal: string, says: string, heard: string][];
-  story: [t: number, node: number, words: string][];
+  story: Noted[];
   map: WorldMap;
   ending: { outcome: string; stopped: string; seconds: number; motion: string; words: string; reason: string; context: string[] };
   failed: number;
   seconds: number;
   is_cut: boolean;
   stopped?: string;
+}
+
+/** Something that was done, since a moment; `ending` is "" for what is no node. */
+export type Noted = [t: number, node: number, words: string, ending: Exclude<Status, "RUNNING"> | "", reason: string];
+
+/** What was done and how it ended: what succeeded are its words alone. */
+export function noted([, , words, ending, reason]: Noted): string {
+  const said = ending && ending !== "SUCCESS" ? t(`log.${ending}`, { name: words }) : words;
+  return reason ? `${said} (${reason})` : said;
 }
 
 /** Rows that begin with their times, in seconds, given out as these come. */
@@ -50,6 +59,7 @@ class Rows<Row extends [number, ...unknown[]]> {
   }
 }
 
+const valuesOf = ({ ports }: TreeNode): string[] => ports.map(([, value]) => value);
 const EMERGENCY = "emergency stop";
 
 /** How a run ended, as a class: "bad" where it failed or the emergency stop was pressed, "quiet" where somebody ended it. */
@@ -81,10 +91,11 @@ export class Scene {
   /** How it ended, and why. */
   readonly outcome: HTMLElement;
   private robot!: Robot;
-  private map = new MapView(() => this.robot);
+  private map = new MapView(() => this.robot, (name) => this.chooseNode(nodeNaming(this.film.nodes.map(valuesOf), name, this.chosen)));
   private speech = new Speech();
-  private story = h("ol", { class: "log story", lang: "en", tabindex: 0 });
+  private story = h("ol", { class: "log story", tabindex: 0 });
   private chosen = -1; // the node that somebody selected, -1 for none
+  private withRules = false; // the tree has the house rules, too
   private now = 0;
   private shown = 0; // the moment that is shown
   private things = new Map<string, Thing>();
@@ -102,23 +113,37 @@ export class Scene {
   ) {
     this.rows = this.begin();
     this.tree = new TreeView({ label: t("watch.tree"), select: (node) => { this.chosen = node; this.showWords(); this.selected(node); } });
-    const items = film.story.map(([seconds, node, words]) =>
-      h("li", {}, h("time", {}, clock(seconds)), h("button", { type: "button", class: "plain", onclick: () => jump(seconds, node) }, words)),
+    const items = film.story.map((each) =>
+      h("li", {}, h("time", {}, clock(each[0])), h("button", { type: "button", class: "plain", dir: "auto", onclick: () => jump(each[0], each[1]) }, noted(each))),
     );
     fill(this.story, ...items);
     this.place = h("div", { class: "card place" }, this.map.canvas, this.speech.element);
     this.log = h("div", { class: "card events" }, h("h2", {}, t("log")), this.story);
     this.outcome = h("div", { class: `outcome ${ending(film)}`, tabindex: 0 }, ...inWords(film));
-    this.tree.setNodes(withoutRules(joined(film.nodes), film.root));
+    this.setNodes();
     this.showWords();
   }
 
-  /** Shows the tree with the house rules, at one of them. */
+  /** Shows the tree with the house rules, at one of them; again without them where it's shown already. */
   private showRules([node]: Rule): void {
+    this.withRules = !(this.withRules && this.tree.selected === node);
+    this.setNodes();
+    if (this.withRules) this.select(node);
+  }
+
+  /** Marks the nodes that failed in some of many runs; none with no numbers. */
+  markFailed(failures: readonly [node: number, runs: number][], all: number): void {
+    for (const node of this.film.nodes) delete node.failed;
+    for (const [node, runs] of failures) this.film.nodes[node]!.failed = [runs, all];
+    this.setNodes();
+    this.select(this.chosen);
+  }
+
+  private setNodes(): void {
     const { statuses } = this.tree.shown;
-    this.tree.setNodes(joined(this.film.nodes));
+    const nodes = joined(this.film.nodes);
+    this.tree.setNodes(this.withRules ? nodes : withoutRules(nodes, this.film.root));
     this.tree.setStatuses(statuses.entries());
-    this.select(node);
   }
 
   close(): void {
@@ -203,7 +228,10 @@ export class Scene {
 
   /** Selects what is said at a character. */
   private chooseAt(at: number): void {
-    const node = nodeAt(this.film.nodes, at);
+    this.chooseNode(nodeAt(this.film.nodes, at));
+  }
+
+  private chooseNode(node: number): void {
     if (node < 0) return;
     this.select(node);
     this.selected(node);
@@ -221,5 +249,6 @@ export class Scene {
     const lit = [place(this.chosen), ...running];
     this.words.show(text, lit);
     this.light(lit);
+    this.map.mark(nodes[this.chosen] ? valuesOf(nodes[this.chosen]!) : []);
   }
 }

@@ -27,7 +27,7 @@ export function submitForm(context: Context, done: () => void = () => undefined)
       const made = rule.value
         ? (await command(context, "schedule", { ...what, rule: rule.value }))["schedule"]
         : (await command(context, "submit", what))["task"];
-      fill(said, rule.value ? t("submit.scheduled", { rule: made.rule }) : t("submit.queued", { task: made.id }));
+      fill(said, rule.value ? t("submit.scheduled", { rule: (await import("./schedule")).ruleInWords(made) }) : t("submit.queued", { task: made.id }));
       text.value = rule.value = "";
       fill(button, t("submit"));
       done();

@@ -4,13 +4,12 @@ import { fill, h } from "../dom";
 import { moment, t, type Key } from "../texts";
 import type { Context, View } from "../view";
 import { called, command, Queue, type Task } from "./queue";
+import { ruleInWords, type Scheduled } from "./schedule";
 import { submitForm } from "./submit";
 
-interface Schedule {
+interface Schedule extends Scheduled {
   id: number;
-  rule: string;
   mission: string;
-  zone: string;
   next: number | null;
 }
 
@@ -60,7 +59,7 @@ export function openTasks(context: Context): View {
           "li",
           { class: "card" },
           h("span", { class: "what", dir: "auto" }, called(each)),
-          h("span", { class: "pill quiet", lang: "en" }, [each.rule, each.zone].filter(Boolean).join(", ")),
+          h("span", { class: "pill quiet" }, ruleInWords(each)),
           h("span", { class: "why" }, each.next === null ? "" : t("tasks.next", { time: moment(each.next) })),
           operates && h("span", { class: "acts" }, button("tasks.remove", () => act("unschedule", { schedule: each.id }), each.mission)),
         ),

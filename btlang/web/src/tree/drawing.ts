@@ -10,6 +10,7 @@ const GLYPH = 30; // pixels left of the words
 const WIDEST = 260;
 const MOST_PORTS = 6;
 const FOLD = 22;
+const HEATS = 4; // colours of how often a node failed
 
 /** In a square of 12 pixels around the origin. */
 const SHAPES: Record<Status, string> = {
@@ -72,15 +73,16 @@ export class Drawing {
     if (folded !== null) {
       sign.append(s("circle", { r: 9 }), s("text", { y: 4 }, item.open ? "−" : folded > 99 ? "99" : folded));
     }
+    const badge = node.differs ? "≠" : node.failed?.join("/");
     return s(
       "g",
-      { class: node.differs ? "node differs" : "node", id: name, transform: `translate(${item.x} ${item.y})`, role: "treeitem" },
+      { class: node.differs ? "node differs" : node.failed ? `node often${Math.ceil((HEATS * node.failed[0]) / node.failed[1])}` : "node", id: name, transform: `translate(${item.x} ${item.y})`, role: "treeitem" },
       s("title", {}, node.label ? `${whole(node)}\n${node.id}` : whole(node)),
       s("rect", { width: item.width, height: item.height, rx: 7 }),
       s("path", { class: "status", transform: `translate(16 ${middle})` }),
       ...texts.flatMap(({ text, kind }, line) => [s("text", { class: kind, x: GLYPH, y: TOP + LINE * line + 12 }, text), " "]), // spaces part words for screen readers
       folded !== null && sign,
-      node.differs && s("g", { class: "unlike", "aria-hidden": "true", transform: `translate(${item.width - 4} 2)` }, s("circle", { r: 9 }), s("text", { y: 4 }, "≠")),
+      badge && s("g", { class: "unlike", "aria-hidden": "true", transform: `translate(${item.width - 4} 2)` }, s("ellipse", { rx: Math.max(9, 5 * badge.length), ry: 9 }), s("text", { y: 4 }, badge)),
     );
   }
 
@@ -110,7 +112,7 @@ export function showStatus(element: SVGGElement, status: Status, node: TreeNode)
   const id = element.querySelector(".id") && node.id;
   const said = whole(node, id);
   const name = shown.endsWith("…") ? `${shown} ${said}` : said; // a name begins with what is seen of it
-  set(element, { "aria-label": `${name}, ${t(`status.${answer ?? status}`)}${node.differs ? `, ${t("compare.differs")}` : ""}` });
+  set(element, { "aria-label": `${[name, node.failed?.join("/")].join(" ").trim()}, ${t(`status.${answer ?? status}`)}${node.differs ? `, ${t("compare.differs")}` : ""}` });
 }
 
 /** With all that is cut in the drawing, and what is only shown on demand. */

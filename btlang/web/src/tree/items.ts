@@ -11,6 +11,8 @@ export interface TreeNode {
   edits?: string[];
   /** It's marked, since it ended otherwise in another run. */
   differs?: boolean;
+  /** In how many runs it failed, of how many. */
+  failed?: [runs: number, all: number];
   /** It only asks: its failure is the answer "no". */
   asks?: boolean;
   /** Its children but the last only compute values for that one. */
@@ -33,8 +35,8 @@ export function joined(nodes: readonly TreeNode[]): TreeNode[] {
     for (const part of below[index]!) found[part]!.shownBy = index;
     for (const child of below[last]!) found[child]!.parent = index;
     below[index] = below[last]!;
-    const { id, label, ports, differs, asks } = found[last]!;
-    Object.assign(node, { id, label, ports, asks, says: last, differs: node.differs || differs });
+    const { id, label, ports, differs, failed, asks } = found[last]!;
+    Object.assign(node, { id, label, ports, asks, says: last, differs: node.differs || differs, failed: node.failed ?? failed });
   }
   return found;
 }

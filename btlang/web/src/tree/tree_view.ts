@@ -1,5 +1,4 @@
-// A behavior tree with its controls: keys, tools, and nodes that are dragged onto others.
-import { TreeDrag, type DragOptions } from "./drag";
+// A behavior tree with its controls: keys and tools.
 import type { TreeNode } from "./items";
 import { TreeKeys } from "./keys";
 import { toolbar } from "./toolbar";
@@ -8,7 +7,8 @@ import { TreeCanvas, type TreeOptions } from "./tree_canvas";
 export { joined, withoutRules, type TreeNode } from "./items";
 
 export class TreeView extends TreeCanvas {
-  private drag: TreeDrag | null = null;
+  /** What lets its nodes be dragged onto others, where they may be. */
+  drag: { cancel: () => void } | null = null;
 
   constructor(options: TreeOptions) {
     super(options);
@@ -19,10 +19,5 @@ export class TreeView extends TreeCanvas {
   override setNodes(nodes: readonly TreeNode[], keep = false): void {
     this.drag?.cancel();
     super.setNodes(nodes, keep);
-  }
-
-  /** Lets nodes be dragged onto others. */
-  letDrag(options: DragOptions): void {
-    this.drag = new TreeDrag(this, options);
   }
 }

@@ -28,7 +28,7 @@ export class Failure {
     this.element.hidden = false;
     if (event.path) this.select(event.path);
     const line = Number(/(\d+)(?::\d+)?$/.exec(event.place)?.[1] ?? 0);
-    if (!line) return;
+    if (!line || !text) return;
     const lines = text.split("\n");
     const first = Math.max(1, line - AROUND);
     const near = lines.slice(first - 1, line + AROUND);

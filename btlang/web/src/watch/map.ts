@@ -1,5 +1,5 @@
 // The robot on its map, on a canvas: walls, zones, places, people, objects, its way, and what its scanner sees.
-import { h, oncePerFrame } from "../dom";
+import { h, oncePerFrame, set } from "../dom";
 import type { Point, Robot } from "../fleet";
 import { t } from "../texts";
 import { Pen } from "./pen";
@@ -7,6 +7,8 @@ import { drawDoors, drawRoutes, drawZones, nameDoors, nameZones, objectsOf, peop
 
 const EDGE = 0.6; // metres around what is drawn
 const ROBOT = 0.28; // metres: robots don't say how large they are
+const HALO = 13; // pixels around what is marked
+const NEAR = 24; // pixels between a click and what is meant by it
 
 interface Bounds {
   left: number;
@@ -20,15 +22,40 @@ export class MapView {
   /** Draws it before the next picture. */
   readonly redraw = oncePerFrame(() => this.draw());
   private resized = new ResizeObserver(() => this.redraw());
+  private marked: readonly string[] = [];
+  private pen: Pen | null = null;
 
-  constructor(private robot: () => Robot) {
+  /** `choose` gets the name of the place, person or object that somebody clicks on, "" for none. */
+  constructor(
+    private robot: () => Robot,
+    choose?: (name: string) => void,
+  ) {
     this.resized.observe(this.canvas);
+    if (choose) this.canvas.addEventListener("click", ({ offsetX, offsetY }) => choose(this.at(offsetX, offsetY)));
     addEventListener("themechange", this.redraw);
   }
 
   close(): void {
     this.resized.disconnect();
     removeEventListener("themechange", this.redraw);
+  }
+
+  /** Marks what has one of these names. */
+  mark(names: readonly string[]): void {
+    this.marked = names.filter((each) => namedOn(this.robot()).some(({ name }) => name === each));
+    set(this.canvas, { "aria-label": [t("map"), ...this.marked].join(": ") });
+    this.redraw();
+  }
+
+  /** What is nearest to a pixel, "" for nothing. */
+  private at(left: number, top: number): string {
+    let [nearest, distance] = ["", NEAR];
+    for (const { name, x, y } of namedOn(this.robot())) {
+      const [across, down] = this.pen?.at([x, y]) ?? [0, 0];
+      const far = Math.hypot(across - left, down - top);
+      if (far < distance) [nearest, distance] = [name, far];
+    }
+    return nearest;
   }
 
   private draw(): void {
@@ -50,11 +77,21 @@ export class MapView {
     const bottom = (height + scale * (bounds.bottom + bounds.top)) / 2;
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     pen.clearRect(0, 0, width, height);
-    drawMap(new Pen(pen, scale, left, bottom, colour), robot);
+    this.pen = new Pen(pen, scale, left, bottom, colour);
+    drawMap(this.pen, robot, this.marked);
   }
 }
 
-function drawMap(pen: Pen, robot: Robot): void {
+/** What has a name and is at a point. */
+const namedOn = (robot: Robot): { name: string; x: number; y: number }[] => [...(robot.map?.places ?? []), ...peopleOf(robot), ...objectsOf(robot)];
+
+/** The next node behind one whose values name something, -1 for none; `values` are those of each node. */
+export function nodeNaming(values: readonly (readonly string[])[], name: string, behind: number): number {
+  const next = values.findIndex((each, node) => node > behind && each.includes(name));
+  return next < 0 ? values.findIndex((each) => each.includes(name)) : next;
+}
+
+function drawMap(pen: Pen, robot: Robot, marked: readonly string[]): void {
   const { context, colour, scale } = pen;
   const { map, scan, path } = robot;
   const pose = robot.state?.pose ?? null;
@@ -74,6 +111,7 @@ function drawMap(pen: Pen, robot: Robot): void {
     const angle = (heading * Math.PI) / 180 + (2 * Math.PI * index) / scan.ranges.length;
     pen.disc([x + range * Math.cos(angle), y + range * Math.sin(angle)], 1.2, colour("scan"));
   }
+  for (const { name, x, y } of namedOn(robot)) if (marked.includes(name)) pen.disc([x, y], HALO, colour("mark"));
   for (const place of map?.places ?? []) {
     pen.line([[place.x - 0.1, place.y], [place.x + 0.1, place.y]], colour("muted"), 1.5);
     pen.line([[place.x, place.y - 0.1], [place.x, place.y + 0.1]], colour("muted"), 1.5);

@@ -12,7 +12,7 @@ import type { Context, View } from "../view";
 import { Body } from "./body";
 import { Failure } from "./failure";
 import { LogView } from "./log";
-import { MapView } from "./map";
+import { MapView, nodeNaming } from "./map";
 import { Offers } from "./offers";
 import { Parts } from "./parts";
 import { Question } from "./question";
@@ -49,7 +49,7 @@ class Watch implements View {
   private rules = new RuleStrip((rule) => this.showRule(rule));
   private withRules = false; // the tree has the house rules, too
   private text = h("div", { class: "card text-card", hidden: true }, this.words.element);
-  private map = new MapView(() => this.robot);
+  private map = new MapView(() => this.robot, (name) => this.choose(nodeNaming((this.run?.nodes ?? []).map((_, node) => this.valuesOf(node)), name, this.chosen), true));
   private log = new LogView((node) => this.choose(node, true));
   private visitor = h("button", { type: "button", class: "visitor", hidden: true, onclick: () => void this.act("visitor", {}) }, t("visitor"));
   private place: HTMLElement;
@@ -152,6 +152,7 @@ class Watch implements View {
     this.tree.element.hidden = run === null;
     if (run && run !== this.run) {
       this.chosen = -1;
+      this.map.mark([]);
       if (run.id !== this.run?.id) this.tree.setNodes(this.withRules ? nodesOf(run) : withoutRules(nodesOf(run), run.root));
       else this.tree.setWords(nodesOf(run).map(({ label }, index) => [index, label] as const));
       this.tree.setStatuses(run.statuses.entries());
@@ -219,10 +220,15 @@ class Watch implements View {
     this.choose(nodeAt(places, at), true);
   }
 
+  private valuesOf(node: number): string[] {
+    return Object.values(this.run?.nodes[node]?.[3] ?? {});
+  }
+
   /** Shows a node in the text, too; with `inTree` in the tree. */
   private choose(node: number, inTree = false): void {
     if (node < 0) return;
     this.chosen = node;
+    this.map.mark(this.valuesOf(node));
     if (inTree) this.tree.select(node);
     this.refresh();
   }

@@ -20,6 +20,32 @@ export interface EditorOptions {
   keys: { key: string; run: () => void }[];
 }
 
+const [LEAST, MOST] = [150, 500]; // milliseconds until what was written gets its colours
+
+/** A part of the text, and as what its words are read; see `tokens` in btlang/editing/help.py. */
+interface Colours {
+  from: number;
+  to: number;
+  tokens: { start: number; end: number; kind: string }[];
+}
+
+type Kind = "command" | "condition" | "name" | "value" | "connective";
+
+const colour = StateEffect.define<Colours>();
+const coloured = StateField.define<DecorationSet>({
+  create: () => Decoration.none,
+  update(before, transaction) {
+    let now = before.map(transaction.changes);
+    for (const effect of transaction.effects) {
+      if (!effect.is(colour)) continue;
+      const { from, to, tokens } = effect.value;
+      const add = tokens.map(({ start, end, kind }) => Decoration.mark({ class: `token-${kind}` }).range(start, end));
+      now = now.update({ filterFrom: from, filterTo: to, filter: () => false, add });
+    }
+    return now;
+  },
+  provide: (field) => EditorView.decorations.from(field),
+});
 const mark = StateEffect.define<{ from: number; to: number } | null>();
 const lights = StateEffect.define<[start: number, end: number][]>();
 const marked = StateField.define<DecorationSet>({
@@ -45,6 +71,11 @@ const colours = EditorView.theme({
   ".cm-activeLine": { backgroundColor: "color-mix(in srgb, var(--quiet-ground) 55%, transparent)" },
   ".cm-cursor": { borderLeftColor: "var(--text)" },
   "&.cm-focused > .cm-scroller > .cm-selectionLayer .cm-selectionBackground, .cm-selectionBackground": { backgroundColor: "color-mix(in srgb, var(--accent) 28%, transparent)" },
+  ".token-word": { color: "var(--accent)" },
+  ".token-condition": { color: "var(--person)" },
+  ".token-name": { color: "var(--success)", fontWeight: "600" },
+  ".token-text, .token-number": { color: "var(--skipped)" },
+  ".token-comment": { color: "var(--muted)", fontStyle: "italic" },
   ".said": { backgroundColor: "var(--mark)", borderRadius: "2px" },
   ".cm-tooltip": { backgroundColor: "var(--raised)", color: "var(--text)", border: "1px solid var(--line)", borderRadius: "6px", boxShadow: "0 4px 16px rgb(0 0 0 / 18%)", maxWidth: "min(34rem, 90vw)" },
   ".cm-tooltip .about": { padding: "0.5rem 0.75rem", display: "grid", gap: "0.25rem" },
@@ -60,6 +91,8 @@ export class Editor {
   private options: EditorOptions;
   private readOnly = new Compartment();
   private silent = false;
+  private timer = 0;
+  private pause = LEAST;
 
   constructor(text: string, label: string, options: EditorOptions) {
     this.options = options;
@@ -78,11 +111,13 @@ export class Editor {
             ...closeBracketsKeymap, ...completionKeymap, ...lintKeymap, ...searchKeymap, ...historyKeymap, ...defaultKeymap, indentWithTab,
           ]),
           lineNumbers(), highlightSpecialChars(), lintGutter(), linter(null), history(), drawSelection(), bracketMatching(), closeBrackets(), highlightActiveLine(), highlightSelectionMatches(),
-          indentUnit.of("  "), EditorView.lineWrapping, marked, colours,
+          indentUnit.of("  "), EditorView.lineWrapping, coloured, marked, colours,
           autocompletion({ override: [(context) => this.complete(context)] }),
           hoverTooltip((_, at) => this.about(at)),
+          EditorView.domEventHandlers({ beforeinput: (event, view) => replaceSelected(event, view) }),
           EditorView.updateListener.of((update) => {
             if (update.docChanged) options.changed(this.text);
+            if (update.docChanged || update.viewportChanged) this.colourSoon();
             if (update.selectionSet && !update.docChanged && !this.silent) options.moved(update.state.selection.main.head);
           }),
         ],
@@ -161,7 +196,23 @@ export class Editor {
   }
 
   close(): void {
+    clearTimeout(this.timer);
     this.view.destroy();
+  }
+
+  /** Colours what is seen, once nobody types; of a long text later, since its messages come first. */
+  private colourSoon(): void {
+    clearTimeout(this.timer);
+    this.timer = window.setTimeout(() => void this.colour(), this.pause);
+  }
+
+  private async colour(): Promise<void> {
+    const { text } = this;
+    const { from, to } = this.view.viewport;
+    const began = performance.now();
+    const { tokens } = await this.options.reader.service("tokens", text, { at: from, to });
+    this.pause = Math.min(Math.max(LEAST, 2 * (performance.now() - began)), MOST);
+    if (tokens && text === this.text) this.view.dispatch({ effects: colour.of({ from, to, tokens }) });
   }
 
   /** Does what the first message at the caret offers. */
@@ -198,12 +249,14 @@ export class Editor {
     if (!context.explicit && !word?.text && !/[ :,]$/.test(context.state.sliceDoc(Math.max(0, context.pos - 1), context.pos))) return null;
     const text = context.state.sliceDoc();
     const answer = await this.options.reader.service("complete", text, { at: context.pos });
-    const offers = (answer.completions ?? []) as { text: string; start: number; kind: string; help: string }[];
-    if (!offers.length || context.aborted) return null;
+    const offers = (answer.completions ?? []) as { text: string; start: number; kind: Kind; help: string }[];
+    if (!offers.length || context.aborted || !this.view.hasFocus) return null;
     const from = Math.min(...offers.map(({ start }) => start));
     return {
       from,
-      options: offers.map(({ text: words, start, kind, help }) => ({ label: text.slice(from, start) + words, detail: kind, ...(help ? { info: help } : {}) })),
+      filter: false, // they come in their order
+      getMatch: (option) => (option.label.toLowerCase().startsWith(context.state.sliceDoc(from, context.pos).toLowerCase()) ? [0, context.pos - from] : []),
+      options: offers.map(({ text: words, start, kind, help }) => ({ label: text.slice(from, start) + words, detail: t(`offer.${kind}`), ...(help ? { info: help } : {}) })),
     };
   }
 
@@ -214,6 +267,17 @@ export class Editor {
     const lines = [words && h("strong", {}, words), help && h("span", {}, help), example && h("code", {}, example)];
     return { pos: found.start, end: found.end, above: true, create: () => ({ dom: h("div", { class: "about", dir: "auto", lang: "en" }, ...lines) }) };
   }
+}
+
+/** Puts what is typed in the place of what is selected. Chromium would keep its colours in a style of the element, which
+ *  the page's policy refuses.
+ */
+function replaceSelected({ inputType, data }: InputEvent, view: EditorView): boolean {
+  const { from, to, empty } = view.state.selection.main;
+  if (inputType !== "insertText" || !data || empty || view.composing) return false;
+  const insert = () => view.state.update(view.state.replaceSelection(data), { userEvent: "input.type", scrollIntoView: true });
+  if (!view.state.facet(EditorView.inputHandler).some((handle) => handle(view, from, to, data, insert))) view.dispatch(insert());
+  return true;
 }
 
 /** The page's policy lets only what has its nonce bring styles. */

@@ -1,6 +1,7 @@
 // Editing by the tree: each command rewrites only the English that it touches, and is one step of undo.
 import { openMenu } from "../dom";
 import { t, type Key } from "../texts";
+import { TreeDrag } from "../tree/drag";
 import type { TreeView } from "../tree/tree_view";
 import { ask } from "./ask";
 import { changed, smallest, type Editor } from "./editor";
@@ -32,7 +33,7 @@ export class TreeEdits {
     private mayEdit: () => boolean,
   ) {
     tree.element.addEventListener("keydown", (event) => this.press(event));
-    tree.letDrag({
+    tree.drag = new TreeDrag(tree, {
       can: (node) => this.isCurrent && this.mayEdit() && this.can(node, "move"),
       accepts: (node, to) => this.isCurrent && this.nodes[to]?.start !== null && this.isCondition(node) === this.isCondition(to),
       drop: (node, to, place) => void this.edit({ do: "move", node, to, place }),
