@@ -42,7 +42,7 @@ ASKING = (
     "asking_do", "answers", "silence", "any_answer", "feeling", "there", "very", "states", "subject", "been", "towards",
     "going", "coming", "letting", "hours", "by_then", "time_is", "finding_out", "inspecting", "telling", "lasting",
     "whole", "located", "wishing", "wished", "fetching", "picturing", "begging", "contents", "yet", "finding",
-    "getting", "bringing", "home", "pleading", "saying_that", "plea", "reminding", "hearing",
+    "getting", "bringing", "home", "pleading", "saying_that", "plea", "reminding", "hearing", "of_me", "politely",
     "doing_it", "told_about", "what_is", "measuring", "selecting", "vacant", "surfaces",
     "reminder", "addressed", "informing", "informed", "staying", "resuming", "interrupting", "and_back",
     "if_yes", "if_no", "told_of", "standing", "able", "unable", "reaching", "finishing", "waiting", "apiece",

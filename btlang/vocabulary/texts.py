@@ -174,8 +174,7 @@ class Texts:
             if front is not None and (front[1] < last or asks):
                 if not doubtful.isdisjoint(text.words[first:at]):
                     break  # `when she comes if she wants tea`
-                is_perfect = text.words[front[1] - 1] in self.completed and self._inverts(text, front[1] - 1)
-                begin = self._having if is_perfect and self._having else front[0]  # `if he has lost the key`
+                begin = self._having if self._having and self._is_perfect(text, front[1], last) else front[0]
                 parts = [*([opener] if asks else []), *self._said(text, first, at), begin]
                 return self._question(parts, self._said(text, front[1], last), doubtful)
         if asks and text.words[first] in self.inverting:  # `what is 7 times 8`
@@ -193,6 +192,17 @@ class Texts:
         if self._belongs(text, verb + 1):  # `if the book is on the table`
             doubtful = doubtful - {text.words[verb + 1]}
         return self._question(parts, self._said(text, verb + 1, last), doubtful)
+
+    def _is_perfect(self, text: Words, at: int, last: int) -> bool:
+        """Whether a participle at a word says what somebody has done: `he has lost the key`, `he's lost the key`."""
+        verb, behind = text.words[at - 1], at + 1
+        if verb in self.completed:
+            return self._inverts(text, at - 1)
+        is_short = text.source.text[text.starts[at - 1] : text.ends[at - 1]][:1] == "'"
+        has_object = behind < last and (self.is_owned(text, behind) or text.words[behind] in self._subjects)
+        return (
+            is_short and has_object and (text.words[at] in self._participles or text.words[at].endswith(self._endings))
+        )
 
     def _subject(self, text: Words, first: int, verb: int) -> int | None:
         """Where who or what does it begins behind a question word: at `it` in `how long it will take`.

@@ -32,30 +32,36 @@ class AddressedTexts(Hearers):
 
     @cached_property
     def _addressing(self) -> frozenset[str]:
-        """The verbs behind which a person is told or asked something; none in a text without times."""
-        if self._text.distinct.isdisjoint(phrase.split()[0] for phrase in self._vocabulary.roles["at"]):
+        """The verbs behind which a person is told or asked something; none in a text without times or polite words."""
+        between = {phrase.split()[0] for phrase in self._vocabulary.roles["at"]}
+        if self._text.distinct.isdisjoint(between.union(self._vocabulary.asking["politely"])):
             return frozenset()
         entries = (self._vocabulary.entry(id) for id in (TELL, ASK))
         verbs = (phrase.split()[0] for entry in entries if entry is not None for phrase in entry.phrases)
         return frozenset((*verbs, *self._vocabulary.asking["reminding"]))
 
     def with_time(self, match: Match | None, at: int) -> Match | None:
-        """The phrase at a word; `remind Bob at 3 pm to rest` is `at 3 pm, remind Bob to rest`."""
+        """The phrase at a word; `remind Bob at 3 pm to rest` is `at 3 pm, remind Bob to rest`.
+
+        That somebody is asked `politely` says nothing.
+        """
         text = self._text
-        if text.words[at] not in self._addressing or (self._tokens and self._tokens[-1].kind not in _BEFORE_TIME):
+        if text.words[at] not in self._addressing:
             return match  # as nearly always
         person = self._context.read(PERSON, text, at + 1)
-        times = self._times(person[1]) if person is not None else []
-        if person is None or not times:
+        begins = not self._tokens or self._tokens[-1].kind in _BEFORE_TIME
+        times = self._times(person[1]) if person is not None and begins else []
+        is_polite = person is not None and text.words[person[1]] in self._vocabulary.asking["politely"]
+        if person is None or not (times or is_polite):
             return match
-        last = times[-1].last
+        last = times[-1].last if times else person[1] + 1
         places = [*range(at, person[1]), *rest_of(text, last)]
         found = match_of(text, places, {}, (self._vocabulary.trie,), self._context)
         entry = found.meaning.entry if found is not None else None
         if found is None or entry is None or entry.id not in (TELL, ASK) or found.last <= person[1] - at:
             return match
         said = ";".join(text for time in times for text in time.values[0].texts)
-        self._tokens.append(Token("at", text.starts[person[1]], text.ends[last - 1], said))
+        self._tokens += [Token("at", text.starts[person[1]], text.ends[last - 1], said)] if times else []
         return relocated(found, places)
 
     def _times(self, at: int) -> list[Match]:
@@ -296,7 +302,7 @@ class AddressedTexts(Hearers):
     def _sure_words(self, first: int, last: int) -> set[str]:
         """The words of a question that could end it, and don't: `if she'd like the newspaper or her book`."""
         text, values, asking = self._text, self._vocabulary.values, self._vocabulary.asking
-        sure = {*asking["hearing"], *asking["addressed"]}.difference(text.words[first:last])
+        sure = {*asking["hearing"], *asking["of_me"], *asking["addressed"]}.difference(text.words[first:last])
         for word in (*self._vocabulary.roles["or"], *self._vocabulary.roles["and"]):
             places = [place + 1 for place in range(first, last - 1) if text.words[place] == word]
             if places and all(

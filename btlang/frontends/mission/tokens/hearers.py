@@ -162,6 +162,8 @@ def as_named(text: Words, at: int, last: int, who: str, name: str, vocabulary: L
 def as_robot(text: Words, first: int, last: int, vocabulary: Lexicon) -> Words:
     """The same text in which the robot speaks of itself: `you are on your way` as `I am on my way`."""
     others, words = vocabulary.of_robot, text.words[first:last]
+    if not others:
+        return text
     for at in range(first, last):
         owner = text.source.text[slice(*text.articles[at])].lower() if at in text.articles else ""
         if owner in others:
@@ -169,6 +171,11 @@ def as_robot(text: Words, first: int, last: int, vocabulary: Lexicon) -> Words:
     if len(words) > 1 and words[0] in others and words.count(words[0]) == 1:  # but not `you said that you are late`
         both = others.get(" ".join(words[:2]), f"{others[words[0]]} {words[1]}")
         text = text.with_word(first, both.split()[0]).with_word(first + 1, both.split()[1])
+    verbs = (*vocabulary.values.texts.inverting, *vocabulary.values.texts.completed)
+    for at in range(first + 1, last):  # `help you`, but not `that you are late`
+        behind = text.words[at + 1] if at + 1 < last else ","
+        if text.words[at] in others and behind not in verbs:
+            text = text.with_word(at, vocabulary.asking["of_me"][0])
     return text
 
 
