@@ -4,12 +4,16 @@ Both run the same tree, with leaves that do nothing, written as each documents i
 classes for what takes time; there behaviours. A tick is `Engine.tick` and `BehaviourTree.tick`. Ratios are those of
 medians of rounds in which all take turns. The last lines are the ratios without a listener; before them stand those
 with every status change sent to the event stream, what depth does to a tick, and what a node costs.
+
+In most of these trees the statuses soon stay as they are. So before all this stand trees in which nearly all of them
+change at each tick: alone, with the changes sent to the event stream, and with what each run has follow them.
 """
 
 from __future__ import annotations
 
 import argparse
 import gc
+import time
 import tracemalloc
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -23,6 +27,10 @@ from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
 from btlang.engine.leaves.leaf import LeafBinding
 from btlang.run.bus import Bus
+from btlang.run.events import Event
+from btlang.run.failure_history import FailureHistory
+from btlang.run.follower import RunFollower
+from btlang.run.recent import RecentEvents
 from btlang.run.runner import trace_engine
 from btlang.tree.node import Node, Tree
 from tests.benchmarks.compile import medians, seconds
@@ -192,6 +200,57 @@ def compared(root: Node, rounds: int, fresh: bool) -> dict[str, float]:
     return {name: median(values) for name, values in taken.items()}
 
 
+def again(child: Node) -> Node:
+    return Node("Repeat", (child,), (("num_cycles", "-1"),))
+
+
+ODD = [False]
+"""Whether the number of the tick is odd."""
+BINDINGS["Odd"] = LeafBinding(lambda: ODD[0])
+CHANGING: dict[str, Node] = {
+    f"{ACTIONS:,} actions in a loop": again(n("Sequence", *[n("Act")] * ACTIONS)),
+    f"{ACTIONS // MIX} times T2 in a loop": again(n("Sequence", *[mix() for _ in range(ACTIONS // MIX)])),
+    f"{ACTIONS // 12} times T3 in a loop": again(
+        n("Sequence", *[n("ReactiveSequence", *[n("Yes")] * CONDITIONS, n("Act"))] * (ACTIONS // 12))
+    ),
+    f"{ACTIONS // 4:,} conditions that change": n(
+        "ReactiveSequence", *[n("Fallback", n("Odd"), n("Yes"))] * (ACTIONS // 4), n("Run")
+    ),
+}
+
+
+def count(counts: list[int], event: Event) -> None:
+    counts.append(event.count)
+
+
+def changing(rounds: int) -> None:
+    """Ticks in which nearly all statuses change, by the time of the thread: what it costs to tell them."""
+    for name, root in CHANGING.items():
+        bus, followed = Bus(), Bus()
+        counts: list[int] = []
+        told = trace_engine(Tree(root), BINDINGS.get, bus=bus)
+        session = trace_engine(Tree(root), BINDINGS.get, bus=followed)
+        bus.add(partial(count, counts))
+        for sink in (RunFollower(session), FailureHistory(session), RecentEvents()):
+            followed.add(sink)
+        ticks = {"alone": engine(root).tick, "told": told.tick, "followed": session.tick}
+        taken: dict[str, list[float]] = {each: [] for each in ticks}
+        for number in range(2 * rounds + 2):
+            ODD[0] = number % 2 == 1
+            if number == 2:  # at first all are new
+                counts.clear()
+            for each, tick in ticks.items():
+                began = time.thread_time()
+                tick()
+                taken[each].append(time.thread_time() - began)
+        changes = sum(counts) / (2 * rounds)
+        alone, there, beside = (median(taken[each][2:]) for each in ticks)
+        print(
+            f"{name}, {told.size:,} nodes, {changes:,.0f} changes a tick: {alone * 1e3:.2f} ms alone, told in "
+            f"{there / alone:.2f} times that, {(beside - alone) / changes * 1e9:.0f} ns a change with its followers"
+        )
+
+
 def depths(rounds: int) -> None:
     """A resumed tick of a leaf below ever more nodes."""
     ticks: dict[str, Callable[[], object]] = {}
@@ -227,6 +286,7 @@ def main() -> None:
     options.add_argument("--rounds", type=int, default=15)
     rounds = options.parse_args().rounds
     py_trees.logging.level = py_trees.logging.Level.WARN
+    changing(rounds)
     ratios: dict[str, tuple[float, float]] = {}
     for name, (what, root) in TREES.items():
         taken = compared(root, rounds, fresh=name == "T5")
