@@ -14,6 +14,12 @@ if TYPE_CHECKING:
     from btlang.engine.instance import Fault, NodeInstance
 
 
+REACHED = 8
+"""Added to the status of a node that has got it in the present tick."""
+NOTHING = 1 << 60
+"""Higher than any place of a node."""
+
+
 def reports_each_round(node: Node) -> bool:
     """Whether each completion of the node's children is reported: it runs them again after a success, or so many times.
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.clock import Clock
 from btlang.engine.conditions import add_conditions
-from btlang.engine.fused import FUSED, choose_compiler
+from btlang.engine.fused import choose_compiler, traces_functions
 from btlang.engine.instance import EngineError, EngineState, NodeInstance, blackboard_key, halt_nothing
 from btlang.engine.leaves.binding import bind_leaf
 from btlang.engine.leaves.callables import find_function
@@ -216,10 +216,10 @@ def _compile_built_in(instance: NodeInstance, kind: NodeKind, children: Sequence
             from_blackboard = from_blackboard or "{" in text
         elif port[:1] != "_" and not kind.any_ports:
             raise instance.error(f"{kind.id} takes no port {port}")
-    compiler = choose_compiler(SEMANTICS[kind.id], instance, children)
+    usual = SEMANTICS[kind.id]
     if (trace := instance.state.node_trace) is not None:
-        children = trace.wrap_functions(children, keeps=compiler in FUSED)
-    compiled = compiler(instance, children)
+        children = trace.wrap_functions(children, keeps=traces_functions(usual, instance, children))
+    compiled = choose_compiler(usual, instance, children)(instance, children)
     if kind.id != SUBTREE:  # which is its child
         instance.memory = (compiled[0],)
     return _check_ports(instance, compiled) if from_blackboard and not kind.any_ports else compiled

@@ -20,12 +20,16 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, TypeAlias
 
+    from btlang.engine.functions_trace import FunctionsTrace
     from btlang.engine.instance import Compiled, Halt
-    from btlang.engine.status_trace import FunctionsTrace
 
     Ticks: TypeAlias = tuple[Callable[[], Any], ...]
     Calls: TypeAlias = tuple[Ticks, tuple[Halt, ...], tuple[NodeInstance | None, ...]]
     Compile: TypeAlias = Callable[[NodeInstance, Sequence[Compiled]], Compiled]
+
+
+_MANY = 5
+"""Functions that are traced together: fewer take as long each by itself."""
 
 
 def choose_compiler(usual: Compile, instance: NodeInstance, children: Sequence[Compiled]) -> Compile:
@@ -36,6 +40,12 @@ def choose_compiler(usual: Compile, instance: NodeInstance, children: Sequence[C
     if usual in _VARIANTS and any(find_function(tick) for tick, _ in children):
         return _VARIANTS[usual]
     return usual
+
+
+def traces_functions(usual: Compile, instance: NodeInstance, children: Sequence[Compiled]) -> bool:
+    """Return whether a node has a variant that also traces the functions below it, and these are enough for that."""
+    functions = sum(find_function(tick) is not None for tick, _ in children)
+    return functions >= _MANY and choose_compiler(usual, instance, children) is not usual
 
 
 def _calls(children: Sequence[Compiled]) -> Calls:
@@ -301,5 +311,3 @@ _VARIANTS: dict[Compile, Compile] = {
     reactive_sequence: partial(reactive, passes=SUCCESS),
     reactive_fallback: partial(reactive, passes=FAILURE),
 }
-FUSED: frozenset[Compile] = frozenset((default_parallel, *_VARIANTS.values()))
-"""The compilers of variants, which trace the functions below their node themselves."""

@@ -10,9 +10,10 @@ from __future__ import annotations
 from _thread import get_ident  # `threading` takes longer to import
 from collections.abc import Callable, Mapping, Sequence
 
-from btlang.engine.changes import Block, Changes, Layout, reports_each_round
+from btlang.engine.changes import NOTHING, REACHED, Block, Changes, Layout, reports_each_round
+from btlang.engine.functions_trace import FunctionsTrace
 from btlang.engine.instance import Fault
-from btlang.engine.leaves.callables import FunctionLeaf, find_function
+from btlang.engine.leaves.callables import FunctionLeaf, fail_with, find_function, status_of
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SUCCESS
 from btlang.tree.catalogue import CATALOGUE
 
@@ -33,10 +34,7 @@ def is_rule(node: Node) -> bool:
     return kind is not None and kind.roles[:1] == ("whenever",)
 
 
-_REACHED = 8
-"""Added to the status of a node that has got it in the present tick."""
-_STATUS = bytes(each & 7 for each in range(256))  # what takes it off again
-_NOTHING = 1 << 60  # higher than any place: nothing waits to be compared
+_STATUS = bytes(each & 7 for each in range(256))  # what takes REACHED off again
 
 
 class StatusTrace:
@@ -69,8 +67,8 @@ class StatusTrace:
         self.layout = Layout(instances)
         self.pending = Changes()
         self.last = bytearray([IDLE]) * len(instances)  # the statuses that are told or pending, by place
-        self.now = self.last[:]  # those now, with _REACHED
-        self.low, self.high = 0, _NOTHING  # the places that have been written since both were compared
+        self.now = self.last[:]  # those now, with REACHED
+        self.low, self.high = 0, NOTHING  # the places that have been written since both were compared
         self.faults: dict[int, Fault | NodeInstance | None] = {}  # of these, by number
         self.open: list[Callable[[], None]] = []  # for nodes with functions that are being ticked: what writes theirs
         self._flushed: list[int | Block] = []  # in this tick, which `recorded` hasn't looked at
@@ -87,15 +85,16 @@ class StatusTrace:
     def begin_tick(self) -> None:
         """Note that nothing has been reached in this tick."""
         self.thread = get_ident()
-        self.open.clear()
-        self.settle()
+        if self.open:  # the last tick was cut short
+            self.open.clear()
         self.now[:] = self.last
-        self._flushed.clear()
-        self._recorded.clear()
+        if self._flushed or self._recorded:
+            self._flushed, self._recorded = [], set()
 
     def begin(self, place: int) -> None:
         """Go on to write at a place that isn't behind the latest one."""
-        self.settle()
+        if self.high != NOTHING:
+            self.settle()
         self.low = place
         self.high = place - 1
 
@@ -103,10 +102,10 @@ class StatusTrace:
         """Add what was written to the pending changes."""
         for write in self.open:
             write()
-        if self.high == _NOTHING:
+        if self.high == NOTHING:
             return
         low, end = self.low, self.high + 1
-        self.high = _NOTHING
+        self.high = NOTHING
         before, after = bytes(self.last[low:end]), self.now[low:end].translate(_STATUS)
         if before != after:
             self.last[low:end] = after
@@ -115,7 +114,8 @@ class StatusTrace:
 
     def flush(self) -> None:
         """Hand the pending changes to the listener, oldest first."""
-        self.settle()
+        if self.open or self.high != NOTHING:
+            self.settle()
         if self.pending.entries:
             changes, self.pending = self.pending, Changes()
             self._flushed += changes.entries
@@ -154,12 +154,12 @@ class NodeTrace:
         self.reported_by_leaf = False  # so that a leaf needs no wrapper while it is RUNNING
         self.write: Callable[[], None] | None = None  # writes what functions below it have answered so far
 
-    def change(self, status: int, measured: Fault | None = None) -> None:
+    def change(self, status: int) -> None:
         """Record the status that the node has now."""
         trace, place = self.trace, self.place
         before = trace.last[place]
         if status == RUNNING == before:
-            trace.now[place] = RUNNING | _REACHED
+            trace.now[place] = RUNNING | REACHED
             return
         trace.settle()
         before = trace.last[place]
@@ -167,10 +167,10 @@ class NodeTrace:
             trace.forget(self.start, place)
         elif status == RUNNING and before not in (IDLE, RUNNING):
             self._record_below()
-        trace.now[place] = status | _REACHED
+        trace.now[place] = status | REACHED
         if status != before or (self.every and status != RUNNING):
             trace.last[place] = status
-            trace.pending.add(self.index, before, status, trace.state.fault if status == FAILURE else measured)
+            trace.pending.add(self.index, before, status, trace.state.fault if status == FAILURE else None)
             if before == RUNNING and self.start == place:  # a leaf that took time
                 trace.flush()
 
@@ -184,20 +184,15 @@ class NodeTrace:
             self.change(status)
         return status
 
-    def reach(self, status: int, measured: Fault | None = None) -> None:
+    def reach(self, status: int) -> None:
         """Note the status that a function has now, to be compared later with the one before."""
         trace, place = self.trace, self.place
-        if self.every:
-            self.change(status, measured)
-            return
         if place <= trace.high:
             trace.begin(place)
         trace.high = place
-        trace.now[place] = status | _REACHED
+        trace.now[place] = status | REACHED
         if not status and trace.last[place]:
             trace.faults[self.index] = trace.state.fault
-        elif measured is not None:
-            trace.faults[self.index] = measured
 
     def wrap(self, compiled: Compiled) -> Compiled:
         """Return the same node, traced. The root counts the ticks."""
@@ -221,16 +216,20 @@ class NodeTrace:
             place: int = self.place,
             trace: StatusTrace = self.trace,
             last: bytearray = self.trace.last,
+            now: bytearray = self.trace.now,
             opened: list[Callable[[], None]] = self.trace.open,
         ) -> int:
             if write is None:
                 status = tick()
             else:
-                if start <= trace.high:
+                if start <= trace.high != NOTHING:
                     trace.begin(start)
                 opened.append(write)
                 status = tick()
                 opened.pop()
+            if now[place] == status and not every:  # as before, and not reached so far
+                now[place] = status | REACHED
+                return status
             before = last[place]
             if status == RUNNING or before == RUNNING or every:
                 self.change(status)
@@ -239,7 +238,7 @@ class NodeTrace:
                 trace.begin(place)
                 before = last[place]
             trace.high = place
-            trace.now[place] = status | _REACHED
+            now[place] = status | REACHED
             if not status and before:
                 trace.faults[self.index] = trace.state.fault
             return status
@@ -257,10 +256,10 @@ class NodeTrace:
                 wrapped.append((tick, halt))
                 continue
             trace, measured = NodeTrace(leaf.instance, self.trace), _find_measured(leaf.instance)
-            if measured is not None:
-                tick = trace._trace_measured(leaf, measured)
-            elif not keeps:
+            if trace.every:
                 tick = trace._trace_tick(tick)
+            elif measured is not None or not keeps:
+                tick = trace._trace_function(leaf, measured)
             wrapped.append((tick, trace.halt_function))
         return wrapped
 
@@ -271,18 +270,48 @@ class NodeTrace:
         traces = [None if leaf is None else NodeTrace(leaf.instance, self.trace) for leaf in leaves]
         return FunctionsTrace(self, traces, passes)
 
-    def _trace_measured(self, leaf: FunctionLeaf, measured: Callable[[], str]) -> Tick:
-        def traced_tick() -> int:
-            status = leaf.tick()
-            is_new = status == SUCCESS != self.trace.last[self.place]
-            self.reach(status, Fault(self.index, measured()) if is_new else None)
+    def _trace_function(self, leaf: FunctionLeaf, measured: Callable[[], str] | None) -> Tick:
+        """Trace the function itself, and do what FunctionLeaf.tick does: the calls become one."""
+
+        # what doesn't change are defaults, as above
+        def traced_tick(
+            call: Call = leaf.call,
+            place: int = self.place,
+            trace: StatusTrace = self.trace,
+            last: bytearray = self.trace.last,
+            now: bytearray = self.trace.now,
+            measured: Callable[[], str] | None = measured,
+        ) -> int:
+            status: int
+            try:
+                status = call()
+            except KeyboardInterrupt:
+                raise
+            except BaseException as problem:
+                status = fail_with(leaf.instance, problem)
+            else:
+                if status is None:
+                    status = SUCCESS
+                elif status is not SUCCESS:
+                    status = status_of(leaf.instance, status)
+            if now[place] == status:  # as before, and not reached so far
+                now[place] = status | REACHED
+                return status
+            if place <= trace.high:
+                trace.begin(place)
+            trace.high = place
+            now[place] = status | REACHED
+            if not status and last[place]:
+                trace.faults[self.index] = trace.state.fault
+            elif measured is not None and status is SUCCESS != last[place]:
+                trace.faults[self.index] = Fault(self.index, measured())
             return status
 
         return traced_tick
 
     def halt_function(self, keep: bool) -> None:
         """Halt a function leaf, which knows nothing of it."""
-        if self.trace.now[self.place] & ~_REACHED == RUNNING:  # it may have completed since `last`
+        if self.trace.now[self.place] & ~REACHED == RUNNING:  # it may have completed since `last`
             self.change(IDLE)
 
     def _trace_halt(self, halt: Halt) -> Halt:
@@ -302,7 +331,7 @@ class NodeTrace:
         while place >= self.start:
             if last[place] == RUNNING:  # just recorded, with everything below it
                 place = layout.starts[place] - 1
-            elif last[place] != IDLE and not now[place] & _REACHED:
+            elif last[place] != IDLE and not now[place] & REACHED:
                 trace.forget(layout.starts[place], place + 1)
                 place = layout.starts[place] - 1
             else:
@@ -311,71 +340,6 @@ class NodeTrace:
                 place -= 1
         for place in reversed(unrecorded):
             trace.pending.add(layout.numbers[place], IDLE, last[place], trace.state.fault)
-
-
-class FunctionsTrace:
-    """The trace of the functions below a node that calls them itself and goes on at one status, `passes`."""
-
-    __slots__ = ("_above", "_block", "_first", "_leaves", "_passes", "_places", "_trace", "asked", "marked")
-
-    def __init__(self, above: NodeTrace, leaves: Sequence[NodeTrace | None], passes: int) -> None:
-        self._above, self._trace, self._passes = above, above.trace, passes
-        self._leaves = leaves
-        self._places = tuple([-1 if leaf is None else leaf.place for leaf in leaves])
-        self._first = self._places[0]
-        alone = -1 not in self._places
-        self._block = bytes([passes | _REACHED]) * len(leaves) if alone else b""
-        self.marked = 0
-        """The first child whose status isn't written."""
-        self.asked = 0
-        """The child that is being ticked, where the node doesn't know it itself."""
-
-    def follow(self, present: Callable[[], int]) -> None:
-        """Let `present` say at any time which child is being ticked."""
-        self._above.write = lambda: self.write(present())
-
-    def write(self, end: int) -> None:
-        """Write the statuses of the children up to a number: they have passed."""
-        begin = self.marked
-        if begin >= end:
-            return
-        self.marked = end
-        trace = self._trace
-        if self._block:
-            first = self._first + begin
-            latest = self._first + end - 1
-            trace.now[first : latest + 1] = self._block[begin:end]
-        else:
-            places = [place for place in self._places[begin:end] if place >= 0]
-            if not places:
-                return
-            first, latest = places[0], places[-1]
-            now, status = trace.now, self._passes | _REACHED
-            for place in places:
-                now[place] = status
-        high = trace.high
-        if high == _NOTHING:
-            trace.low, trace.high = first, latest
-        else:
-            if latest > high:
-                trace.high = latest
-            if first < trace.low:  # it came before what is written, but wasn't
-                trace.low = first
-
-    def decide(self, child: int, status: int) -> None:
-        """Write the statuses up to a child, and that of this one, if it's a function."""
-        self.write(child + 1)
-        leaf = self._leaves[child]
-        if leaf is not None:
-            self._trace.now[leaf.place] = status | _REACHED
-            if not status and self._trace.last[leaf.place]:
-                self._trace.faults[leaf.index] = self._trace.state.fault
-
-    def write_one(self, child: int, status: int) -> None:
-        """Write the status of one child, if it's a function."""
-        leaf = self._leaves[child]
-        if leaf is not None:
-            leaf.reach(status)
 
 
 _MOST_ABOVE = 4  # nodes between a rule and a condition in it: `not`, `and`, `or`

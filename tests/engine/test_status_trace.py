@@ -16,6 +16,7 @@ from hypothesis import given
 from btlang.engine.changes import Changes
 from btlang.engine.engine import Engine
 from btlang.engine.fused import choose_compiler
+from btlang.engine.leaves.callables import FunctionLeaf
 from btlang.engine.nodes.control import parallel
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SUCCESS
 from btlang.engine.status_trace import NodeTrace
@@ -90,6 +91,11 @@ def one_by_one(self: NodeTrace, tick: Callable[[], int]) -> Callable[[], int]:
     return traced_tick
 
 
+def function_by_itself(self: NodeTrace, leaf: FunctionLeaf, measured: Callable[[], str] | None) -> Callable[[], int]:
+    """In place of NodeTrace._trace_function."""
+    return one_by_one(self, leaf.tick)
+
+
 def plain_but_parallel(usual: Any, *others: Any) -> Any:
     """In place of choose_compiler. A Parallel with its default thresholds saves other things in its variant."""
     return choose_compiler(usual, *others) if usual is parallel else usual
@@ -99,10 +105,10 @@ def plain_but_parallel(usual: Any, *others: Any) -> Any:
 def singly() -> Iterator[None]:
     """Have each node record its own changes at once."""
     with (
-        patch("btlang.engine.compile.FUSED", frozenset()),
+        patch("btlang.engine.fused._MANY", 10**9),
         patch("btlang.engine.compile.choose_compiler", plain_but_parallel),
         patch.object(NodeTrace, "_trace_tick", one_by_one),
-        patch.object(NodeTrace, "reach", NodeTrace.change),
+        patch.object(NodeTrace, "_trace_function", function_by_itself),
     ):
         yield
 
