@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     Compile: TypeAlias = Callable[[NodeInstance, Sequence[Compiled]], Compiled]
 
 
-_MANY = 5
+_MANY = 4
 """Functions that are traced together: fewer take as long each by itself."""
 
 

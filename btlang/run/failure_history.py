@@ -66,6 +66,10 @@ def combine_attempts(parts: Iterable[Attempts]) -> Attempts:
     parts = [part for part in parts if part.kept]
     if len(parts) == 1:
         return parts[0]
+    if len(parts) == 2 and len(parts[0].kept) == len(parts[1].kept) == 1:  # as nearly always: the same once more
+        [one], [other] = parts[0].kept, parts[1].kept
+        if (one.index, one.reason) == (other.index, other.reason):
+            return Attempts((_one(one, other),), parts[0].dropped + parts[1].dropped)
     found: dict[tuple[int, str], Attempt] = {}
     dropped = 0
     for part in parts:
@@ -80,11 +84,10 @@ def combine_attempts(parts: Iterable[Attempts]) -> Attempts:
 
 def _one(old: Attempt, new: Attempt) -> Attempt:
     """Return both attempts as one; their times may lie between each other where nodes run side by side."""
-    latest: Attempt = max(new, old, key=lambda attempt: attempt.last)
-    other = old if latest is new else new
+    latest, other = (new, old) if new.last >= old.last else (old, new)
     before = other.last if latest.times == 1 else max(latest.before, other.last)
-    times = {"first": min(old.first, new.first), "before": before, "times": old.times + new.times}
-    return latest.replace(**times)  # type: ignore[no-any-return]
+    first, times = min(old.first, new.first), old.times + new.times
+    return Attempt(latest.index, latest.reason, first, before, latest.last, times, latest.stopped)
 
 
 class FailureHistory:
