@@ -25,11 +25,12 @@ from btlang.run.bus import Bus
 from btlang.run.connection import RunChoices
 from btlang.run.controls import Controls, disable
 from btlang.run.failure_history import FailureHistory, failure_report
+from btlang.run.follower import RunFollower
 from btlang.run.limits import RATES, SLOWEST
 from btlang.run.outcome import Outcome
 from btlang.run.recent import RecentEvents
 from btlang.run.runner import Runner, trace_engine
-from btlang.run.snapshot import RunFollower, Snapshot
+from btlang.run.snapshot import Snapshot
 from btlang.run.statuses import Status
 from btlang.text.formatting import RED
 from btlang.text.source import NOWHERE, Source

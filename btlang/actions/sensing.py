@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from math import dist, inf, radians
+from weakref import ref
 
 from btlang.actions.common import compares, of_a_kind, where
 from btlang.engine.leaves.leaf import Failed
@@ -11,8 +14,12 @@ from btlang.robots.robot import Base, Docking, Hands, Navigation, Power, RobotEr
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
+    from typing import Any, TypeVar
+
+    from btlang.robots.bodies.body import Body
+    from btlang.robots.worlds.scan import Array
+
+    Found = TypeVar("Found")
 
 NEAR_WALL = 0.6
 """Metres before the robot: after "no wall in front" it can drive 0.5 m."""
@@ -23,6 +30,8 @@ SUFFICIENT_BATTERY = 30.0
 FULL_BATTERY = 99.5
 
 _SIDE_MARGIN = 0.03
+_found: dict[int, tuple[ref[Array], dict[Any, Any]]] = {}
+"""What was found in scans that still exist, by their ids: a robot gives the same one to all until it has another."""
 _SIDES = {0.0: "ahead", 90.0: "to the left", 180.0: "behind", 270.0: "to the right"}
 
 
@@ -60,11 +69,9 @@ def is_blocked(robot: Sensors, direction: float) -> bool:
     direction can't bump. What the scanner doesn't see counts as blocked, since no valid beam looks there.
     """
     try:
-        along, across = _points(robot, direction)
+        return _from_scan(robot, _find_blocked, direction)
     except RobotError:
         return True  # a failed condition would read as "no wall" under `not` and `until`, and the robot drive blind
-    near = robot.body.radius + NEAR_WALL
-    return bool(((along > 0.0) & (along < near) & (abs(across) < robot.body.radius + _SIDE_MARGIN)).any())
 
 
 def distance_ahead(robot: Sensors) -> float:
@@ -72,20 +79,50 @@ def distance_ahead(robot: Sensors) -> float:
 
     inf beyond the scanner's range. Raises SensorSilent if the scanner doesn't look there.
     """
-    along, across = _points(robot, 0.0)
-    touching = (along > 0.0) & (abs(across) < robot.body.radius)
-    bulge = (robot.body.radius**2 - across[touching] ** 2) ** 0.5
+    return _from_scan(robot, _find_free, 0.0)
+
+
+def _find_blocked(scan: Array, body: Body, direction: float) -> bool:
+    along, across = _points(scan, body, direction)
+    strip = (along > 0.0) & (along < body.radius + NEAR_WALL) & (abs(across) < body.radius + _SIDE_MARGIN)
+    return bool(strip.any())
+
+
+def _find_free(scan: Array, body: Body, direction: float) -> float:
+    along, across = _points(scan, body, direction)
+    touching = (along > 0.0) & (abs(across) < body.radius)
+    bulge = (body.radius**2 - across[touching] ** 2) ** 0.5
     return max(0.0, float((along[touching] - bulge).min(initial=inf)))
 
 
-def _points(robot: Sensors, direction: float) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+def _from_scan(robot: Sensors, find: Callable[[Array, Body, float], Found], direction: float) -> Found:
+    """Return what is found in the present scan, once for all who ask before the next one: a robot gives the same array
+    until then, and whoever may write into an array isn't asked twice.
+    """
+    scan = robot.scan()
+    kept = _found.get(id(scan))
+    if kept is None or kept[0]() is not scan:
+        if getattr(getattr(scan, "flags", None), "writeable", True):
+            return find(scan, robot.body, direction)
+        kept = ref(scan, partial(_forget, id(scan))), {}
+        _found[id(scan)] = kept
+    results = kept[1]
+    if (find, direction) not in results:
+        results[find, direction] = find(scan, robot.body, direction)
+    return results[find, direction]  # type: ignore[no-any-return]
+
+
+def _forget(key: int, _: object) -> None:
+    _found.pop(key, None)
+
+
+def _points(scan: Array, body: Body, direction: float) -> tuple[Array, Array]:
     """Return scan points in metres along and across a direction. Raises SensorSilent if no valid beam looks there."""
     import numpy as np  # takes longer to import than many missions that sense something else
 
     from btlang.robots.motion.guard.corridor import is_covered
 
-    ranges = np.asarray(robot.scan())
-    scanner = robot.body.sensor("scanner")
+    ranges, scanner = np.asarray(scan), body.sensor("scanner")
     if not is_covered(ranges, direction, scanner.view if scanner is not None and direction == scanner.angle else 360.0):
         raise SensorSilent(f"the scanner has no valid beam {_SIDES.get(direction % 360.0, 'there')}")
     seen = np.isfinite(ranges)

@@ -24,7 +24,7 @@ from btlang.support.record import Record
 from btlang.text.source import NOWHERE, Source, Span
 from btlang.text.spelling import nearest
 from btlang.text.words import split
-from btlang.tree.catalogue import CATALOGUE
+from btlang.tree.catalogue import CATALOGUE, SUBTREE
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.correct_words import correct_words
 from btlang.vocabulary.lexicon import Lexicon
@@ -66,6 +66,13 @@ def tree_problems(
     return sort_diagnostics(problems)
 
 
+def missing_trees(tree: Tree, vocabulary: Lexicon) -> list[Diagnostic]:
+    """Report each SubTree node whose tree isn't there (BT126)."""
+    known = {name for name, _ in tree.subtrees}
+    nodes = [node for node in tree.walk() if node.id == SUBTREE and node.port("ID") not in ("", *known)]
+    return sort_diagnostics([_diagnose_missing_tree(node, tree, vocabulary) for node in nodes])
+
+
 def find_misnamed(tree: Tree, vocabulary: Lexicon) -> Iterator[Diagnostic]:
     """Find names of places and the like that nothing has (BT132): no phrase could hold them."""
     for node in tree.walk():
@@ -82,6 +89,14 @@ def find_misnamed(tree: Tree, vocabulary: Lexicon) -> Iterator[Diagnostic]:
             yield diagnostic("BT132", node.span or NOWHERE, id=node.id, reason=reason)
 
 
+def _diagnose_missing_tree(node: Node, tree: Tree, vocabulary: Lexicon) -> Diagnostic:
+    span, name, names = node.span or NOWHERE, node.port("ID"), [name for name, _ in tree.subtrees]
+    said = find_said_id(node, name, vocabulary)
+    fix = correct_subtree(said, names, vocabulary) if said is not None else None
+    near = _near(nearest(name.lower(), names))
+    return _add_help(diagnostic("BT126", span, fix=fix, name=name), near, _advise_definition(name, span))
+
+
 def _diagnose(
     error: EngineError,
     tree: Tree,
@@ -95,13 +110,9 @@ def _diagnose(
     `fits` says whether a leaf can run, `find_file` which keyword file beside a text has an id.
     """
     node = error.node
-    span, names = node.span or NOWHERE, [name for name, _ in tree.subtrees]
+    span = node.span or NOWHERE
     if isinstance(error, UnknownSubTree):
-        name = node.port("ID")
-        near = nearest(name.lower(), names)
-        said = find_said_id(node, name, vocabulary)
-        fix = correct_subtree(said, names, vocabulary) if said is not None else None
-        return _add_help(diagnostic("BT126", span, fix=fix, name=name), _near(near), _advise_definition(name, span))
+        return _diagnose_missing_tree(node, tree, vocabulary)
     missing = node.id not in CATALOGUE and node.id not in vocabulary.entries
     if not isinstance(error, UnknownNode) and not (node.children and missing):
         return diagnostic("BT132", span, id=node.id, reason=error.message)
@@ -109,7 +120,7 @@ def _diagnose(
         near = nearest(node.id.lower(), [id for id, kind in CATALOGUE.items() if kind.most])
         return diagnostic("BT131", span, id=node.id, help=_near(near))
     ids = [*vocabulary.entries, *(id for id, kind in CATALOGUE.items() if not kind.least)]
-    said, fix = find_said_id(node, node.id, vocabulary), None
+    said, fix, names = find_said_id(node, node.id, vocabulary), None, [name for name, _ in tree.subtrees]
     if said is not None and said.may_be_subtree:
         ids, fix = [*names, *ids], correct_subtree(said, names, vocabulary)
     if said is not None and fix is None:

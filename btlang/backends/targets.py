@@ -24,7 +24,8 @@ class Target(Record):
     """A target; `make` names its function, "module:function" of (tree, vocabulary, **options) to str or bytes.
 
     A file that ends in one of the `suffixes` is of this target where none is named. `options` are the options that the
-    function takes from whoever asks, `given` those that a btlang.api.Mission fills in: "world" and "facts".
+    function takes from whoever asks, `given` those that a btlang.api.Mission fills in: "world" and "facts". What `runs`
+    has to be whole for `btc compile`; people may also read a part whose other trees are in other files.
     """
 
     make: str
@@ -33,6 +34,7 @@ class Target(Record):
     options: tuple[str, ...] = ()
     given: tuple[str, ...] = ()
     binary: bool = False
+    runs: bool = False
 
 
 TARGETS = {
@@ -41,18 +43,22 @@ TARGETS = {
         "XML of BehaviorTree.CPP, for Groot2 and Nav2; --dialect 3 for version 3",
         (".xml",),
         options=("dialect", "onto"),
+        runs=True,
     ),
     "english": Target(
         "btlang.backends.english:to_english", "a mission in English", (".txt",), given=("facts", "needs")
     ),
-    "json": Target("btlang.backends.json_tree:to_json", "the tree as JSON, for programs", (".json",)),
+    "json": Target("btlang.backends.json_tree:to_json", "the tree as JSON, for programs", (".json",), runs=True),
     "python": Target(
         "btlang.backends.python_module:to_python",
         "a Python module that runs the tree with btlang",
         (".py",),
         given=("world", "facts"),
+        runs=True,
     ),
-    "py_trees": Target("btlang.backends.py_trees.module:to_module", "a Python module that builds it with py_trees"),
+    "py_trees": Target(
+        "btlang.backends.py_trees.module:to_module", "a Python module that builds it with py_trees", runs=True
+    ),
     "dot": Target("btlang.backends.dot:to_dot", "a graph for Graphviz", (".dot", ".gv")),
     "svg": Target("btlang.pictures.tree_picture:to_svg", "a picture of the tree", (".svg",)),
     "png": Target("btlang.pictures.tree_picture:to_png", "a picture of the tree", (".png",), binary=True),

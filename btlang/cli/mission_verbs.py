@@ -129,9 +129,13 @@ def compile_mission(options: argparse.Namespace) -> int:
 
         write_onto(mission_of(options), options.onto, options.out, force=options.force)
         return _SUCCESS
+    from btlang.backends.checking import missing_trees
     from btlang.diagnostics.files import write_output
 
-    write_output(mission_of(options).to(name, dialect=options.dialect), options.out)
+    mission = mission_of(options)
+    if TARGETS[name].runs and (problems := missing_trees(mission.tree, mission.vocabulary)):
+        raise MissionError(problems)
+    write_output(mission.to(name, dialect=options.dialect), options.out)
     return _SUCCESS
 
 

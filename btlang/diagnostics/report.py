@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import platform
 import sys
 from collections.abc import Iterable
 
@@ -109,6 +108,8 @@ def _write_traceback(error: Exception) -> str:
 
     path = os.path.join(user_dir("state"), "crash.txt")
     os.makedirs(os.path.dirname(path), 0o700, exist_ok=True)
+    import platform  # takes longer to import than a short mission to read
+
     head = f"btlang {sys.modules['btlang'].__version__}, Python {sys.version}, {platform.platform()}\n{sys.argv}\n"
     descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
     with open(descriptor, "w", encoding="utf-8", errors="backslashreplace") as file:

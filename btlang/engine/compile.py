@@ -9,9 +9,10 @@ from collections.abc import Callable, Sequence
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.clock import Clock
 from btlang.engine.conditions import add_conditions
-from btlang.engine.fused import choose_compiler
+from btlang.engine.fused import choose_compiler, traces_functions
 from btlang.engine.instance import EngineError, EngineState, NodeInstance, blackboard_key, halt_nothing
 from btlang.engine.leaves.binding import bind_leaf
+from btlang.engine.leaves.callables import find_function
 from btlang.engine.leaves.leaf import ActionFailed, LeafSignature
 from btlang.engine.nodes import (
     branches,
@@ -27,7 +28,7 @@ from btlang.engine.nodes import (
 from btlang.engine.nodes.ports import TRUTHS
 from btlang.engine.resume_path import find_resume_paths, mark_resumable, resume_at_top
 from btlang.engine.script.values import literal
-from btlang.engine.status_trace import NodeTrace, StatusTrace, reports_each_round
+from btlang.engine.status_trace import NodeTrace, StatusTrace
 from btlang.tree.catalogue import CATALOGUE, MOST_NODES, SUBTREE, NodeKind
 from btlang.tree.node import Node, Tree
 
@@ -153,7 +154,6 @@ def compile_instances(
 ) -> Compiled:
     """Compile from the last node to the root, so that children are compiled before their parents."""
     waiting: list[Compiled] = []  # compiled nodes whose parents come later, so that the last ones are the next one's
-    traces: list[NodeTrace] = []
     around = find_resume_paths(instances, _waits)
     for instance in reversed(instances):
         node = instance.node
@@ -164,10 +164,7 @@ def compile_instances(
             del waiting[-count:]
         above, node_trace = instance.above, None
         if trace is not None:
-            lower = traces[: -count - 1 : -1] if count else []
-            node_trace = NodeTrace(instance.index, above is not None and reports_each_round(above.node), lower, trace)
-            trace.nodes.append(node_trace)
-            traces[len(traces) - count :] = [node_trace]
+            node_trace = NodeTrace(instance, trace)
         instance.state.node_trace = node_trace if hooks is None else None  # a hook may change what a leaf would report
         compiled = compile_node(instance, children)
         lasts = compiled[1] is not halt_nothing
@@ -176,15 +173,13 @@ def compile_instances(
             compiled = resume_at_top(path, compiled)
         if hooks is not None:
             compiled = hooks.wrap(instance.index, compiled)
-        if node_trace is not None:
+        if node_trace is not None and not (instance.index and find_function(compiled[0])):
             compiled = node_trace.wrap(compiled)
         if path is None and above is not None and lasts:
             wider = around[above.index]
             if wider is not None and wider.top != above.index:  # else the way down is not longer
                 compiled = mark_resumable(wider, compiled)
         waiting.append(compiled)
-    if trace is not None:
-        trace.nodes.reverse()
     [root] = waiting
     return root
 
@@ -221,7 +216,10 @@ def _compile_built_in(instance: NodeInstance, kind: NodeKind, children: Sequence
             from_blackboard = from_blackboard or "{" in text
         elif port[:1] != "_" and not kind.any_ports:
             raise instance.error(f"{kind.id} takes no port {port}")
-    compiled = choose_compiler(SEMANTICS[kind.id], instance, children)(instance, children)
+    usual = SEMANTICS[kind.id]
+    if (trace := instance.state.node_trace) is not None:
+        children = trace.wrap_functions(children, keeps=traces_functions(usual, instance, children))
+    compiled = choose_compiler(usual, instance, children)(instance, children)
     if kind.id != SUBTREE:  # which is its child
         instance.memory = (compiled[0],)
     return _check_ports(instance, compiled) if from_blackboard and not kind.any_ports else compiled

@@ -6,6 +6,7 @@ from _thread import get_ident  # `threading` takes longer to import
 from collections.abc import Callable, Mapping, Sequence
 
 from btlang.engine.blackboard import Blackboard
+from btlang.engine.changes import Changes
 from btlang.engine.clock import Clock
 from btlang.engine.compile import allow_depth, compile_instances, expand
 from btlang.engine.instance import EngineError, EngineState, Fault, NodeInstance, blackboard_key
@@ -13,7 +14,7 @@ from btlang.engine.leaves.leaf import REFUSED, ActionFailed, LeafBinding, ignore
 from btlang.engine.saving import restore_nodes, save_nodes
 from btlang.engine.script.values import as_text
 from btlang.engine.status import FAILURE, IDLE
-from btlang.engine.status_trace import Changes, StatusTrace
+from btlang.engine.status_trace import StatusTrace
 from btlang.support.gc_pause import gc_paused
 from btlang.support.record import Record
 from btlang.text.source import Span
@@ -93,7 +94,7 @@ class Engine:
         self._state.on_warning = self._warn
         with gc_paused:
             self._instances = expand(tree, self.blackboard, self._state)
-            self._trace = None if listener is None else StatusTrace(self._state, listener)
+            self._trace = None if listener is None else StatusTrace(self._state, listener, self._instances)
             self._tick, self._halt = compile_instances(self._instances, self._trace, hooks)
         frames = _depth(self._instances) * _FRAMES_PER_LEVEL + _FRAMES_FOR_LEAVES
         if frames > _FRAMES_ASSUMED:
@@ -235,7 +236,7 @@ class Engine:
         """
         if not self._keyed:
             return {}
-        return {index: self._with_values(self._instances[index]) for index in changes.indices if index in self._keyed}
+        return {index: self._with_values(self._instances[index]) for index, _ in changes.of(self._keyed)}
 
     def path(self, index: int) -> str:
         """Return the path of a node: `/` is the root, `/0/1` the second child of its first child. A SubTree's tree is

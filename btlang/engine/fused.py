@@ -20,11 +20,16 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, TypeAlias
 
+    from btlang.engine.functions_trace import FunctionsTrace
     from btlang.engine.instance import Compiled, Halt
 
     Ticks: TypeAlias = tuple[Callable[[], Any], ...]
     Calls: TypeAlias = tuple[Ticks, tuple[Halt, ...], tuple[NodeInstance | None, ...]]
     Compile: TypeAlias = Callable[[NodeInstance, Sequence[Compiled]], Compiled]
+
+
+_MANY = 4
+"""Functions that are traced together: fewer take as long each by itself."""
 
 
 def choose_compiler(usual: Compile, instance: NodeInstance, children: Sequence[Compiled]) -> Compile:
@@ -35,6 +40,12 @@ def choose_compiler(usual: Compile, instance: NodeInstance, children: Sequence[C
     if usual in _VARIANTS and any(find_function(tick) for tick, _ in children):
         return _VARIANTS[usual]
     return usual
+
+
+def traces_functions(usual: Compile, instance: NodeInstance, children: Sequence[Compiled]) -> bool:
+    """Return whether a node has a variant that also traces the functions below it, and these are enough for that."""
+    functions = sum(find_function(tick) is not None for tick, _ in children)
+    return functions >= _MANY and choose_compiler(usual, instance, children) is not usual
 
 
 def _calls(children: Sequence[Compiled]) -> Calls:
@@ -48,6 +59,11 @@ def _calls(children: Sequence[Compiled]) -> Calls:
     ticks = [tick if leaf is None else leaf.call for (tick, _), leaf in zip(children, functions, strict=True)]
     instances = [None if leaf is None else leaf.instance for leaf in functions]
     return tuple(ticks), tuple([halt for _, halt in children]), tuple(instances)
+
+
+def _trace_functions(instance: NodeInstance, children: Sequence[Compiled], passes: int) -> FunctionsTrace | None:
+    trace = instance.state.node_trace
+    return None if trace is None else trace.trace_functions([find_function(tick) for tick, _ in children], passes)
 
 
 def normalize_status(instance: NodeInstance | None, answer: object) -> int:
@@ -65,7 +81,9 @@ def normalize_status(instance: NodeInstance | None, answer: object) -> int:
 def in_order(instance: NodeInstance, children: Sequence[Compiled], passes: int) -> Compiled:
     """Compile a Sequence or Fallback; see nodes/control.py."""
     ticks, halts, instances = _calls(children)
+    trace = _trace_functions(instance, children, passes)
     nothing = None if passes is SUCCESS else passes  # what functions return is most often nothing
+    nothing_to_say = SUCCESS if passes is SUCCESS else None  # it goes on, and has no reason to be kept
     index = skipped = 0
 
     # what does not change are defaults: a cell for each would be a third of the memory of a tree
@@ -74,9 +92,13 @@ def in_order(instance: NodeInstance, children: Sequence[Compiled], passes: int) 
         count: int = len(ticks),
         passes: int = passes,
         nothing: int | None = nothing,
+        nothing_to_say: int | None = nothing_to_say,
+        trace: FunctionsTrace | None = trace,
     ) -> int:
         nonlocal index, skipped
         plain = -1  # the latest child that passed, whose answer has not been normalized
+        if trace is not None:
+            trace.marked = index
         while index < count:
             try:
                 status = ticks[index]()
@@ -85,21 +107,27 @@ def in_order(instance: NodeInstance, children: Sequence[Compiled], passes: int) 
                     index += 1
                     continue
                 if status == RUNNING:
+                    if trace is not None:
+                        trace.decide(index, RUNNING)
                     return RUNNING
             except KeyboardInterrupt:
                 raise
             except BaseException as problem:
                 status = problem
+            status = SKIPPED if status == SKIPPED else normalize_status(instances[index], status)
+            if trace is not None and status is not nothing_to_say:
+                trace.decide(index, status)
             if status == SKIPPED:
                 halts[index](False)
                 skipped += 1
-            else:
-                status = normalize_status(instances[index], status)
-                if status is not passes:
-                    index = skipped = 0
-                    return status
+            elif status is passes:
                 plain = -1
+            else:
+                index = skipped = 0
+                return status
             index += 1
+        if trace is not None:
+            trace.write(count)
         if skipped:
             passes = SKIPPED if skipped == count else passes
             skipped = 0
@@ -115,45 +143,59 @@ def in_order(instance: NodeInstance, children: Sequence[Compiled], passes: int) 
         if not keep:
             index = skipped = 0
 
+    if trace is not None:
+        trace.follow(lambda: index)
     return tick, halt
 
 
 def default_parallel(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
     """Compile a Parallel with its default thresholds: it ends with the first failure, or when no child is RUNNING."""
     ticks, halts, instances = _calls(children)
+    trace = _trace_functions(instance, children, SUCCESS)
     everyone = tuple(enumerate(ticks))
     left = everyone  # those that have not completed
     completed = [False] * len(ticks)
     state = instance.state
 
-    def tick(going_on: int = RUNNING) -> int:
+    def tick(going_on: int = RUNNING, trace: FunctionsTrace | None = trace) -> int:
         nonlocal left
         running = fewer = skipped = False
+        whole = left is everyone
+        if trace is not None:
+            trace.marked = 0 if whole else len(everyone)
         for index, child in left:
+            if trace is not None:
+                trace.asked = index
             try:
                 status = child()
-                if status is going_on:  # what nearly all say, compared as fast as can be
+                if status is going_on or status == RUNNING:  # what nearly all say, compared as fast as can be
                     running = True
+                    if trace is not None:
+                        (trace.decide if whole else trace.write_one)(index, RUNNING)
                     continue
                 if status is SUCCESS or status is None:
                     completed[index] = fewer = True
-                    continue
-                if status == RUNNING:
-                    running = True
+                    if trace is not None and not whole:
+                        trace.write_one(index, SUCCESS)
                     continue
             except KeyboardInterrupt:
                 raise
             except BaseException as problem:
                 status = problem
+            status = SKIPPED if status == SKIPPED else normalize_status(instances[index], status)
+            if trace is not None:
+                (trace.decide if whole else trace.write_one)(index, status)
             if status == SKIPPED:
                 skipped = True
-            elif normalize_status(instances[index], status) is FAILURE:
+            elif status is FAILURE:
                 fault = state.fault
                 halt(False)
                 state.fault = fault
                 return FAILURE
             else:
                 completed[index] = fewer = True
+        if trace is not None and whole:
+            trace.write(len(everyone))
         if running:
             if fewer:
                 find_left()
@@ -177,13 +219,17 @@ def default_parallel(instance: NodeInstance, children: Sequence[Compiled]) -> Co
             completed[:] = [False] * len(completed)
         find_left()
 
+    if trace is not None:
+        trace.follow(lambda: trace.asked)
     return tick, halt
 
 
 def reactive(instance: NodeInstance, children: Sequence[Compiled], passes: int) -> Compiled:
     """Compile a ReactiveSequence or ReactiveFallback; see nodes/control.py."""
     ticks, halts, instances = _calls(children)
+    trace = _trace_functions(instance, children, passes)
     pairs, count = tuple(enumerate(ticks)), len(ticks)
+    nothing_to_say = SUCCESS if passes is SUCCESS else None
     interrupts = instance.state.interrupts
     fails = SUCCESS if passes is FAILURE else FAILURE
     running = -1  # the child that was RUNNING at the last tick
@@ -195,13 +241,18 @@ def reactive(instance: NodeInstance, children: Sequence[Compiled], passes: int) 
             child, running = running, -1
             halts[child](False)
 
-    def tick() -> int:
+    # not cells, for what the plain variant doesn't have: cells are saved
+    def tick(
+        trace: FunctionsTrace | None = trace, nothing_to_say: int | None = nothing_to_say, fails: int = fails
+    ) -> int:
         nonlocal running, asked
         if running > 0:
             interrupts.append(interrupt)
         skipped = 0
         plain = -1  # the latest child that passed, whose answer has not been normalized
         status = passes
+        if trace is not None:
+            trace.marked = 0
         for asked, child in pairs:
             try:
                 status = child()
@@ -214,6 +265,8 @@ def reactive(instance: NodeInstance, children: Sequence[Compiled], passes: int) 
                 raise
             except BaseException as problem:
                 status = normalize_status(instances[asked], problem)
+            if trace is not None and status is not nothing_to_say:
+                trace.decide(asked, status)
             if status is passes:
                 plain = -1
             elif status == SKIPPED:
@@ -221,6 +274,9 @@ def reactive(instance: NodeInstance, children: Sequence[Compiled], passes: int) 
                 skipped += 1
             else:
                 break
+        else:
+            if trace is not None:
+                trace.write(count)
         if interrupts and interrupts[-1] is interrupt:
             interrupts.pop()
         if status is fails or status == RUNNING:
@@ -244,6 +300,8 @@ def reactive(instance: NodeInstance, children: Sequence[Compiled], passes: int) 
         if not keep:
             running = -1
 
+    if trace is not None:
+        trace.follow(lambda: asked)
     return tick, halt
 
 

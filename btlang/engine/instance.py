@@ -47,6 +47,10 @@ if TYPE_CHECKING:
 
         def flush(self) -> None: ...
 
+        def wrap_functions(self, children: Sequence[Compiled], keeps: bool) -> list[Compiled]: ...
+
+        def trace_functions(self, leaves: Sequence[Any], passes: int) -> Any: ...
+
     class Hooks(Protocol):
         """Calls before and behind the ticks of nodes; see Breakpoints in btlang/monitor/breakpoints.py."""
 

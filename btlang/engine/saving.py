@@ -42,8 +42,8 @@ def save_nodes(instances: Sequence[NodeInstance], trace: StatusTrace | None) -> 
     scopes = [scope.dump(_to_json) for scope in _scopes(instances)]
     statuses = {}
     if trace is not None:
-        last = [IDLE if node.last == RUNNING else node.last for node in trace.nodes]
-        statuses = {str(index): status for index, status in enumerate(last) if status != IDLE}
+        last = [trace.last[place] for place in trace.layout.places]
+        statuses = {str(index): status for index, status in enumerate(last) if status not in (IDLE, RUNNING)}
     return {"format": FORMAT, "size": len(instances), "nodes": nodes, "scopes": scopes, "statuses": statuses}
 
 

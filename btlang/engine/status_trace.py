@@ -1,14 +1,21 @@
-"""Traces of statuses, which report changes. They are compiled in only if somebody listens."""
+"""Traces of statuses, which report changes. They are compiled in only if somebody listens.
+
+What completes within a tick, as nearly all nodes do, only writes its status into an array, and functions below one node
+write theirs together. `StatusTrace.settle` compares the array with the statuses before, for all nodes at once. So a
+change costs a few dozen nanoseconds; what takes time, is halted or is repeated costs more.
+"""
 
 from __future__ import annotations
 
 from _thread import get_ident  # `threading` takes longer to import
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping, Sequence
 
+from btlang.engine.changes import NOTHING, REACHED, Block, Changes, Layout, reports_each_round
+from btlang.engine.functions_trace import FunctionsTrace
 from btlang.engine.instance import Fault
 from btlang.engine.leaves.callables import FunctionLeaf, fail_with, find_function, status_of
-from btlang.engine.status import FAILURE, IDLE, NAMES, RUNNING, SUCCESS
-from btlang.tree.catalogue import CATALOGUE, ON_SUCCESS
+from btlang.engine.status import FAILURE, IDLE, RUNNING, SUCCESS
+from btlang.tree.catalogue import CATALOGUE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -18,16 +25,7 @@ if TYPE_CHECKING:
     from btlang.tree.node import Node
 
     Call: TypeAlias = Callable[[], Any]
-    Listener: TypeAlias = Callable[["Changes"], object]
-
-
-def reports_each_round(node: Node) -> bool:
-    """Whether each completion of the node's children is reported: it runs them again after a success, or so many times.
-
-    What it runs until it succeeds, without a limit, is a condition that is waited for.
-    """
-    kind = CATALOGUE.get(node.id)
-    return kind is not None and bool(kind.again) and (kind.again == ON_SUCCESS or not kind.is_endless(node.ports))
+    Listener: TypeAlias = Callable[[Changes], object]
 
 
 def is_rule(node: Node) -> bool:
@@ -36,70 +34,103 @@ def is_rule(node: Node) -> bool:
     return kind is not None and kind.roles[:1] == ("whenever",)
 
 
-_SUCCESS = tuple(before << 3 | SUCCESS for before in range(len(NAMES)))  # the code of a success, by the status before
-
-
-class Changes:
-    """Changes of statuses, oldest first. Iterating yields for each the index of the node in preorder, its new status,
-    the one before (IDLE in a new run of its parent), and for a FAILURE what had failed latest then: this node or one
-    below. For the SUCCESS of a condition of a rule it is what was measured, where that is known.
-
-    They are kept as collections of numbers so that a change makes no new object: the garbage collector, which new
-    objects call for, took longer than the rest of a tick.
-    """
-
-    __slots__ = ("codes", "faults", "indices")
-
-    def __init__(self) -> None:
-        self.indices: list[int] = []
-        self.codes: list[int] = []
-        """The status before and the new one, in 3 bits each from the right."""
-        self.faults: dict[int, Fault | NodeInstance | None] = {}  # by the position of the change
-
-    def add(self, index: int, before: int, status: int, fault: Fault | NodeInstance | None = None) -> None:
-        """Add one change. `fault` counts if it is a FAILURE."""
-        if status is FAILURE:
-            self.faults[len(self.codes)] = fault
-        self.indices.append(index)
-        self.codes.append(before << 3 | status)
-
-    def __len__(self) -> int:
-        return len(self.codes)
-
-    def __iter__(self) -> Iterator[tuple[int, int, int, Fault | NodeInstance | None]]:
-        for position, (index, code) in enumerate(zip(self.indices, self.codes, strict=True)):
-            yield index, code & 7, code >> 3, self.faults.get(position)
+_STATUS = bytes(each & 7 for each in range(256))  # what takes REACHED off again
 
 
 class StatusTrace:
-    """The trace that all nodes of one engine share: the number of the tick, and the pending status changes.
+    """The trace that all nodes of one engine share: their statuses, the number of the tick, and the pending changes.
 
     The listener gets them together, which costs far less: after each tick, halt and suspension, before a leaf that
     takes time starts and when it has ended, and whenever `flush` is called.
     """
 
-    __slots__ = ("listener", "nodes", "pending", "state", "thread", "tick")
+    __slots__ = (
+        "_flushed",
+        "_recorded",
+        "faults",
+        "high",
+        "last",
+        "layout",
+        "listener",
+        "low",
+        "now",
+        "open",
+        "pending",
+        "state",
+        "thread",
+    )
 
-    def __init__(self, state: EngineState, listener: Listener) -> None:
+    def __init__(self, state: EngineState, listener: Listener, instances: Sequence[NodeInstance]) -> None:
         self.state = state
         self.listener = listener
-        self.tick = 0
         self.thread = 0  # that of the latest tick
+        self.layout = Layout(instances)
         self.pending = Changes()
-        self.nodes: list[NodeTrace] = []  # in preorder
+        self.last = bytearray([IDLE]) * len(instances)  # the statuses that are told or pending, by place
+        self.now = self.last[:]  # those now, with REACHED
+        self.low, self.high = 0, NOTHING  # the places that have been written since both were compared
+        self.faults: dict[int, Fault | NodeInstance | None] = {}  # of these, by number
+        self.open: list[Callable[[], None]] = []  # for nodes with functions that are being ticked: what writes theirs
+        self._flushed: list[int | Block] = []  # in this tick, which `recorded` hasn't looked at
+        self._recorded: set[int] = set()
 
     def restore(self, statuses: Mapping[int, int]) -> None:
         """Set the statuses that nodes had before the first tick, and report them like any change."""
         for index in sorted(statuses, reverse=True):
-            self.nodes[index].last = statuses[index]
+            self.last[self.layout.places[index]] = statuses[index]
             self.pending.add(index, IDLE, statuses[index])
+        self.now[:] = self.last
         self.flush()
+
+    def begin_tick(self) -> None:
+        """Note that nothing has been reached in this tick."""
+        self.thread = get_ident()
+        if self.open:  # the last tick was cut short
+            self.open.clear()
+        self.now[:] = self.last
+        if self._flushed or self._recorded:
+            self._flushed, self._recorded = [], set()
+
+    def begin(self, place: int) -> None:
+        """Go on to write at a place that isn't behind the latest one."""
+        if self.high != NOTHING:
+            self.settle()
+        self.low = place
+        self.high = place - 1
+
+    def settle(self) -> None:
+        """Add what was written to the pending changes."""
+        for write in self.open:
+            write()
+        if self.high == NOTHING:
+            return
+        low, end = self.low, self.high + 1
+        self.high = NOTHING
+        before, after = bytes(self.last[low:end]), self.now[low:end].translate(_STATUS)
+        if before != after:
+            self.last[low:end] = after
+            self.pending.add_block(Block(self.layout, low, before, bytes(after), self.faults))
+            self.faults = {}
 
     def flush(self) -> None:
         """Hand the pending changes to the listener, oldest first."""
-        if self.pending.codes:
+        if self.open or self.high != NOTHING:
+            self.settle()
+        if self.pending.entries:
             changes, self.pending = self.pending, Changes()
+            self._flushed += changes.entries
             self.listener(changes)
+
+    def forget(self, start: int, end: int) -> None:
+        """Let nodes be IDLE without reporting it."""
+        self.last[start:end] = self.now[start:end] = bytes([IDLE]) * (end - start)
+
+    def recorded(self) -> set[int]:
+        """Return the numbers of the nodes whose status was reported in this tick, or is pending."""
+        for entry in (*self._flushed, *self.pending.entries):
+            self._recorded.update((entry >> 6,) if isinstance(entry, int) else entry.nodes)
+        self._flushed.clear()
+        return self._recorded
 
 
 class NodeTrace:
@@ -112,29 +143,36 @@ class NodeTrace:
     it from this tick are recorded before its own, and those that this run has not reached are forgotten.
     """
 
-    __slots__ = ("below", "every", "index", "last", "reached", "recorded", "reported_by_leaf", "trace")
+    __slots__ = ("every", "index", "place", "reported_by_leaf", "start", "trace", "write")
 
-    def __init__(self, index: int, every: bool, below: list[NodeTrace], trace: StatusTrace) -> None:
-        self.index = index
-        self.every = every
-        self.below = below
+    def __init__(self, instance: NodeInstance, trace: StatusTrace) -> None:
+        self.index = instance.index
+        self.every = instance.above is not None and reports_each_round(instance.above.node)
         self.trace = trace
-        self.last = IDLE
-        self.reached = self.recorded = 0  # the ticks in which it last had a status, and in which that was recorded
+        self.place = trace.layout.places[self.index]
+        self.start = trace.layout.starts[self.place]
         self.reported_by_leaf = False  # so that a leaf needs no wrapper while it is RUNNING
+        self.write: Callable[[], None] | None = None  # writes what functions below it have answered so far
 
     def change(self, status: int) -> None:
         """Record the status that the node has now."""
-        if status != RUNNING and (self.every or self.last == RUNNING):
-            self._forget_below()
-        elif status == RUNNING and self.last not in (IDLE, RUNNING):
+        trace, place = self.trace, self.place
+        before = trace.last[place]
+        if status == RUNNING == before:
+            trace.now[place] = RUNNING | REACHED
+            return
+        trace.settle()
+        before = trace.last[place]
+        if status != RUNNING and (self.every or before == RUNNING):
+            trace.forget(self.start, place)
+        elif status == RUNNING and before not in (IDLE, RUNNING):
             self._record_below()
-        if status != self.last or (self.every and status != RUNNING):
-            before = self.last
-            self.last = status
-            self._record(before)
-            if before == RUNNING and not self.below:  # a leaf that took time
-                self.trace.flush()
+        trace.now[place] = status | REACHED
+        if status != before or (self.every and status != RUNNING):
+            trace.last[place] = status
+            trace.pending.add(self.index, before, status, trace.state.fault if status == FAILURE else None)
+            if before == RUNNING and self.start == place:  # a leaf that took time
+                trace.flush()
 
     def flush(self) -> None:
         """Hand the pending changes of the whole engine to the listener."""
@@ -143,53 +181,108 @@ class NodeTrace:
     def ended(self, status: int) -> int:
         """Record the completion of a leaf that reports its own; return the status."""
         if self.reported_by_leaf:
-            self.reached = self.trace.tick
             self.change(status)
         return status
 
-    def _record(self, before: int = IDLE) -> None:
-        """Add its status to the pending changes; `before` is the one before."""
-        trace = self.trace
-        self.recorded = trace.tick
-        trace.pending.add(self.index, before, self.last, trace.state.fault)
+    def reach(self, status: int) -> None:
+        """Note the status that a function has now, to be compared later with the one before."""
+        trace, place = self.trace, self.place
+        if place <= trace.high:
+            trace.begin(place)
+        trace.high = place
+        trace.now[place] = status | REACHED
+        if not status and trace.last[place]:
+            trace.faults[self.index] = trace.state.fault
 
     def wrap(self, compiled: Compiled) -> Compiled:
         """Return the same node, traced. The root counts the ticks."""
         tick, halt = compiled
-        leaf = find_function(tick)
-        if leaf is not None and self.index and not self.every:
-            return self._trace_function(leaf), self._trace_halt(halt)
+        trace = self.trace
         if self.reported_by_leaf:
             return tick, self._trace_halt(halt)
-        trace = self.trace
-
-        def traced_tick() -> int:
-            status = tick()
-            self.reached = trace.tick
-            if status is not self.last or self.every:
-                self.change(status)
-            return status
+        traced_tick = self._trace_tick(tick)
 
         def root_tick() -> int:
-            trace.tick += 1
-            trace.thread = get_ident()
+            trace.begin_tick()
             return traced_tick()
 
         return (traced_tick if self.index else root_tick), self._trace_halt(halt)
 
-    def _trace_function(self, leaf: FunctionLeaf) -> Tick:
-        """Wrap the function itself, and do what FunctionLeaf.tick does: the two calls become one."""
+    def _trace_tick(self, tick: Tick) -> Tick:
+        every, start, write = self.every, self.start, self.write
 
-        measures = _find_measured(leaf.instance)
-
-        # defaults and not cells, as in control.py: there are many of them
+        # what doesn't change are defaults: there are many of them
         def traced_tick(
-            self: NodeTrace = self,
-            call: Call = leaf.call,
+            place: int = self.place,
             trace: StatusTrace = self.trace,
-            after: tuple[int, ...] = _SUCCESS,
-            measured: Callable[[], str] | None = measures,
+            last: bytearray = self.trace.last,
+            now: bytearray = self.trace.now,
+            opened: list[Callable[[], None]] = self.trace.open,
         ) -> int:
+            if write is None:
+                status = tick()
+            else:
+                if start <= trace.high != NOTHING:
+                    trace.begin(start)
+                opened.append(write)
+                status = tick()
+                opened.pop()
+            if now[place] == status and not every:  # as before, and not reached so far
+                now[place] = status | REACHED
+                return status
+            before = last[place]
+            if status == RUNNING or before == RUNNING or every:
+                self.change(status)
+                return status
+            if place <= trace.high:
+                trace.begin(place)
+                before = last[place]
+            trace.high = place
+            now[place] = status | REACHED
+            if not status and before:
+                trace.faults[self.index] = trace.state.fault
+            return status
+
+        return traced_tick
+
+    def wrap_functions(self, children: Sequence[Compiled], keeps: bool) -> list[Compiled]:
+        """Return the children of this node, with those traced that are functions; where it `keeps` them as they are,
+        it traces what they answer (`trace_functions`).
+        """
+        wrapped = []
+        for tick, halt in children:
+            leaf = find_function(tick)
+            if leaf is None:
+                wrapped.append((tick, halt))
+                continue
+            trace, measured = NodeTrace(leaf.instance, self.trace), _find_measured(leaf.instance)
+            if trace.every:
+                tick = trace._trace_tick(tick)
+            elif measured is not None or not keeps:
+                tick = trace._trace_function(leaf, measured)
+            wrapped.append((tick, trace.halt_function))
+        return wrapped
+
+    def trace_functions(self, leaves: Sequence[FunctionLeaf | None], passes: int) -> FunctionsTrace | None:
+        """Return the trace of the functions among the children of this node, which are None else."""
+        if not any(leaves):
+            return None
+        traces = [None if leaf is None else NodeTrace(leaf.instance, self.trace) for leaf in leaves]
+        return FunctionsTrace(self, traces, passes)
+
+    def _trace_function(self, leaf: FunctionLeaf, measured: Callable[[], str] | None) -> Tick:
+        """Trace the function itself, and do what FunctionLeaf.tick does: the calls become one."""
+
+        # what doesn't change are defaults, as above
+        def traced_tick(
+            call: Call = leaf.call,
+            place: int = self.place,
+            trace: StatusTrace = self.trace,
+            last: bytearray = self.trace.last,
+            now: bytearray = self.trace.now,
+            measured: Callable[[], str] | None = measured,
+        ) -> int:
+            status: int
             try:
                 status = call()
             except KeyboardInterrupt:
@@ -201,56 +294,52 @@ class NodeTrace:
                     status = SUCCESS
                 elif status is not SUCCESS:
                     status = status_of(leaf.instance, status)
-            self.reached = now = trace.tick
-            if status is not self.last:
-                before, self.last = self.last, status
-                if status is SUCCESS:
-                    self.recorded = now
-                    changes = trace.pending
-                    if measured is not None:
-                        changes.faults[len(changes.codes)] = Fault(self.index, measured())
-                    changes.indices.append(self.index)
-                    changes.codes.append(after[before])
-                else:
-                    self._record(before)
+            if now[place] == status:  # as before, and not reached so far
+                now[place] = status | REACHED
+                return status
+            if place <= trace.high:
+                trace.begin(place)
+            trace.high = place
+            now[place] = status | REACHED
+            if not status and last[place]:
+                trace.faults[self.index] = trace.state.fault
+            elif measured is not None and status is SUCCESS != last[place]:
+                trace.faults[self.index] = Fault(self.index, measured())
             return status
 
         return traced_tick
 
+    def halt_function(self, keep: bool) -> None:
+        """Halt a function leaf, which knows nothing of it."""
+        if self.trace.now[self.place] & ~REACHED == RUNNING:  # it may have completed since `last`
+            self.change(IDLE)
+
     def _trace_halt(self, halt: Halt) -> Halt:
         def traced_halt(keep: bool) -> None:
             halt(keep)
-            if self.last == RUNNING:
+            if self.trace.last[self.place] == RUNNING:
                 self.change(IDLE)
 
         return traced_halt
 
-    def _forget_below(self) -> None:
-        # a node whose last status is IDLE has nothing to forget below it
-        stack = [child for child in self.below if child.last != IDLE]
-        while stack:
-            node = stack.pop()
-            node.last = IDLE
-            stack += [child for child in node.below if child.last != IDLE]
-
     def _record_below(self) -> None:
         """Record the completions of this tick that aren't recorded, children before parents, and forget others."""
-        now = self.trace.tick
-        unrecorded: list[NodeTrace] = []
-        stack = [child for child in self.below if child.last != IDLE]
-        while stack:
-            node = stack.pop()
-            if node.last == RUNNING:  # just recorded, with everything below it
-                continue
-            if node.reached != now:
-                node._forget_below()
-                node.last = IDLE
-                continue
-            if node.recorded != now:
-                unrecorded.append(node)
-            stack += [child for child in node.below if child.last != IDLE]
-        for node in reversed(unrecorded):
-            node._record()
+        trace = self.trace
+        last, now, layout, recorded = trace.last, trace.now, trace.layout, trace.recorded()
+        unrecorded: list[int] = []
+        place = self.place - 1
+        while place >= self.start:
+            if last[place] == RUNNING:  # just recorded, with everything below it
+                place = layout.starts[place] - 1
+            elif last[place] != IDLE and not now[place] & REACHED:
+                trace.forget(layout.starts[place], place + 1)
+                place = layout.starts[place] - 1
+            else:
+                if last[place] != IDLE and layout.numbers[place] not in recorded:
+                    unrecorded.append(place)
+                place -= 1
+        for place in reversed(unrecorded):
+            trace.pending.add(layout.numbers[place], IDLE, last[place], trace.state.fault)
 
 
 _MOST_ABOVE = 4  # nodes between a rule and a condition in it: `not`, `and`, `or`

@@ -19,7 +19,8 @@ from btlang.monitor.groot_protocol import GrootTree, models_of
 from btlang.run.bus import INLINE
 from btlang.run.controls import Controls
 from btlang.run.events import Event, Sampled, StatusesChanged
-from btlang.run.snapshot import HALTED, RunFollower
+from btlang.run.follower import RunFollower
+from btlang.run.snapshot import HALTED
 from btlang.text.source import NOWHERE
 
 TYPE_CHECKING = False

@@ -118,11 +118,14 @@ def _common(event: Event) -> dict[str, Any]:
 
 
 def _statuses(event: StatusesChanged) -> dict[str, Any]:
-    changes = event.changes
-    reasons = {at: event.nodes.reason(changes.indices[at], fault) for at, fault in changes.faults.items()}
-    written = _common(event) | {"indices": changes.indices, "codes": changes.codes}
+    changes = list(event.without_paths())
+    reasons = {str(at): reason for at, (_, _, _, reason) in enumerate(changes) if reason}
+    written = _common(event) | {
+        "indices": [index for index, _, _, _ in changes],
+        "codes": [before << 3 | status for _, status, before, _ in changes],
+    }
     if reasons:
-        written["reasons"] = {str(at): reason for at, reason in reasons.items() if reason}
+        written["reasons"] = reasons
     if event.valued:
         written["values"] = {str(index): dict(node.ports) for index, node in event.valued.items()}
     return written

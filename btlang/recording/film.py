@@ -20,10 +20,11 @@ from btlang.recording.story import NO_REASON, Story
 from btlang.robots.worlds.world_file import read_world
 from btlang.run.bus import BLOCK
 from btlang.run.events import LOGGED, Ended, Event, PeriodPassed, Sampled, StatusesChanged
+from btlang.run.follower import KnownNodes
 from btlang.run.logs import as_json
 from btlang.run.robot_state import Movements, round_scan
 from btlang.run.sampler import Sampler
-from btlang.run.snapshot import KnownNodes, RunState, Shape, find_questions, text_and_places
+from btlang.run.snapshot import RunState, Shape, find_questions, text_and_places
 from btlang.session import Session
 from btlang.text.source import NOWHERE
 

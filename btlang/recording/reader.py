@@ -12,9 +12,9 @@ from functools import cached_property
 from btlang.api import Mission
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.diagnostics.files import os_error_reason
+from btlang.engine.changes import Changes
 from btlang.engine.compile import outline
 from btlang.engine.status import NAMES
-from btlang.engine.status_trace import Changes
 from btlang.recording.bundle import open_mission
 from btlang.recording.channels import CLASSES, LOG, POSE, SCAN, STATE, STATUSES, THINGS, VALUES
 from btlang.recording.recorder import ABOUT
@@ -219,13 +219,13 @@ def _metres(value: Any) -> float | None:
 
 
 def _changes(data: Mapping[str, Any], size: int) -> Changes:
-    changes = Changes()
-    changes.indices, changes.codes = data["indices"], data["codes"]
-    if not all(0 <= index < size for index in changes.indices):
-        raise ValueError("there's no such node")
-    if not all(code & 7 in _STATUSES and code >> 3 in _STATUSES for code in changes.codes):
-        raise ValueError("there's no such status")
-    changes.faults = {int(at): reason for at, reason in data.get("reasons", {}).items()}
+    changes, reasons = Changes(), data.get("reasons", {})
+    for at, (index, code) in enumerate(zip(data["indices"], data["codes"], strict=True)):
+        if not 0 <= index < size:
+            raise ValueError("there's no such node")
+        if code & 7 not in _STATUSES or code >> 3 not in _STATUSES:
+            raise ValueError("there's no such status")
+        changes.add(index, code >> 3, code & 7, reasons.get(str(at)))
     return changes
 
 

@@ -89,7 +89,7 @@ class AssembledRobot(Guarded):
 
     def place_names(self) -> list[str]:
         """Return the names of all places, including those of the mission."""
-        return list(self.world.names.places)
+        return list(self._known.names.places)
 
     def seen(self, kind: str) -> list[str]:
         """Return the objects or people in view, nearest first. Raises RobotError if nothing reports them."""

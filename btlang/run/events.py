@@ -15,8 +15,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, ClassVar, Protocol, TypeAlias
 
+    from btlang.engine.changes import Changes
     from btlang.engine.instance import Fault, NodeInstance
-    from btlang.engine.status_trace import Changes
     from btlang.run.robot_state import RobotState
 
     Sink: TypeAlias = Callable[["Event"], object]

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from functools import cached_property
+from itertools import zip_longest
 
 from btlang.diagnostics.diagnostic import underline
+from btlang.engine.changes import reports_each_round
 from btlang.engine.engine import Failure
 from btlang.engine.leaves.leaf import find_raising_line
 from btlang.engine.nodes.decorators import WAS_TRUE
-from btlang.engine.status import FAILURE, IDLE, RUNNING, SUCCESS
+from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.run.bus import INLINE
 from btlang.run.events import StatusesChanged
+from btlang.run.snapshot import Shape
 from btlang.support.record import Record
 from btlang.text.formatting import printable
 from btlang.tree.catalogue import CATALOGUE, ON_FAILURE, SUBTREE, NodeKind
@@ -18,8 +22,13 @@ from btlang.tree.node import Node
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from typing import Any
+
+    from btlang.engine.changes import Block
     from btlang.engine.engine import Engine
     from btlang.run.events import Event
+
+    Reason = Callable[[int, Any], str]
 
 
 MOST = 10
@@ -57,6 +66,10 @@ def combine_attempts(parts: Iterable[Attempts]) -> Attempts:
     parts = [part for part in parts if part.kept]
     if len(parts) == 1:
         return parts[0]
+    if len(parts) == 2 and len(parts[0].kept) == len(parts[1].kept) == 1:  # as nearly always: the same once more
+        [one], [other] = parts[0].kept, parts[1].kept
+        if (one.index, one.reason) == (other.index, other.reason):
+            return Attempts((_one(one, other),), parts[0].dropped + parts[1].dropped)
     found: dict[tuple[int, str], Attempt] = {}
     dropped = 0
     for part in parts:
@@ -71,11 +84,10 @@ def combine_attempts(parts: Iterable[Attempts]) -> Attempts:
 
 def _one(old: Attempt, new: Attempt) -> Attempt:
     """Return both attempts as one; their times may lie between each other where nodes run side by side."""
-    latest: Attempt = max(new, old, key=lambda attempt: attempt.last)
-    other = old if latest is new else new
+    latest, other = (new, old) if new.last >= old.last else (old, new)
     before = other.last if latest.times == 1 else max(latest.before, other.last)
-    times = {"first": min(old.first, new.first), "before": before, "times": old.times + new.times}
-    return latest.replace(**times)  # type: ignore[no-any-return]
+    first, times = min(old.first, new.first), old.times + new.times
+    return Attempt(latest.index, latest.reason, first, before, latest.last, times, latest.stopped)
 
 
 class FailureHistory:
@@ -93,6 +105,7 @@ class FailureHistory:
         """The time when the mission failed."""
         self._tried: dict[int, Attempts] = {}  # below a node in its present run
         self._failed: dict[int, dict[int, Attempts]] = {}  # by node: the children whose status is FAILURE, latest last
+        self._kept: set[int] = set()  # the nodes of which something is in these two
         self._since: dict[int, float] = {}  # when a running leaf began
         self._stopped: list[tuple[int, float]] = []  # leaves that were halted at one time, maybe by a failure to come
         self._stopped_at = 0.0
@@ -105,28 +118,81 @@ class FailureHistory:
         return self._failed.get(-1, {}).get(0, _NONE)
 
     def __call__(self, event: Event) -> None:
-        if isinstance(event, StatusesChanged):
-            for index, status, _, reason in event.without_paths():
-                self._take_change(index, status, event.t, reason)
+        if not isinstance(event, StatusesChanged):
+            return
+        changes, reason, t = event.changes, event.nodes.reason, event.t
+        for position, (entry, following) in enumerate(zip_longest(changes.entries, changes.entries[1:])):
+            if isinstance(entry, int):
+                index, before, status = entry >> 6, entry >> 3 & 7, entry & 7
+                self._take_change(index, status, t, reason, changes.faults.get(position))
+                if status != RUNNING and self._ends_run(index, before):
+                    self._forget_below(index)
+            elif entry.has_running or (self._stopped and self._stopped_at == t):  # which the next failure stopped
+                for index, status, _, fault in entry:
+                    self._take_change(index, status, t, reason, fault)
+            elif not self._is_forgotten(entry, following):
+                kept, helpers, nodes = self._kept, self._helpers, entry.nodes
+                if FAILURE in entry.statuses or not kept.isdisjoint(nodes) or not helpers.isdisjoint(nodes):
+                    for index, status, _, fault in entry:
+                        if status == FAILURE or index in kept or index in helpers:  # which grows meanwhile
+                            self._take_change(index, status, t, reason, fault)
 
-    def _take_change(self, index: int, status: int, t: float, reason: str) -> None:
+    def _is_forgotten(self, block: Block, following: int | Block | None) -> bool:
+        """Return whether the next change ends the run around nodes that completed at once, and not with a failure."""
+        if not isinstance(following, int):
+            return False
+        index, before, status = following >> 6, following >> 3 & 7, following & 7
+        return status in (SUCCESS, SKIPPED) and block.is_below(index) and self._ends_run(index, before)
+
+    def _ends_run(self, index: int, before: int) -> bool:
+        """Return whether the completion of a node lets the statuses below it be forgotten."""
+        return before == RUNNING or (index > 0 and reports_each_round(self.engine.node(self.engine.parent(index))))
+
+    def _forget_below(self, index: int) -> None:
+        first, end = index + 1, self._shape.ends[index]
+        if end - first < len(self._kept):
+            below = self._kept.intersection(range(first, end))
+        else:
+            below = {each for each in self._kept if first <= each < end}
+        for each in below:
+            self._forget(each)
+
+    @cached_property
+    def _shape(self) -> Shape:
+        return Shape([self.engine.parent(index) for index in range(self.engine.size)])
+
+    @cached_property
+    def _helpers(self) -> frozenset[int]:
+        """The nodes that are run to help another child of their parent."""
+        indices = range(1, self.engine.size)
+        return frozenset(
+            index for index in indices if self._recovers(above := self.engine.parent(index)) and index != above + 1
+        )
+
+    def _forget(self, index: int) -> Attempts:
+        """Forget what is kept of the earlier run of a node; return it."""
+        self._kept.discard(index)
+        self._failed.get(self.engine.parent(index), {}).pop(index, None)
+        return self._tried.pop(index, _NONE)
+
+    def _take_change(self, index: int, status: int, t: float, reason: Reason, fault: Any) -> None:
         above = self.engine.parent(index)
-        self._failed.get(above, {}).pop(index, None)
         if status == RUNNING:
+            self._failed.get(above, {}).pop(index, None)
             node = self.engine.node(index)
             if not node.children and node.id != SUBTREE:
                 self._since[index] = t
             return
-        began, tried = self._since.pop(index, None), self._tried.pop(index, _NONE)
+        began, tried = self._since.pop(index, None), self._forget(index)
         if status == FAILURE:
-            self._fail(index, t, reason, tried)
+            self._fail(index, t, reason(index, fault), tried)
         elif status == IDLE:
             if began is not None:
                 if t != self._stopped_at:
                     self._stopped, self._stopped_at = [], t
                 self._stopped.append((index, t - began))
             self._add(above, tried)
-        elif status == SUCCESS and index != above + 1 and self._recovers(above):
+        elif status == SUCCESS and index in self._helpers:
             self._add(above, Attempts((Attempt(index, "", t, t, t),)))
 
     def _fail(self, index: int, t: float, reason: str, tried: Attempts) -> None:
@@ -147,6 +213,7 @@ class FailureHistory:
             attempts = attempts.replace(kept=(*others, latest.replace(stopped=latest.stopped + halted)))
         self._stopped.clear()
         self._failed.setdefault(above, {})[index] = attempts
+        self._kept.add(index)
         parent = self._kind(above)
         if index != above + 1 or parent is None or not parent.asks_first:
             self._add(above, attempts)
@@ -155,6 +222,7 @@ class FailureHistory:
 
     def _add(self, index: int, tried: Attempts) -> None:
         if tried.kept and index >= 0:
+            self._kept.add(index)
             self._tried[index] = combine_attempts((self._tried.get(index, _NONE), tried))
 
     def _recovers(self, index: int) -> bool:

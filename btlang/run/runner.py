@@ -25,9 +25,9 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, Protocol
 
+    from btlang.engine.changes import Changes
     from btlang.engine.clock import LeafTimer
     from btlang.engine.instance import Hooks
-    from btlang.engine.status_trace import Changes
     from btlang.run.events import Robot
 
     class Ticked(Protocol):

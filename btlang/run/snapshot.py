@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from threading import Lock
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
+from btlang.engine.changes import reports_each_round
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
-from btlang.engine.status_trace import reports_each_round
-from btlang.run.bus import INLINE
 from btlang.run.events import Arrived, Ended, Heard, NavigationStarted, PeriodPassed, Said, StatusesChanged, Stopped
 from btlang.run.robot_state import RobotState
 from btlang.run.statuses import Status
@@ -18,6 +16,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, Protocol
 
+    from btlang.engine.changes import Changes
     from btlang.run.events import Event, Nodes
     from btlang.text.source import Span
     from btlang.tree.node import Node
@@ -151,10 +150,10 @@ class RunState:
 
     A node that is started again keeps nothing of its earlier round: what it has not reached yet is IDLE again. Where
     that round was over within a tick, this is so once the new one is RUNNING (see btlang/engine/status_trace.py).
-    `nodes` are those of the tree.
+    `nodes` are those of the tree. It is `brief` where nobody asks when nodes started and ended, and why they failed.
     """
 
-    def __init__(self, shape: Shape, nodes: Sequence[Node]) -> None:
+    def __init__(self, shape: Shape, nodes: Sequence[Node], brief: bool = False) -> None:
         self.shape = shape
         self.statuses = bytearray([IDLE]) * len(shape)
         self.started: dict[int, float] = {}
@@ -166,22 +165,29 @@ class RunState:
         self.overruns = 0
         self.robot: RobotState | None = None
         self._nodes = nodes
+        self._brief = brief
         self._over = bytearray(len(shape))  # 1: this run of the node is over, a new one clears what is below it
         self._seen = [0] * len(shape)  # the sweep in which a node was last found to need no clearing
         self._sweep = 1
         self._halted: list[int] = []  # by the halts that come in a row
+        self._completions: list[Iterable[int]] = []  # nodes that completed or were halted at one time
+        self._completed: set[int] = set()  # more of them
+        self._completed_at = -1.0
 
     def copy(self) -> RunState:
         """Return another one, which goes on from here by itself."""
         other = RunState.__new__(RunState)
         for name, value in vars(self).items():
-            shared = name in ("shape", "_nodes") or not isinstance(value, bytearray | dict | list)
+            shared = name in ("shape", "_nodes") or not isinstance(value, bytearray | dict | list | set)
             setattr(other, name, value if shared else value.copy())
         return other
 
     def take(self, event: Event) -> None:
         """Take in an event of the run."""
         if isinstance(event, StatusesChanged):
+            if self._brief:
+                self._take_brief(event.changes, event.t)
+                return
             for index, status, _, reason in event.without_paths():
                 self.change(index, status, event.t, reason)
         elif isinstance(event, PeriodPassed):
@@ -211,14 +217,43 @@ class RunState:
             self.started[index] = t
         self.statuses[index] = status
         self.ended[index] = t
+        self._note_completed((index,), t)
         if status == FAILURE:
             self.reasons[index] = reason
         if before == RUNNING or (index and reports_each_round(self._nodes[self.shape.parents[index]])):
             self._end_run(index)
 
+    def _take_brief(self, changes: Changes, t: float) -> None:
+        for entry in changes.entries:
+            if isinstance(entry, int):
+                self.change(entry >> 6, entry & 7, t)
+                continue
+            if entry.has_running:
+                for index, status, _, _ in entry:
+                    self.change(index, status, t)
+                continue
+            self._halted = []
+            top = self._over.find(1)
+            while top >= 0:
+                following = top + 1
+                if entry.touches(top):
+                    following = self._clear_below(top)
+                top = self._over.find(1, following)
+            for index, status in zip(entry.nodes, entry.statuses, strict=True):
+                self.statuses[index] = status
+            self._note_completed(entry.nodes, t)
+
+    def _note_completed(self, nodes: Iterable[int], t: float) -> None:
+        if t != self._completed_at:
+            self._completed_at = t
+            self._completed.clear()
+            self._completions.clear()
+        self._completions.append(nodes)
+
     def _halt(self, index: int, t: float) -> None:
         self.statuses[index] = HALTED
         self.ended[index] = t
+        self._note_completed((index,), t)
         self._end_run(index)
         self._halted.append(index)
         if index == 0:  # the tree as a whole: the run is over or suspended, and then goes on where it was
@@ -246,18 +281,26 @@ class RunState:
             if node >= 0 and self.statuses[node] == RUNNING:
                 break
         if top >= 0:
-            end = self.shape.ends[top]
-            self.statuses[top + 1 : end] = bytes([IDLE]) * (end - top - 1)
-            over[top:end] = bytes(end - top)
+            self._clear_below(top)
+
+    def _clear_below(self, top: int) -> int:
+        """Clear all below a node whose new run begins; return the number of the node behind it."""
+        end = self.shape.ends[top]
+        self.statuses[top + 1 : end] = bytes([IDLE]) * (end - top - 1)
+        self._over[top:end] = bytes(end - top)
+        return end
 
     def _clear_older(self, index: int, t: float) -> None:
         """Clear all below a node but what has just changed."""
+        self._note_completed((), t)
+        self._completed.update(*self._completions)
+        self._completions.clear()
         node, end = index + 1, self.shape.ends[index]
         while node < end:
             if self.statuses[node] == RUNNING:  # which has cleared what is below it
                 node = self.shape.ends[node]
                 continue
-            if self.ended.get(node) != t:
+            if node not in self._completed:
                 self.statuses[node] = IDLE
             node += 1
 
@@ -269,95 +312,6 @@ class RunState:
         return self.shape.ends[index] > index + 1
 
 
-class RunFollower:
-    """A sink that follows a run, and gives snapshots of it to any thread."""
-
-    policy = INLINE
-
-    def __init__(self, engine: WatchedNodes) -> None:
-        self._engine = engine
-        self._lock = Lock()
-        self._state: RunState | None = None
-        self._latest: Event | None = None
-        self._nodes: Sequence[Node] = ()
-
-    def __call__(self, event: Event) -> None:
-        with self._lock:
-            if self._state is None:
-                count = self._engine.size
-                self._nodes = [self._engine.node(index) for index in range(count)]
-                self._state = RunState(Shape([self._engine.parent(index) for index in range(count)]), self._nodes)
-            self._state.take(event)
-            self._latest = event
-
-    def jump(self, state: RunState) -> None:
-        """Go on from another state of the same tree."""
-        with self._lock:
-            self._state = state
-
-    def snapshot(self, label: Callable[[Node], str]) -> Snapshot:
-        """Return the state now; `label` gives the words of a command."""
-        with self._lock:
-            state, latest = self._state, self._latest
-            if state is None or latest is None:
-                return Snapshot("", -1, 0.0, Status.IDLE, {}, (), "", None)
-            codes = list(state.statuses)
-            leaves = [index for index, code in enumerate(codes) if code == RUNNING and state.is_leaf(index)]
-            number = latest.number + latest.count - 1
-            run, t, said, robot = latest.run, latest.t, state.doing.says, state.robot
-        path = self._engine.path
-        reached = {path(index): _status(code) for index, code in enumerate(codes) if code != IDLE}
-        running = tuple(label(self._nodes[index]) for index in leaves)
-        return Snapshot(run, number, t, _status(codes[0]), reached, running, said, robot)
-
-    def codes(self) -> bytes:
-        """Return the status of each node in preorder, also HALTED and SUSPENDED; nothing before the first event."""
-        with self._lock:
-            return bytes(self._state.statuses) if self._state is not None else b""
-
-    def statuses(self, label: Callable[[Node], str]) -> dict[str, Status]:
-        """Return the status of each node by its words."""
-        with self._lock:
-            codes = list(self._state.statuses) if self._state is not None else []
-        found: dict[str, Status] = {}
-        for node, code in zip(self._nodes, codes, strict=True):
-            words, status = label(node), _status(code)
-            if status != Status.IDLE or words not in found:
-                found[words] = status
-        return found
-
-
-def _status(code: int) -> Status:
-    return Status(min(code, IDLE))  # HALTED and SUSPENDED are IDLE for everybody else
-
-
-_SHOWN = bytes.maketrans(bytes([HALTED, SUSPENDED]), bytes([IDLE, IDLE]))
-
-
-class KnownNodes:
-    """The statuses and the words of `count` nodes, as somebody has got them so far. In the beginning all are IDLE."""
-
-    def __init__(self, count: int) -> None:
-        self._codes = bytes([IDLE]) * count
-        self._valued: dict[int, Node] = {}
-
-    def new_statuses(self, codes: bytes) -> list[tuple[int, int]]:
-        """Return number and status of each node that has another status by now; HALTED and SUSPENDED are IDLE."""
-        before, self._codes = self._codes, codes.translate(_SHOWN)
-        return [(index, self._codes[index]) for index in _find_differences(before, self._codes)]
-
-    def new_words(self, valued: Mapping[int, Node], label: Callable[[Node], str]) -> list[tuple[int, str]]:
-        """Return number and words of each node whose keys have other values by now."""
-        found = []
-        for index, node in valued.items():
-            known = self._valued.get(index)
-            if known is not node:
-                self._valued[index] = node
-                if known is None or known.ports != node.ports:
-                    found.append((index, label(node)))
-        return found
-
-
 def text_and_places(syntax: Any, nodes: Spans) -> tuple[str, list[tuple[int, int] | None]]:
     """Return the text that a mission was read from, and the characters of it that say each node.
 
@@ -367,17 +321,3 @@ def text_and_places(syntax: Any, nodes: Spans) -> tuple[str, list[tuple[int, int
     spans = [nodes.span(index) for index in range(nodes.size)]
     places = [(span.start, span.end) if span is not None and span.source is source else None for span in spans]
     return "" if source is None else source.text, places
-
-
-def _find_differences(before: bytes, after: bytes) -> Iterator[int]:
-    """Yield the positions that differ, found by halves: few nodes of a large tree change at a time."""
-    spans = [(0, len(after))]
-    while spans:
-        start, end = spans.pop()
-        if before[start:end] == after[start:end]:
-            continue
-        if end - start == 1:
-            yield start
-        else:
-            middle = (start + end) // 2
-            spans += (middle, end), (start, middle)

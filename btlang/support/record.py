@@ -37,10 +37,22 @@ class _RecordMeta(type):
         cls.field_defaults = defaults  # type: ignore[attr-defined]
         cls._compared = tuple(f for f in fields if f not in uncompared)  # type: ignore[attr-defined]
         if fields:
-            open_body = {"__slots__": tuple(own), "__setattr__": object.__setattr__, "__delattr__": object.__delattr__}
-            open_class = super().__new__(mcs, f"_{name}", bases, open_body)
-            cls.__new__ = _make_new(open_class, fields, defaults)  # type: ignore[method-assign]
+            cls.__new__ = _make_first(cls, mcs, tuple(own))  # type: ignore[method-assign]
         return cls
+
+
+def _make_first(cls: type, mcs: type, own: tuple[str, ...]) -> Any:
+    """Return what makes the first instance of a class, and then leaves this to a constructor that it makes: of most
+    classes a command has none, and making their constructors would be a twentieth of `btc check`.
+    """
+
+    def first(kind: type, /, *values: Any, **named: Any) -> Any:
+        body = {"__slots__": own, "__setattr__": object.__setattr__, "__delattr__": object.__delattr__}
+        open_class: type = type.__new__(mcs, f"_{cls.__name__}", cls.__bases__, body)
+        cls.__new__ = _make_new(open_class, cls.fields, cls.field_defaults)  # type: ignore[attr-defined,method-assign]
+        return cls.__new__(kind, *values, **named)
+
+    return first
 
 
 def _make_new(open_class: type, fields: tuple[str, ...], defaults: dict[str, Any]) -> Any:

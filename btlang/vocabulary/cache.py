@@ -15,6 +15,7 @@ from contextlib import suppress
 from functools import cache
 from zlib import crc32
 
+from btlang.support.gc_pause import gc_paused
 from btlang.support.user_dirs import user_dir
 
 try:
@@ -122,7 +123,8 @@ def _loaded(path: str, key: bytes) -> Any:
         head = _head(key, memoryview(data)[len(key) + 4 :])
         if not data.startswith(head):
             return None
-        found = pickle.loads(memoryview(data)[len(head) :])
+        with gc_paused:
+            found = pickle.loads(memoryview(data)[len(head) :])
     except Exception:  # whatever a damaged pickle raises
         return None
     with suppress(OSError):  # a folder that can only be read

@@ -23,6 +23,7 @@ from btlang.vocabulary.language_tables import (
     comparing_phrases,
     merged,
 )
+from btlang.vocabulary.later import packed, unpacked
 from btlang.vocabulary.nouns import Features, with_plurals
 from btlang.vocabulary.pattern import Form, PatternError, Slot, forms, replaced, variants, ways
 from btlang.vocabulary.reading_context import Known, ReadingContext
@@ -30,11 +31,13 @@ from btlang.vocabulary.references import HOME
 from btlang.vocabulary.trie import TrieNode, add, collisions, copied, unshare
 from btlang.vocabulary.value_type import PLACE, WORLD, ZONE, ValueType
 from btlang.vocabulary.values import Values
-from btlang.vocabulary.verbs import Frame, beginnings_of, parts_of, phrases_of
-from btlang.vocabulary.word_tree import VERBS, WordTree, tree_of, words_of
+from btlang.vocabulary.verbs import Beginnings, Frame, beginnings_of, parts_of, phrases_of
+from btlang.vocabulary.word_tree import NO_WORDS, VERBS, WordTree, tree_of, words_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from typing import Any
+
     from btlang.vocabulary.entry import Verbs
     from btlang.vocabulary.keyword_file import KeywordFile
 
@@ -48,6 +51,8 @@ _CONDITIONAL = ("if", "unless", "whenever", "as_soon_as", "once", "while", "unti
 """Roles of words behind which a condition stands."""
 _JOINING = ("and", "then", "or", "but")
 
+_SHARED = (Entry, Role, SlotSpec, Frame, Beginnings, Span, Source)
+"""Classes of what phrases refer to in many places."""
 _MOST, _TIMES = ("at_most", "up_to_times"), "{count} time(s)"
 _REPLIES = (("if_yes", True), ("if_no", False))
 
@@ -178,6 +183,11 @@ class Lexicon:
         """Words between a command and what it is for: `go through the hall to get to the lab`."""
         self.before_conditions, self.joining = self._first_words(_CONDITIONAL), self._first_words(_JOINING)
         """The first words of what stands before a condition, and of what joins commands."""
+        self.firsts = {
+            role: frozenset(words.split()[0] for words in ways(phrases, self.articles))
+            for role, phrases in self.roles.items()
+        }
+        """The first words of what says each role."""
         self.continuing = frozenset(
             str(form[0]) for role in GOES_ON for phrase in self.roles.get(role, ()) for form in self._forms(phrase)
         )
@@ -233,6 +243,13 @@ class Lexicon:
         if "_is_made" in self.__dict__:
             raise AttributeError(f"a Lexicon is frozen: cannot set {name}")
         super().__setattr__(name, value)
+
+    def __getstate__(self) -> dict[str, object]:
+        return {**self.__dict__, "trie": packed(self.trie, _SHARED)}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        children, shared = state["trie"]
+        self.__dict__.update(state, trie=unpacked(children, shared, NO_WORDS))
 
     @property
     def types(self) -> Mapping[str, ValueType]:

@@ -212,8 +212,10 @@ def with_plurals(
 
 def plural(words: str, endings: Mapping[str, str]) -> str:
     """By the endings of the language, the longest that fits: `box` as `boxes`."""
-    best = max((ending for ending in endings if words.endswith(ending)), key=len, default=None)
-    return words if best is None else words.removesuffix(best) + endings[best]
+    for at in range(len(words) + 1):
+        if words[at:] in endings:
+            return words[:at] + endings[words[at:]]
+    return words
 
 
 def noun_phrases(

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
@@ -98,3 +99,42 @@ def test_the_rest(bench, table):
     assert not sensing.battery_low(b.robot)
     assert sensing.hand_empty(b.robot)
     assert not sensing.holding(b.robot, "cup")
+
+
+def test_a_scan_is_computed_once_for_all_who_ask_until_the_robot_moves(bench, monkeypatch):
+    computed, points = [], sensing._points
+    monkeypatch.setattr(sensing, "_points", lambda *given: computed.append(given[2]) or points(*given))
+    b = bench(load_world(ROOM))
+    for _ in range(3):
+        assert sensing.path_is_clear(b.robot) == (not sensing.wall_in_front(b.robot))
+        sensing.wall_on_left(b.robot)
+        sensing.distance_ahead(b.robot)
+    assert computed == [0.0, 90.0, 0.0]  # the way ahead for two questions
+    b.robot.drive(0.2, 0.0)
+    b.tick()
+    sensing.path_is_clear(b.robot)
+    assert computed == [0.0, 90.0, 0.0, 0.0]
+
+
+def test_nothing_is_kept_of_a_scan_that_may_be_overwritten(bench):
+    b = bench()
+    scan = np.full(360, np.inf)
+    b.robot._scan = lambda pose: scan
+    assert sensing.path_is_clear(b.robot)
+    scan[:] = 0.3
+    assert sensing.wall_in_front(b.robot)
+
+
+def test_names_are_those_of_the_present_mission(bench):
+    b = bench(people=(Person("Ann", 1.0, 0.0, 0.25),))
+    b.robot.name_places([Place("Desk", 1.0, 1.0)])
+    assert sensing.distance_to_place(b.robot, "desk") == pytest.approx(2**0.5)
+    assert sensing.place_of_robot(b.robot) == "Desk"
+    assert sensing.person_is_at(b.robot, "Ann", "desk")
+    b.robot.name_places([Place("DESK", 3.0, 0.0)])
+    assert sensing.distance_to_place(b.robot, "desk") == 3.0
+    assert sensing.place_of_robot(b.robot) == "DESK"
+    assert sensing.person_is_at(b.robot, "Ann", "desk")
+    b.robot.name_places([])
+    with pytest.raises(ActionFailed, match="don't know where 'desk' is"):
+        sensing.at_place(b.robot, "desk")

@@ -49,6 +49,22 @@ def deep(levels: int = 10_000) -> Mission:
     return Mission(Tree(node), world_vocabulary())
 
 
+@pytest.mark.parametrize("name", [name for name, target in TARGETS.items() if target.runs])
+def test_nothing_that_runs_is_written_of_a_tree_that_uses_one_that_is_not_there(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for file, text in (
+        ("gone.xml", '<root BTCPP_format="4"><BehaviorTree ID="A"><SubTree ID="Gone"/></BehaviorTree></root>'),
+        ("gone.txt", 'do subtree "Gone"'),
+    ):
+        path = tmp_path / file
+        path.write_text(text, encoding="utf-8")
+        for verb in (["check"], ["compile", "--to", name, "-o", str(tmp_path / "out")]):
+            assert main([*verb, str(path)]) == 2
+            assert "error BT126: There's no tree called 'Gone'." in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
 @pytest.mark.parametrize("name", TARGETS)
 def test_every_target_can_be_loaded(name: str) -> None:
     module = TARGETS[name].make.partition(":")[0]

@@ -4,16 +4,19 @@ Both run the same tree, with leaves that do nothing, written as each documents i
 classes for what takes time; there behaviours. A tick is `Engine.tick` and `BehaviourTree.tick`. Ratios are those of
 medians of rounds in which all take turns. The last lines are the ratios without a listener; before them stand those
 with every status change sent to the event stream, what depth does to a tick, and what a node costs.
+
+In most of these trees the statuses soon stay as they are. So before all this stand trees in which nearly all of them
+change at each tick: alone, with the changes sent to the event stream, and with what each run has follow them.
 """
 
 from __future__ import annotations
 
 import argparse
 import gc
+import time
 import tracemalloc
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import partial
-from random import Random
 from statistics import median
 
 import py_trees
@@ -21,44 +24,18 @@ from py_trees.common import Status
 
 from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
-from btlang.engine.leaves.leaf import LeafBinding
 from btlang.run.bus import Bus
+from btlang.run.events import Event
+from btlang.run.failure_history import FailureHistory
+from btlang.run.follower import RunFollower
+from btlang.run.recent import RecentEvents
 from btlang.run.runner import trace_engine
 from btlang.tree.node import Node, Tree
 from tests.benchmarks.compile import medians, seconds
+from tests.benchmarks.trees import BINDINGS, CHANGING, KEY, MIX, ODD, TREES, mix, n, nodes
 
-CONDITIONS, RUNNERS, ACTIONS = 10, 50, 10_000
-MIX, DEPTH = 1_000, 6
 BIG = 100_000
 DEEP = (10, 100, 1_000)
-
-
-def run() -> Iterator[None]:
-    """An action that never completes."""
-    while True:
-        yield
-
-
-class Wait:
-    """An action that never completes, as a class."""
-
-    def start(self) -> None: ...
-
-    def tick(self) -> None: ...
-
-    def halt(self) -> None: ...
-
-
-KEY = "x"
-"""A value of the blackboard that leaves read at each tick."""
-BINDINGS = {
-    "Yes": LeafBinding(lambda: True),
-    "No": LeafBinding(lambda: False),
-    "Act": LeafBinding(lambda: None),
-    "Run": LeafBinding(run),
-    "Wait": LeafBinding(Wait),
-    "Keyed": LeafBinding(lambda value: True, {"value": float}),
-}
 
 
 class Answer(py_trees.behaviour.Behaviour):
@@ -95,65 +72,11 @@ def peer(node: Node) -> py_trees.behaviour.Behaviour:
     return kind(node.id, memory=not node.id.startswith("Reactive"), children=children)
 
 
-def n(id: str, *children: Node) -> Node:
-    return Node(id, children=children)
-
-
-def mix() -> Node:
-    """MIX nodes of depth DEPTH, all of which a tick visits: conditions, actions, sequences, fallbacks, decorators."""
-    random, left = Random(7), MIX
-
-    def grown(depth: int, succeeds: bool, share: int) -> Node:
-        """A tree of about `share` nodes that completes at once."""
-        nonlocal left
-        left -= 1
-        if depth == DEPTH or share < 3:
-            return n(random.choice(("Yes", "Act")) if succeeds else "No")
-        if random.random() < 0.15:
-            return n("Inverter", grown(depth + 1, not succeeds, share - 1))
-        kind = random.choice(("Sequence", "Fallback", "Parallel") if succeeds else ("Sequence", "Fallback"))
-        count = min(random.randint(3, 6), share)
-        passes = kind != "Fallback"
-        shares = (share - 1) // count
-        children = [grown(depth + 1, passes, shares) for _ in range(count - 1)]
-        return n(kind, *children, grown(depth + 1, succeeds, shares))
-
-    children: list[Node] = []
-    while left > 0:
-        children.append(grown(1, True, min(left, 4 * MIX)))
-    return n("Sequence", *children)
-
-
-TREES: dict[str, tuple[str, Node]] = {
-    "T1": (
-        f"resumed leaf behind {CONDITIONS} conditions",
-        n("Sequence", *[n("Yes")] * CONDITIONS, n("Run")),
-    ),
-    "T2": (f"fresh tick of about {MIX:,} nodes of depth {DEPTH}", mix()),
-    "T3": (f"reactive guard of {CONDITIONS} conditions", n("ReactiveSequence", *[n("Yes")] * CONDITIONS, n("Run"))),
-    "T4": (f"parallel of {RUNNERS} running leaves", n("Parallel", *[n("Run")] * RUNNERS)),
-    "T5": (f"sequence of {ACTIONS:,} actions run to the end", n("Sequence", *[n("Act")] * ACTIONS)),
-    "T6": (f"parallel of {RUNNERS} running classes", n("Parallel", *[n("Wait")] * RUNNERS)),
-    "T7": (
-        f"reactive guard of {CONDITIONS} conditions with a port from the blackboard",
-        n("ReactiveSequence", *[Node("Keyed", ports=(("value", f"{{{KEY}}}"),))] * CONDITIONS, n("Run")),
-    ),
-}
-
-
 def engine(root: Node) -> Engine:
     """Without a listener."""
     made = Engine(Tree(root), BINDINGS.get, clock=Clock())
     made.blackboard.set(KEY, 1.5)
     return made
-
-
-def nodes(root: Node) -> Iterator[Node]:
-    stack = [root]
-    while stack:
-        node = stack.pop()
-        yield node
-        stack += node.children
 
 
 def repeated(tick: Callable[[], object], times: int) -> None:
@@ -192,6 +115,38 @@ def compared(root: Node, rounds: int, fresh: bool) -> dict[str, float]:
     return {name: median(values) for name, values in taken.items()}
 
 
+def count(counts: list[int], event: Event) -> None:
+    counts.append(event.count)
+
+
+def changing(rounds: int) -> None:
+    """Ticks in which nearly all statuses change, by the time of the thread: what it costs to tell them."""
+    for name, root in CHANGING.items():
+        bus, followed = Bus(), Bus()
+        counts: list[int] = []
+        told = trace_engine(Tree(root), BINDINGS.get, bus=bus)
+        session = trace_engine(Tree(root), BINDINGS.get, bus=followed)
+        bus.add(partial(count, counts))
+        for sink in (RunFollower(session), FailureHistory(session), RecentEvents()):
+            followed.add(sink)
+        ticks = {"alone": engine(root).tick, "told": told.tick, "followed": session.tick}
+        taken: dict[str, list[float]] = {each: [] for each in ticks}
+        for number in range(2 * rounds + 2):
+            ODD[0] = number % 2 == 1
+            if number == 2:  # at first all are new
+                counts.clear()
+            for each, tick in ticks.items():
+                began = time.thread_time()
+                tick()
+                taken[each].append(time.thread_time() - began)
+        changes = sum(counts) / (2 * rounds)
+        alone, there, beside = (median(taken[each][2:]) for each in ticks)
+        print(
+            f"{name}, {told.size:,} nodes, {changes:,.0f} changes a tick: {alone * 1e3:.2f} ms alone, told in "
+            f"{there / alone:.2f} times that, {(beside - alone) / changes * 1e9:.0f} ns a change with its followers"
+        )
+
+
 def depths(rounds: int) -> None:
     """A resumed tick of a leaf below ever more nodes."""
     ticks: dict[str, Callable[[], object]] = {}
@@ -227,6 +182,7 @@ def main() -> None:
     options.add_argument("--rounds", type=int, default=15)
     rounds = options.parse_args().rounds
     py_trees.logging.level = py_trees.logging.Level.WARN
+    changing(rounds)
     ratios: dict[str, tuple[float, float]] = {}
     for name, (what, root) in TREES.items():
         taken = compared(root, rounds, fresh=name == "T5")

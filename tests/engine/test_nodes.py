@@ -245,3 +245,17 @@ def test_while_form_runs_the_action_over_and_over_until_the_condition_breaks() -
     assert [e for e in world.log if e != "C"] == [
         "A.start", "A.tick", "A.start", "A.tick", "A.start", "A.tick", "A.start", "A.halt",
     ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("id", "scripts", "ports", "statuses"),
+    [
+        ("Parallel", "RRS RS RRR", {"success_count": 1}, "rs"),
+        ("Parallel", "RRS RF RRR", {"success_count": 1}, "rf"),
+        ("ParallelAll", "RRS f s", {"max_failures": 2}, "rrs"),  # 2 of 3 have to succeed
+        ("ParallelAll", "RRS f f", {"max_failures": 2}, "rrf"),
+    ],
+)
+def test_what_other_libraries_have(id: str, scripts: str, ports: dict[str, int], statuses: str) -> None:
+    """As docs/engine.md says it: a race, and a threshold of successes."""
+    assert run(id, scripts, len(statuses), **ports)[0] == statuses

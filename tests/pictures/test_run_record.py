@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from btlang.api import parse_tree
+from btlang.engine.changes import Changes
 from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
-from btlang.engine.status_trace import Changes
 from btlang.pictures.run_picture import numbers
 from btlang.pictures.run_record import LastStatuses, RunRecord, Sighting, by_definition
 from btlang.pictures.track import place_of, sighting_at, ways

@@ -17,7 +17,7 @@ from btlang.engine.status import IDLE
 from btlang.recording.film import Film, try_mission
 from btlang.recording.reader import RecordedNodes, open_recording
 from btlang.run.events import Event
-from btlang.run.snapshot import RunFollower
+from btlang.run.follower import RunFollower
 from btlang.text.source import Source
 from tests.world.worlds import LIVELY
 

@@ -6,9 +6,9 @@ import io
 import json
 
 import btlang
+from btlang.engine.changes import Changes
 from btlang.engine.instance import Fault, NodeInstance
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
-from btlang.engine.status_trace import Changes
 from btlang.run.events import Bumped, Dropped, Event, FaultInjected, Printed, RobotEvent, Said, StatusesChanged, Stuck
 from btlang.run.logs import JsonLog, PlainLines
 from btlang.text.source import Source, Span

@@ -62,3 +62,26 @@ def test_copies() -> None:
     for copy in (deepcopy(same), pickle.loads(pickle.dumps(same))):
         assert type(copy) is Same
         assert (copy.left, copy.right, copy.third) == (1, "x", (Pair(2),))
+
+
+@pytest.mark.parametrize("given", [((), {}), ((1, 2, 3), {}), ((1,), {"other": 2}), ((1,), {"left": 2})])
+def test_the_first_instance_is_refused_like_any_other(given: tuple[tuple[int, ...], dict[str, int]]) -> None:
+    class Fresh(Record):
+        left: int
+        right: int = 0
+
+    for _ in range(2):
+        with pytest.raises(TypeError, match=r"__new__\(\)"):
+            Fresh(*given[0], **given[1])
+    assert (Fresh(1).left, Fresh(left=1, right=2).right) == (1, 2)
+    assert type(Fresh(1)) is Fresh
+
+
+def test_the_first_instance_may_have_a_field_of_any_name() -> None:
+    class Fresh(Record):
+        kind: int
+        values: int
+        named: int
+
+    fresh = Fresh(kind=1, values=2, named=3)
+    assert (fresh.kind, fresh.values, fresh.named) == (1, 2, 3)

@@ -73,7 +73,7 @@ class Relations:
     """The relations between the things of one world.
 
     `things` are its objects and people, `where` returns the point of a name. `is_seen` returns whether the robot has a
-    name in view, `holder` who holds it.
+    name in view from a pose, `holder` who holds it.
     """
 
     def __init__(
@@ -81,11 +81,14 @@ class Relations:
         world: World,
         things: Mapping[str, Thing],
         where: Callable[[str], Point | None],
-        is_seen: Callable[[str], bool],
+        is_seen: Callable[[str, Pose], bool],
         holder: Callable[[str], str],
     ) -> None:
         self._world, self._things, self._where = world, things, where
         self._is_seen, self._holder = is_seen, holder
+        others = (*(door.name for door in world.doors), *(zone.name for zone in world.zones))
+        self._places = [(place.name.lower(), place.name) for place in world.places]
+        self._others = [(name.lower(), name) for name in others]
 
     def holds(self, name: str, parts: Mapping[str, str], pose: Pose) -> bool:
         """Return whether the relations of a thing are as the parts say, and nothing that they deny is true, from a
@@ -144,14 +147,13 @@ class Relations:
             likes["kind"] = head.removeprefix("kind ")
             names = [name for name, thing in self._things.items() if isinstance(thing, WorldObject)]
         else:
-            world = self._world
-            known = [place.name for place in world.places] + list(self._things)
-            known += [*(door.name for door in world.doors), *(zone.name for zone in world.zones)]
-            names = [SELF] if head == SELF else [name for name in dict.fromkeys(known) if name.lower() == head.lower()]
+            wanted = head.lower()
+            known = (*self._places, *((name.lower(), name) for name in self._things), *self._others)
+            names = [SELF] if head == SELF else list(dict.fromkeys(name for lower, name in known if lower == wanted))
         like = without_relations(likes)
         for name in names:
             thing = self._things.get(name)
-            fits = thing.fits(like) if thing is not None else set(like.items()) <= set(self._parts(name))
+            fits = not like or (thing.fits(like) if thing is not None else like.items() <= set(self._parts(name)))
             if fits and self.holds(name, {part: text for part, text in likes.items() if part not in like}, pose):
                 yield name
 
@@ -164,7 +166,7 @@ class Relations:
         if relation == "seen_by":
             if other != SELF:
                 raise RobotError(f"I can't tell what {said(other)} sees")
-            return self._is_seen(name)
+            return self._is_seen(name, pose)
         if other == SELF:
             return _is_beside(relation, self._point(name), pose)
         zone = next((zone for zone in self._world.zones if zone.name == other), None)

@@ -50,18 +50,24 @@ class Knowledge:
     """
 
     def __init__(self, world: World, obstacles: Obstacles, sight: Sight) -> None:
-        self.world = self._given_world = world
+        self._given_world = world
         self.obstacles = obstacles
         self.zones = Zones(world.zones)
         self.sight = sight
         self._given_to: dict[str, str] = {}
-        self._places = {place.name: place for place in world.places}
         self._regions = {zone.name: zone for zone in world.regions}
+        self._take(world)
 
     def name_places(self, places: Iterable[Place]) -> None:
         """Set the places of a mission, in addition to those of the world."""
-        self.world = self._given_world.with_places(places)
-        self._places = {place.name: place for place in self.world.places}
+        self._take(self._given_world.with_places(places))
+
+    def _take(self, world: World) -> None:
+        """Work out what follows from a world alone: conditions ask for it at each tick."""
+        self.world, self.names = world, world.names
+        self._spellings: dict[str, str] = {}
+        self._places = {place.name: place for place in world.places}
+        self._relations = Relations(world, self.obstacles.things, self.where, self.sight.sees, self._holder)
 
     def place(self, name: str) -> Place | None:
         """Return the place of a name as the world spells it; of a region the point that is farthest from its border."""
@@ -75,11 +81,15 @@ class Knowledge:
 
     def known(self, name: str) -> str:
         """Return the name as the world spells it."""
-        names = self.world.names
-        for known in (*names.places, *names.regions, *names.objects, *names.people, *self.obstacles.things):
-            if known.lower() == name.lower():
-                return known
-        raise RobotError(f"I don't know where '{name}' is")
+        known = self._spellings.get(name)
+        if known is None:
+            names = self.names  # things are added meanwhile
+            every = (*names.places, *names.regions, *names.objects, *names.people, *self.obstacles.things)
+            known = next((known for known in every if known.lower() == name.lower()), None)
+            if known is None:
+                raise RobotError(f"I don't know where '{name}' is")
+            self._spellings[name] = known
+        return known
 
     def is_person(self, name: str) -> bool:
         """Return whether it is the name of a person."""
@@ -107,7 +117,7 @@ class Knowledge:
     def free(self, kind: str) -> list[str]:
         """Return the names of a type whose position is known, without objects that are carried or fixed."""
         if kind not in ("object", "person"):
-            return list(self.world.names.every(kind))
+            return list(self.names.every(kind))
         things = self.obstacles.things
         names = (name for name in self.sight.names(kind) if self.sight.where(name) is not None)
         return [name for name in names if not getattr(things[name], "fixed", False)]
@@ -116,17 +126,19 @@ class Knowledge:
         """Return the names of a type with these parts whose position is known or that are carried, nearest first."""
         things, where, like = self.obstacles.things, self.sight.where, without_relations(parts)
         if kind in ("object", "person"):
-            known = (name for name in self.sight.names(kind) if where(name) or self.obstacles.is_carried(name))
-            names = [name for name in known if name in things and things[name].fits(like)]
+            every, named = self.sight.names(kind), parts.get("named", "").lower()
+            if named:  # looked at first, as all else takes longer
+                every = [name for name in every if name.lower() == named]
+            known = (name for name in every if where(name) or self.obstacles.is_carried(name))
+            names = [name for name in known if name in things and (not like or things[name].fits(like))]
         else:
             places = self.world.places if kind == "place" else ()
             fitting = [place.name for place in places if set(like.items()) <= set(place.parts)]
-            names = fitting if like else list(self.world.names.every(kind))
+            names = fitting if like else list(self.names.every(kind))
         if len(like) < len(parts):
-            relations = Relations(
-                self.world, things, self.where, lambda name: self.sight.sees(name, pose), self._holder
-            )
-            names = [name for name in names if relations.holds(name, parts, pose)]
+            names = [name for name in names if self._relations.holds(name, parts, pose)]
+        if len(names) < 2:
+            return names
         return sorted(names, key=lambda name: pose.distance_to(self._spot(kind, name, pose)))
 
     def _spot(self, kind: str, name: str, pose: Pose) -> Point:

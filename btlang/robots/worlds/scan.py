@@ -72,6 +72,7 @@ def around(ranges: Array, angles: Array, at: Pose, step: float = 1.0) -> Array:
         x, y = at.x + ranges * np.cos(angles), at.y + ranges * np.sin(angles)
         ranges, angles = np.hypot(x, y), np.arctan2(y, x)
     np.fmin.at(found, np.rint(np.degrees(angles)).astype(int) % 360, ranges)
+    found.flags.writeable = False
     return found
 
 
@@ -96,8 +97,9 @@ def as_measured(ranges: Array, at: Pose) -> Array:
     if at == CENTRE:
         return ranges
     measured = around(ranges, _DEGREES, at.inverse)
-    measured[np.isnan(measured)] = np.inf  # what is nearer hides no degree from a beam that starts elsewhere
-    return measured
+    return np.where(
+        np.isnan(measured), np.inf, measured
+    )  # what is nearer hides no degree from a beam that starts elsewhere
 
 
 def _to_segments(segments: Array, pose: Pose, beams: Array) -> Array:

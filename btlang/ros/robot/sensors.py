@@ -49,9 +49,7 @@ class RosSensors:
     ) -> None:
         self._subscriptions, self._base, self._emit = subscriptions, base, emit
         self._scanner, self._radius = body.sensor("scanner") or Sensor("scanner", BASE), body.radius
-        self._seen: tuple[Any, npt.NDArray[np.float64], float, float] | None = (
-            None  # a scan, around the centre, and its summary
-        )
+        self._seen: tuple[Any, npt.NDArray[np.float64], float, float] | None = None  # see `_look`
         self._looked, self._published = -inf, False
         self._contact: Pose | None = None
         self._unknown_frame = ""
@@ -70,7 +68,7 @@ class RosSensors:
                 self._emit("warning", text=str(silent))
             raise
         self._silence_reported = False
-        return self._around(scan)
+        return self._look(scan)[0]
 
     def readings(self, now: float) -> list[ObstacleReading]:
         """Return the readings for the guard; none of a scanner that isn't there and has never sent a scan."""
@@ -79,11 +77,16 @@ class RosSensors:
             reason = self._never(now)
             return [ScanReading("scanner", now, reason, self.scan, scanner.view, scanner.angle)] if reason else []
         message, arrived, fault = found
-        if self._seen is None or self._seen[0] is not message:
-            ranges = self._around(message)
-            self._seen = message, ranges, *summary(ranges, self._radius)
-        _, ranges, room, content = self._seen
+        ranges, room, content = self._look(message)
         return [ScanReading("scanner", arrived, fault, lambda: ranges, scanner.view, scanner.angle, room, content)]
+
+    def _look(self, message: Any) -> tuple[npt.NDArray[np.float64], float, float]:
+        """Return a scan around the centre, and its summary, once for all who ask before the next one."""
+        seen = self._seen
+        if seen is None or seen[0] is not message:
+            ranges = self._around(message)
+            self._seen = seen = message, ranges, *summary(ranges, self._radius)
+        return seen[1:]
 
     def _never(self, now: float) -> str:
         """Return why no scan has come, although somebody publishes scans."""

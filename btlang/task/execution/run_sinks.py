@@ -39,6 +39,7 @@ class RunWatch:
 
     def __init__(self, rules: Collection[int], commands: Collection[int], changed: Callable[[], object]) -> None:
         self._rules, self._commands, self._changed = frozenset(rules), frozenset(commands), changed
+        self._watched = self._rules | self._commands
         self.acting: set[int] = set()
         self.began = False
         """Whether a rule has begun to act since the last look."""
@@ -51,7 +52,7 @@ class RunWatch:
             return
         if not isinstance(event, StatusesChanged):
             return
-        for index, status, _, _ in event.changes:
+        for index, status in event.changes.of(self._watched):
             if index in self._commands:
                 self._ended |= status in (SUCCESS, FAILURE)
             if index in self._rules:  # what a rule does may be a single command

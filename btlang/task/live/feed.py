@@ -15,9 +15,10 @@ from btlang.house_rules import describe_rules
 from btlang.passes.scripts import is_prepared
 from btlang.run.bus import INLINE
 from btlang.run.events import LOGGED, Arrived, DoorMoved, Ended, Event, PeriodPassed, StatusesChanged, Stopped
+from btlang.run.follower import KnownNodes
 from btlang.run.logs import as_json
 from btlang.run.robot_state import RobotState, ask_sensor, round_scan
-from btlang.run.snapshot import Doing, KnownNodes, find_questions, text_and_places
+from btlang.run.snapshot import Doing, find_questions, text_and_places
 from btlang.session import Run
 from btlang.task.live.robot_now import BodyNow, MapNow
 from btlang.task.store.database import StoreError

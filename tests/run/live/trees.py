@@ -17,7 +17,7 @@ from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.engine.status_trace import Changes
+    from btlang.engine.changes import Changes
 
 LETTERS = {"r": RUNNING, "s": SUCCESS, "f": FAILURE, "k": SKIPPED}
 

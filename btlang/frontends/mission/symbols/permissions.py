@@ -5,12 +5,9 @@ A robot need not do what it may do, so such a statement, or end of one, is left 
 
 from __future__ import annotations
 
-from functools import lru_cache
-
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.text.words import Words, statements
 from btlang.vocabulary.lexicon import Lexicon
-from btlang.vocabulary.pattern import ways
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.word_tree import find, tree_of
 
@@ -26,11 +23,11 @@ class Permissions:
         if text.distinct.isdisjoint((*self._allowing, *self._staying)):
             return
         self._trie, self._context = vocabulary.trie, vocabulary.context.with_references()
-        self._asking = frozenset(word for role in ("if", "once", "arrival_at") for word in _firsts(vocabulary, role))
-        self._joining = {word for role in ("then", "and") for word in _firsts(vocabulary, role)}
+        firsts = vocabulary.firsts
+        self._asking = firsts["if"] | firsts["once"] | firsts["arrival_at"]
+        self._joining = firsts["then"] | firsts["and"]
         self._fronts = self._asking | self._joining
-        self._either = _firsts(vocabulary, "or")
-        self._polite = _firsts(vocabulary, "politeness")
+        self._either, self._polite = firsts["or"], firsts["politeness"]
         self._at = frozenset(words[0] for words in vocabulary.values.role_words.introducing.get("location", ()))
         for _, first, last in statements(text, {*self._allowing, *self._staying}):
             self._look(text, first, last)
@@ -101,14 +98,3 @@ class Permissions:
     def _offers(self, text: Words, first: int, last: int) -> bool:
         """Whether `stay there` is one of two things that may be done."""
         return not self._either.isdisjoint(text.words[first:last])
-
-
-def _firsts(vocabulary: Lexicon, role: str) -> frozenset[str]:
-    """The first words of what says a role."""
-    return _first_words(tuple(vocabulary.roles[role]), vocabulary.articles)
-
-
-@lru_cache(64)
-def _first_words(patterns: tuple[str, ...], articles: frozenset[str]) -> frozenset[str]:
-    """The first words of patterns: to write out all their ways takes longer than to read a short mission."""
-    return frozenset(words.split()[0] for words in ways(patterns, articles))
