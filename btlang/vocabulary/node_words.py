@@ -52,7 +52,7 @@ def said_id(node_id: str, role: str, vocabulary: Lexicon) -> str:
         return ""  # `check test check lid` would say it twice
     text = split(Source(f"{vocabulary.word(role)} {said}"), vocabulary.orthography)
     head = longest(vocabulary.trie, text, 0, vocabulary.context)
-    if not said or said.lower() in _phrases(vocabulary)[1]:
+    if not said or said.lower() in _phrases(vocabulary)[1] or not vocabulary.articles.isdisjoint(said.lower().split()):
         return ""
     if head is None or head.meaning.role != role or head.meaning.node:
         return ""

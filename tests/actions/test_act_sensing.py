@@ -1,5 +1,6 @@
 """Conditions, and the robot that roams on one of them."""
 
+from math import cos, radians, sin
 from pathlib import Path
 
 import numpy as np
@@ -38,6 +39,9 @@ def test_half_a_metre_is_free_where_no_wall_is_in_front(bench, x, y, heading):
     assume(b.robot._obstacles.nearest(x, y)[0] > 0.201)
     assume(not any(box.contains((x, y)) for box in world.boxes))
     free = sensing.distance_ahead(b.robot)
+    way = ((x + gone * cos(radians(heading)), y + gone * sin(radians(heading))) for gone in np.linspace(0.0, 0.5, 51))
+    gaps = [b.robot._obstacles.nearest(*point)[0] - b.robot.body.radius for point in way]
+    assume(not any(abs(gap) < 1e-9 for gap in gaps))  # it neither touches a wall beside it nor passes it
     if sensing.wall_in_front(b.robot):
         with pytest.raises(ActionFailed, match="scanner: "):
             b.run(motion.move_forward, distance=free + 0.05)

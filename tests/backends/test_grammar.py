@@ -41,6 +41,7 @@ UNKNOWABLE = {
     "BT162": "a place that is avoided and gone to",
     "BT052": "what comes before goes on for ever",
     "BT068": "a condition behind `when` is checked once",
+    "BT150": "which of three things of a kind is the third",
     "BT151": "`make sure the door is closed` could close it",
     "BT156": "`when you've reached the dock` needs a journey that leads there",
     "BT059": "a rule may be among the commands that `start over` repeats",

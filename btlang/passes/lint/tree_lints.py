@@ -60,15 +60,17 @@ def _warnings(parent: NodeKind, before: Node, ends: Ends, behind: Node, compilat
     else:
         reason = "always fails" if parent.goes_on == ON_SUCCESS else "always succeeds"
     found = diagnostic("BT052", behind.span, ((before.span, f"this {reason}"),), reason=reason)
-    if before.id == "Repeat" and compilation.is_text and "\n" not in before.span.text + behind.span.text:
-        is_timed = all(part.id != "WaitForTime" for part in before.children[0].children)
-        found = found.advising(_way_out(before.span.text, behind.span.text, is_timed, compilation.vocabulary))
+    if before.port("num_cycles") and compilation.is_text and "\n" not in before.span.text + behind.span.text:
+        may_end = not any(part.port("time") for part in before.children[0].children)  # but `every day at 9 am, wave`
+        ways = _ways_out(before.span.text, behind.span.text, may_end, compilation.vocabulary)
+        found = found.advising(ways) if ways else found
     return [found]
 
 
-def _way_out(rounds: str, behind: str, may_end: bool, vocabulary: Lexicon) -> str:
+def _ways_out(rounds: str, behind: str, may_end: bool, vocabulary: Lexicon) -> str:
     """Say how to come to what stands behind rounds without end, and how to do it in each of them."""
     until = vocabulary.first("until_time").replace("{time_of_day}", _USUAL_END)
+    may_end = may_end and rounds.split()[-1].lower() not in vocabulary.counts  # but `wave forever`
     ways = [f"To do it in the end, say when that comes, for example: {rounds} {until}"] if may_end else []
     paces = {phrase.split()[0] for role in ("every", "every_day", "weekly") for phrase in vocabulary.roles[role]}
     if rounds.split()[0].lower() in paces:
