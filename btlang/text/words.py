@@ -226,6 +226,13 @@ class Words:
 _ENDS_PHRASE = re.compile(r"[ \t]*(?:[,.;:!?)\n]|$)")
 
 
+def _is_article(word: str, text: str, start: int, end: int, is_inside: bool) -> bool:
+    """Whether a word that is one of the articles is one, and no name `{a}`, or letter inside a sentence: `shelf A`."""
+    if text[start - 1 : start] == "{" and text[end : end + 1] == "}":
+        return False
+    return not (is_inside and (is_letter(word) or (len(word) == 1 and _ENDS_PHRASE.match(text, end))))
+
+
 def is_letter(word: str) -> bool:
     """Whether a word inside a sentence is a letter, and no article: the `A` of `shelf A`."""
     return len(word) == 1 and word.isupper()
@@ -278,10 +285,9 @@ def split(source: Source, orthography: Orthography) -> Words:
                 starts.append(start)
                 ends.append(middle)
                 word, start = expanded[word][1], middle
-            is_name = text[start - 1 : start] == "{" and text[end : end + 1] == "}"  # `{a}`
-            is_inside = len(words) > first and words[-1] != END_OF_STATEMENT
-            is_last = len(word) == 1 and _ENDS_PHRASE.match(text, end) is not None  # `go to shelf a`
-            if word in articles and not is_name and not (is_inside and (is_last or is_letter(match[kind]))):
+            if word in articles and _is_article(
+                match[kind], text, start, end, len(words) > first and words[-1] != END_OF_STATEMENT
+            ):
                 result.articles[len(words)] = (start, end)
                 titled = end if word in titles else -1
                 continue

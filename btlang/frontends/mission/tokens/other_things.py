@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.token import JOINTS, STATEMENT_ENDS, Called, Listed, Token, arguments_of, run_start
@@ -48,15 +48,18 @@ def with_other_things(tokens: list[Token], vocabulary: Lexicon, text: Words) -> 
         value = token.value
         if token.kind != "command" or not isinstance(value, Called | Listed):
             continue
+        if all(slot.type != OBJECT for slot in value.entry.slots):
+            continue  # as nearly always
         is_list = isinstance(value, Listed)
         meant = [] if is_list else before.setdefault(value.entry.id, [])
         rows, unclear = list[Arguments](), None
         for arguments in arguments_of(value):
-            things = _named_in(value.replace(arguments=(arguments,) if is_list else arguments))
             thing = _chosen(arguments) if is_list or len(arguments) > 1 else None  # to somebody, or somewhere
             if thing is not None:
                 one = _Meant(f"{{{thing.key}}}", _names_of(thing, vocabulary))
-                others = meant or (_named_in(value) if is_list else [])  # `a cup and the red cup`, too
+                others = meant or (
+                    _named_in(value, arguments_of(value)) if is_list else []
+                )  # `a cup and the red cup`, too
                 same = [other for other in others if other.names & one.names]
                 if not (is_list or _is_introduced(token, thing, vocabulary, text)):
                     meant[:] = [other for other in meant if other not in same]
@@ -66,18 +69,19 @@ def with_other_things(tokens: list[Token], vocabulary: Lexicon, text: Words) -> 
                     unclear = unclear or (thing if len(same) > 1 or not is_known else None)
                 meant.append(one)
             elif is_list or len(arguments) > 1:
-                meant += things
+                meant += _named_in(value, [arguments])
             rows.append(arguments)
-        token.value = value.replace(arguments=tuple(rows) if is_list else rows[0])
+        if rows != [*arguments_of(value)]:
+            token.value = value.replace(arguments=tuple(rows) if is_list else rows[0])
         if unclear is not None:
             words, names = Span(text.source, token.start, token.end), vocabulary.values.likenesses.members(unclear)
             example = next(iter(names or ()), words.text)
             yield diagnostic("BT150", words, words=words.text, reason=_REASON, example=example)
 
 
-def _named_in(said: Called | Listed) -> list[_Meant]:
-    """The objects that a command names."""
-    named = (name for arguments in arguments_of(said) for name in said.entry.given(OBJECT, arguments))
+def _named_in(said: Called | Listed, rows: Iterable[Arguments]) -> list[_Meant]:
+    """The objects that rows of arguments of a command name."""
+    named = (name for arguments in rows for name in said.entry.given(OBJECT, arguments))
     return [_Meant(name, frozenset((name,))) for name in named if name[:1] != "{"]
 
 
@@ -121,9 +125,13 @@ def with_goals_there(tokens: list[Token], vocabulary: Lexicon, source: Source) -
         said = token.value
         if token.kind != "command" or not isinstance(said, Called | Listed) or take is None or not take.phrases:
             continue
+        if TRAVELS in said.entry.needs:
+            been.update(said.entry.given(PLACE, arguments_of(said)[-1]))
+        if said.entry.id != _TAKING[0]:
+            continue
         words, thing = source.text[token.start : token.end].lower(), _chosen(arguments_of(said)[0])
         place = dict(thing.parts).get("inside", "") if thing is not None else ""
-        is_taken = said.entry.id == _TAKING[0] and words.startswith(take.phrases[0].partition("{")[0])
+        is_taken = words.startswith(take.phrases[0].partition("{")[0])
         is_goal = place not in ("", *been) and says_there(words, vocabulary.values.pronouns)
         if thing is not None and is_taken and is_goal:
             parts = tuple(part for part in thing.parts if part != ("inside", place))
@@ -131,8 +139,6 @@ def with_goals_there(tokens: list[Token], vocabulary: Lexicon, source: Source) -
             slots = {slot.type: slot.name for slot in take.slots if slot.name in ("object", "place")}
             object = named or thing.replace(parts=parts).text
             token.value = Called(take, ((slots[OBJECT], object), (slots[PLACE], place)))
-        if TRAVELS in said.entry.needs:
-            been.update(said.entry.given(PLACE, arguments_of(said)[-1]))
 
 
 def _placed(said: str, place: str) -> str:
