@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence, Set
     from typing import Protocol
 
+    from btlang.vocabulary.adjectives import Adjectives
     from btlang.vocabulary.descriptions import Modifiers
     from btlang.vocabulary.references import Parts
 
@@ -52,8 +53,16 @@ class Antecedents:
     `names` gives the words of the names of a type.
     """
 
-    def __init__(self, ones: Set[str], definite: str, names: Callable[[str], WordTree], likenesses: Likenesses) -> None:
+    def __init__(
+        self,
+        ones: Set[str],
+        definite: str,
+        names: Callable[[str], WordTree],
+        likenesses: Likenesses,
+        adjectives: Adjectives,
+    ) -> None:
         self._ones, self._definite, self._names, self._likenesses = ones, definite, names, likenesses
+        self._adjectives = adjectives
 
     def resolved(self, found: tuple[Description, int], text: Words, at: int) -> tuple[Description, int] | None:
         """What is described, with the kind of the thing before where `one` is its head; None where nothing is meant.
@@ -80,9 +89,17 @@ class Antecedents:
                 return (found[0], end + 1) if found is not None and found[1] == len(words) - 1 else None
         return None
 
-    def by_name(self, kind: str, text: Words, chosen: tuple[str, int]) -> tuple[str, int]:
-        """One of a kind whose name stands behind it: `nurse Alice`."""
-        named, choice = find(self._names(kind), text.words, chosen[1]), choice_of(chosen[0])
+    def by_name(self, kind: str, text: Words, at: int, chosen: tuple[str, int], person: str) -> tuple[str, int]:
+        """One of a kind whose name stands behind it, `nurse Alice`, or has a person's: `his room` for `Bob's room`."""
+        names, choice = self._names(kind), choice_of(chosen[0])
+        is_owned = text.words[at] in self._adjectives.other_owners and person[:1] not in ("", "{")
+        whole = person.lower().split()
+        for owner in (whole, whole[:1], whole[-1:]) if is_owned else ():
+            words = [*owner[:-1], owner[-1] + self._adjectives.ending, *text.words[at + 1 : chosen[1]], END_OF_TEXT]
+            found = find(names, words, 0)
+            if found is not None and found[1] == len(words) - 1:
+                return found[0], chosen[1]
+        named = find(names, text.words, chosen[1])
         if named is None or choice is None or dict(choice.parts) != {"kind": self._likenesses.kind_of(kind, named[0])}:
             return chosen
         return named

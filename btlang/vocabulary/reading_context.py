@@ -109,7 +109,7 @@ class ReadingContext:
             found = self._referred(kind, text, at)
         chosen = self._chosen(kind, text, at) if text.words[at] in self.starts else None
         if chosen is not None and at not in text.articles:
-            chosen = self.values.antecedents.by_name(kind, text, chosen)
+            chosen = self.values.antecedents.by_name(kind, text, at, chosen, self.latest.get(PERSON, ""))
         if kind in WORLD and not self.joiners.isdisjoint(text.words[max(at - 1, 0) : at + 4]):
             shared = self.values.shared_heads.read(kind, text, at)
             found = shared if shared is not None and (found is None or shared[1] > found[1]) else found

@@ -11,7 +11,10 @@ from btlang.frontends.mission.reader import PARSERS
 
 WORLD = """
 start = { x = 1, y = 1 }
-places = [{ name = "shelf A", x = 3, y = 8 }, { name = "shelf B", x = 4, y = 7 }]
+places = [
+  { name = "shelf A", x = 3, y = 8 }, { name = "shelf B", x = 4, y = 7 },
+  { name = "Carl's room", kind = "room", x = 5, y = 7 }, { name = "store room", kind = "room", x = 6, y = 7 },
+]
 people = [{ name = "Amira", kind = "nurse", x = 10, y = 5 }, { name = "Carl", kind = "guest", x = 10, y = 6 }]
 objects = [{ name = "cup 1", kind = "cup", x = 8, y = 2 }]
 doors = [
@@ -44,6 +47,12 @@ def test_the_whole_name_is_read(said: str, id: str, ports: dict[str, str], world
     assert (trees[0].tree.root.id, dict(trees[0].tree.root.ports)) == (id, ports)
     for form in ("xml", "json", "english"):
         assert btlang.parse_tree(str(trees[0].to(form)), world=world).tree == trees[0].tree
+
+
+def test_whose_room_is_meant(world: str) -> None:
+    tree = btlang.parse_tree("guide Carl to shelf B, then guide him to his room", world=world)
+    assert [dict(node.ports)["place"] for node in tree.tree.root.children] == ["shelf B", "Carl's room"]
+    assert [warning.code for warning in tree.warnings] == []
 
 
 def test_an_article_behind_a_kind_begins_a_clause(world: str) -> None:

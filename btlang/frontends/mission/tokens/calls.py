@@ -293,7 +293,7 @@ class Calls:
         if value.type not in WORLD:
             return
         for first, last in known.adjectives.nobody_known(self._text, value.first, value.last, known.names_tree):
-            if self._text.words[first] not in said:
+            if self._text.words[first] not in said and not any(word.endswith(known.adjectives.ending) for word in said):
                 span = self._text.span(first, last)
                 self.problems.append(diagnostic("BT177", span, words=span.text))
                 name = self._text.words[first].removesuffix(known.adjectives.ending)

@@ -74,7 +74,8 @@ class Hearers(ToldWords):
     def _quoting(self, command: Token, first: int, last: int, at: int) -> str:
         """A command with the words that it says in quotes, up to a word in doubt behind which another one begins."""
         text, values, asking = self._text, self._vocabulary.values, self._vocabulary.asking
-        goes_on = at > first and text.words[at] in self._vocabulary.roles["and"] and self._phrase(at + 1) is not None
+        joins = at > first and text.words[at] in (",", *self._vocabulary.roles["and"])
+        goes_on = joins and self._phrase(at + 1) is not None
         end = at - (text.words[at - 1] == ",") if goes_on else last
         is_asked, opener = is_question(command), text.words[first - 1]
         pleads = opener in (*asking["pleading"], *asking["asking_for"])

@@ -307,7 +307,8 @@ class WordReader:
                 return end
         if match is None and begins(tokens) and (end := self._places.before(at)):
             return end
-        if role == "condition" and tokens and tokens[-1].kind == "or" and (end := self._partial.add_left_out(at)):
+        is_choice = role == "condition" and [token.kind for token in tokens[-2:]] == ["command", "or"]
+        if is_choice and (end := self._partial.add_left_out(at)):
             return end  # `look for Bob in the hall or in the lab`
         if match is None or (role == "command" and not match.values and self._text.words[match.last] == self._joint):
             return self._partial.add_sharing(at, match)
