@@ -29,7 +29,8 @@ class Hearers(ToldWords):
         text, vocabulary = self._text, self._vocabulary
         if not vocabulary.persons or not isinstance(command.value, Called | Listed):
             return text
-        text = as_robot(text, first, last, vocabulary)
+        if is_asked or vocabulary.values.texts.opens(text.words[first - 1]):  # `tell Bob you are late` is unclear
+            text = as_robot(text, first, last, vocabulary)
         spoken = [*persons_in(text, first, last, vocabulary)]
         hearer = self._persons_of(command)
         named = {*persons_in(text, words_of(text, command).start, first, vocabulary)}
@@ -149,8 +150,10 @@ def as_hearer(text: Words, first: int, last: int, who: str, vocabulary: Lexicon,
             text = text.with_word(at, you + f"'{tail}" * (tail != ""))
             if at + 1 < last:
                 text = text.with_word(at + 1, _with_you(text.words[at + 1], vocabulary))
-        else:
-            text = text.with_word(at, your if _owns(text, at, last, vocabulary) else you)
+        elif _owns(text, at, last, vocabulary):
+            text = text.with_word(at, your)
+        elif word in vocabulary.values.pronouns:  # but not `the cup is his`
+            text = text.with_word(at, you)
     return text
 
 

@@ -14,7 +14,7 @@ from btlang.text.source import Span
 from btlang.tree.answers import ASK
 from btlang.vocabulary.entry import SAY, Entry
 from btlang.vocabulary.match import Match
-from btlang.vocabulary.value_type import PERSON, TEXT
+from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, TEXT
 from btlang.vocabulary.word_tree import find
 
 _EXAMPLE = "hello"
@@ -165,11 +165,14 @@ class Requests(Questions):
         return end + 1
 
     def benefit(self, at: int) -> int:
-        """`open the door for Bob`: BT158 notes that it doesn't matter for whom something is done that names nobody."""
+        """`open the door for Bob`: BT158 notes that it doesn't matter for whom something is done with a thing."""
         words, done = self._text.words, self._tokens[-1].value if self._tokens else None
         benefiting = self._vocabulary.values.role_words.introducing.get("beneficiary", ())
-        if (words[at],) not in benefiting or not isinstance(done, Called) or done.entry.given(PERSON, done.arguments):
+        if (words[at],) not in benefiting or not isinstance(done, Called) or done.entry.first:
             return 0
+        given = {kind: done.entry.given(kind, done.arguments) for kind in (PERSON, OBJECT, DOOR)}
+        if given[PERSON] or not (given[OBJECT] or given[DOOR]):
+            return 0  # `look around for Bob`
         named = find(self._vocabulary.values.names_tree(PERSON), words, at + 1)
         end = named[1] if named is not None else at + 2
         if (named is None and not person_of(words[at + 1], self._vocabulary)) or not self._ends(end):
