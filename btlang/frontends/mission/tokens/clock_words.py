@@ -111,24 +111,37 @@ class ClockWords(SentenceReader):
         is_until = any(phrase.split()[0] == text.words[at] for phrase in roles["until_time"])
         if not is_until or text.words[at + 1] not in roles["then"] or not self._is_end(at + 2):
             return 0
-        said = next((token for token in reversed(self._tokens) if token.kind == "until_time"), None)
-        if said is None:
+        said = self._time_before()
+        if not said:
             return 0
-        self._tokens.append(Token("until_time", text.starts[at], text.ends[at + 1], said.value))
+        self._tokens.append(Token("until_time", text.starts[at], text.ends[at + 1], said))
         return at + 2
+
+    def _time_before(self) -> str:
+        """The time until which something was done or forbidden last, "" for none."""
+        return next((str(token.value) for token in reversed(self._tokens) if token.kind == "until_time"), "")
+
+    def _has_waited(self, time: str) -> bool:
+        """Whether something was done until a time: what is only forbidden until then takes no time."""
+        return any(
+            token.kind == "until_time"
+            and token.value == time
+            and (not at or constraint_of(self._tokens[at - 1]) is None)
+            for at, token in enumerate(self._tokens)
+        )
 
     def _by_then(self, at: int) -> int:
         """`if nobody is there by 6 pm, A`: asked at that time, unless the mission has waited until then: `by then`."""
         text, tokens = self._text, self._tokens
         is_by = text.words[at] in self._vocabulary.asking["by_then"] and tokens[-1:] and tokens[-1].kind == "condition"
         form = run_start(tokens, len(tokens), IN_CONDITIONS) - 1 if is_by else -1
-        time = self._context.read(_TIME, text, at + 1) if form >= 0 and tokens[form].kind in ("if", "unless") else None
-        waited = [token.value for token in tokens if token.kind == "until_time"]
-        if form >= 0 and time is None and waited and text.words[at + 1] in self._vocabulary.roles["then"]:
-            return at + 2
-        if time is None or (form > 0 and tokens[form - 1].kind not in BEGINS):
+        if form < 0 or tokens[form].kind not in ("if", "unless") or (form > 0 and tokens[form - 1].kind not in BEGINS):
             return 0
-        if time[0] in waited:
+        is_then = text.words[at + 1] in self._vocabulary.roles["then"]
+        time = (self._time_before(), at + 2) if is_then else self._context.read(_TIME, text, at + 1)
+        if time is None or not time[0]:
+            return 0
+        if self._has_waited(time[0]):
             return time[1]
         begin = tokens[form].start
         tokens[form:form] = [Token("at", begin, begin, time[0]), Token("comma", begin, begin)]
