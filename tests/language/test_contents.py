@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 
 import btlang
@@ -22,13 +20,6 @@ objects = [
   { name = "bottle of beer", x = 8, y = 4 },
 ]
 """
-
-
-@pytest.fixture
-def world(tmp_path: Path) -> str:
-    path = tmp_path / "world.toml"
-    path.write_text(WORLD, encoding="utf-8")
-    return str(path)
 
 
 @pytest.mark.parametrize(

@@ -223,6 +223,12 @@ def arguments_of(said: Called | Listed) -> tuple[tuple[tuple[str, str], ...], ..
     return (said.arguments,) if isinstance(said, Called) else said.arguments
 
 
+def with_arguments(said: Called | Listed, rows: Sequence[tuple[tuple[str, str], ...]]) -> Called | Listed:
+    """The same phrase with other arguments, for each value of a list."""
+    changed: Called | Listed = said.replace(arguments=tuple(rows) if isinstance(said, Listed) else rows[0])
+    return changed
+
+
 def texts_of(said: Called | Listed) -> tuple[str, ...]:
     """The values of a phrase, or of all that a list stands for."""
     return tuple(text for arguments in arguments_of(said) for _, text in arguments)

@@ -72,7 +72,7 @@ def _ways_out(rounds: str, behind: str, may_end: bool, vocabulary: Lexicon) -> s
     until = vocabulary.first("until_time").replace("{time_of_day}", _USUAL_END)
     may_end = may_end and rounds.split()[-1].lower() not in vocabulary.counts  # but `wave forever`
     ways = [f"To do it in the end, say when that comes, for example: {rounds} {until}"] if may_end else []
-    paces = {phrase.split()[0] for role in ("every", "every_day", "weekly") for phrase in vocabulary.roles[role]}
+    paces = vocabulary.firsts["every"] | vocabulary.firsts["every_day"] | vocabulary.firsts["weekly"]
     if rounds.split()[0].lower() in paces:
         then, behind = vocabulary.word("then"), f"{behind[:1].lower()}{behind[1:]}"
         ways.append(f"To do it in each round, write: {rounds}, {then} {behind}")

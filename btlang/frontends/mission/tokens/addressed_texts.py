@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from functools import cached_property
 
 from btlang.diagnostics.diagnostic import diagnostic
-from btlang.frontends.mission.token import Called, Listed, Token
+from btlang.frontends.mission.token import Called, Listed, Token, arguments_of, with_arguments
 from btlang.frontends.mission.tokens.hearers import Hearers, verbs_of
 from btlang.frontends.mission.tokens.silent_words import BEGINS
 from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of
@@ -171,10 +171,7 @@ class AddressedTexts(Hearers):
         def renamed(arguments: tuple[tuple[str, str], ...]) -> tuple[tuple[str, str], ...]:
             return tuple((names[kinds[name]], text) for name, text in arguments)
 
-        if isinstance(said, Listed):
-            command.value = said.replace(entry=ask, arguments=tuple(map(renamed, said.arguments)))
-        else:
-            command.value = said.replace(entry=ask, arguments=renamed(said.arguments))
+        command.value = with_arguments(said.replace(entry=ask), [*map(renamed, arguments_of(said))])
         return names[TEXT]
 
     def _ask(self, entry: Entry, value: SlotValue, command: Token) -> int:
@@ -379,8 +376,5 @@ class AddressedTexts(Hearers):
             said = {slot: f"{dict(arguments)[slot]} {text}" if adds else text}
             return tuple((name, said.get(name, given)) for name, given in arguments)
 
-        if isinstance(value, Listed):  # `ask Alice and Bob if they are hungry`
-            command.value = value.replace(arguments=tuple(map(with_text, value.arguments)))
-        else:
-            assert isinstance(value, Called)
-            command.value = value.replace(arguments=with_text(value.arguments))
+        assert isinstance(value, Called | Listed)
+        command.value = with_arguments(value, [*map(with_text, arguments_of(value))])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btlang.diagnostics.diagnostic import diagnostic
-from btlang.frontends.mission.token import STATEMENT_ENDS, Called, Listed, Token
+from btlang.frontends.mission.token import STATEMENT_ENDS, Called, Listed, Token, arguments_of
 from btlang.frontends.mission.tokens.sentence_reader import is_question
 from btlang.frontends.mission.tokens.told_words import ToldWords
 from btlang.frontends.mission.tokens.word_matches import words_of
@@ -122,9 +122,7 @@ class Hearers(ToldWords):
         said = token.value
         if not isinstance(said, Called | Listed):
             return set()
-        slots = {slot.name for slot in said.entry.slots if slot.type == PERSON}
-        each = said.arguments if isinstance(said, Listed) else [said.arguments]
-        return {text for arguments in each for name, text in arguments if name in slots and text}
+        return {text for arguments in arguments_of(said) for text in said.entry.given(PERSON, arguments) if text}
 
 
 def person_of(word: str, vocabulary: Lexicon) -> str:

@@ -5,7 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.frontends.mission.token import JOINTS, STATEMENT_ENDS, Called, Listed, Token, arguments_of, run_start
+from btlang.frontends.mission.token import (
+    JOINTS,
+    STATEMENT_ENDS,
+    Called,
+    Listed,
+    Token,
+    arguments_of,
+    run_start,
+    with_arguments,
+)
 from btlang.frontends.mission.tokens.ended_rules import GO
 from btlang.frontends.mission.tokens.silent_words import TRAVELS
 from btlang.frontends.mission.tokens.word_matches import words_of
@@ -57,10 +66,8 @@ def with_other_things(tokens: list[Token], vocabulary: Lexicon, text: Words) -> 
             thing = _chosen(arguments) if is_list or len(arguments) > 1 else None  # to somebody, or somewhere
             if thing is not None:
                 one = _Meant(f"{{{thing.key}}}", _names_of(thing, vocabulary))
-                others = meant or (
-                    _named_in(value, arguments_of(value)) if is_list else []
-                )  # `a cup and the red cup`, too
-                same = [other for other in others if other.names & one.names]
+                others = _named_in(value, arguments_of(value)) if is_list and not meant else meant
+                same = [other for other in others if other.names & one.names]  # `a cup and the red cup`, too
                 if not (is_list or _is_introduced(token, thing, vocabulary, text)):
                     meant[:] = [other for other in meant if other not in same]
                 elif same:
@@ -72,7 +79,7 @@ def with_other_things(tokens: list[Token], vocabulary: Lexicon, text: Words) -> 
                 meant += _named_in(value, [arguments])
             rows.append(arguments)
         if rows != [*arguments_of(value)]:
-            token.value = value.replace(arguments=tuple(rows) if is_list else rows[0])
+            token.value = with_arguments(value, rows)
         if unclear is not None:
             words, names = Span(text.source, token.start, token.end), vocabulary.values.likenesses.members(unclear)
             example = next(iter(names or ()), words.text)
@@ -136,9 +143,7 @@ def with_goals_there(tokens: list[Token], vocabulary: Lexicon, source: Source) -
         if thing is not None and is_taken and is_goal:
             parts = tuple(part for part in thing.parts if part != ("inside", place))
             named = dict(parts).get(NAME, "") if len(parts) == 1 else ""
-            slots = {slot.type: slot.name for slot in take.slots if slot.name in ("object", "place")}
-            object = named or thing.replace(parts=parts).text
-            token.value = Called(take, ((slots[OBJECT], object), (slots[PLACE], place)))
+            token.value = Called(take, ((OBJECT, named or thing.replace(parts=parts).text), (PLACE, place)))
 
 
 def _placed(said: str, place: str) -> str:

@@ -15,6 +15,7 @@ from btlang.frontends.mission.token import (
     arguments_of,
     constraint_of,
     run_start,
+    with_arguments,
 )
 from btlang.frontends.mission.tokens.calls import Calls
 from btlang.frontends.mission.tokens.left_out import left_out
@@ -231,8 +232,7 @@ class PartialCommands:
                 own = arguments_of(value)
                 if any(name in slots for each in own for name, _ in each) or not speaker.isdisjoint(words):
                     return
-                both = tuple((*each, *given) for each in own)
-                token.value = value.replace(arguments=both[0] if isinstance(value, Called) else both)
+                token.value = with_arguments(value, [(*each, *given) for each in own])
             elif token.kind not in ("and", "comma") and token.role != "list":
                 return
 

@@ -18,6 +18,7 @@ from btlang.frontends.mission.token import (
     run_end,
     run_start,
     statement_start,
+    with_arguments,
 )
 from btlang.frontends.mission.tokens.repeated_statements import ELSEWHERE
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, leads_to
@@ -73,8 +74,7 @@ class Places(SentenceReader):
         is_set = len(goals) > 1 or (choice is not None and choice.how == ALL)
         is_right_behind = at == run_start(tokens, len(tokens) - 1, _AND) - 1
         if len(goals) == 1 and choice is None:
-            made = tuple((*each, (slot, goals[0])) for each in arguments_of(search))
-            tokens[-1].value = search.replace(arguments=made if isinstance(search, Listed) else made[0])
+            tokens[-1].value = with_arguments(search, [(*each, (slot, goals[0])) for each in arguments_of(search)])
         elif is_set and is_right_behind and isinstance(search, Called):
             each = tuple((*search.arguments, (slot, goal)) for goal in goals)
             value = Called(search.entry, each[0]) if len(goals) == 1 else Listed(search.entry, each, "or")
