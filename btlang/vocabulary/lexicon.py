@@ -153,6 +153,8 @@ class Lexicon:
         """The words that deny what was checked: `it isn't`."""
         self.relatives = tree_of((words, True) for words in language["relatives"])
         """The words that begin what is said of a thing: `that is`."""
+        self.any_day = tree_of((words, True) for words in self.asking["any_day"])
+        """The words for all days, from which some may be left out: `every day`."""
         self.entering = tree_of((words, True) for words in self.asking["entering"])
         """The words behind which a place is left out: `go in`."""
         self.until_none = tree_of((words, True) for words in self.asking["until_none"])

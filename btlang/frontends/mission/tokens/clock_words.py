@@ -48,28 +48,39 @@ class ClockWords(SentenceReader):
         start, end = self._text.starts[at], self._text.ends[match.last - 1]
         asked = tuple(Called(entry, ((entry.slots[0].name, day),)) for day in days)
         is_once = match.meaning.role == "on_days" and self._is_singular(said["days"])
+        more, last = self._more_times(match.last)
+        times = (*times, *more)
         rounds = len(days) * len(times) if is_once else -1
         self._tokens.append(Token("every_day", start, end, OnDays(";".join(times), asked, rounds)))
-        return match.last
+        return last
 
     def times(self, match: Match, at: int) -> int:
         """`at 8 am, at noon and at 6 pm, A`: as `at 8 am, noon and 6 pm, A`. Returns 0 for anything else."""
-        text, tokens, found = self._text, self._tokens, [match]
-        joints = self._vocabulary.roles["and"]
-        while text.words[found[-1].last] in (",", *joints):
-            behind = found[-1].last + (text.words[found[-1].last] == ",")
-            behind += text.words[behind] in joints
+        text, tokens = self._text, self._tokens
+        more, last = self._more_times(match.last)
+        if not more:
+            return 0
+        times = ";".join((*match.values[0].texts, *more))
+        tokens.append(Token(match.meaning.role, text.starts[at], text.ends[last - 1], times))
+        return last
+
+    def _more_times(self, at: int) -> tuple[list[str], int]:
+        """The times that are joined to one, each with `at` before it, and where they end: `, at noon and at 6 pm`.
+
+        None where the last one begins another command: `wave at noon and at 6 pm nod`.
+        """
+        words, joints, times, last = self._text.words, self._vocabulary.roles["and"], list[str](), at
+        while words[last] in (",", *joints):
+            behind = last + (words[last] == ",")
+            behind += words[behind] in joints
             more = self._phrase(behind)
             if more is None or more.meaning.role != "at":
                 break
-            found.append(more)
-        is_front = not tokens or tokens[-1].kind in BEGINS
-        goes_on = is_front and self._begins_there(found[-1].last)
-        if len(found) < 2 or not (goes_on or self._is_end(found[-1].last)):
-            return 0
-        times = [time for each in found for time in each.values[0].texts]
-        tokens.append(Token("at", text.starts[at], text.ends[found[-1].last - 1], ";".join(times)))
-        return found[-1].last
+            times += more.values[0].texts
+            last = more.last
+        is_front = not self._tokens or self._tokens[-1].kind in BEGINS
+        is_whole = self._is_end(last) or (is_front and self._begins_there(last))
+        return (times, last) if times and is_whole else ([], at)
 
     def _not_then(self, at: int) -> int:
         """`every hour, go to the lab, but not between 10 pm and 7 am`: unless it is then."""

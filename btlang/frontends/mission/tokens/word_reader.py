@@ -383,7 +383,7 @@ class WordReader:
         """Phrases that are a part of a command where they stand."""
         if role == "condition":
             return self._places.in_place_of_command(match, at)
-        if role == "at":
+        if role in ("at", "every_day"):
             return self._order.times(match, at)
         if role == "count":
             return self._order.rounds(match, at)

@@ -1,0 +1,247 @@
+"""Words that are put in the place of others before a text is read: `rooms 1 to 3` becomes `rooms 1, 2 and 3`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.text.time_of_day import WEEKDAYS, WEEKEND, WORKDAYS
+from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
+from btlang.vocabulary.antecedents import pronouns_for
+from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.pattern import forms
+from btlang.vocabulary.value_type import DOOR, OBJECT, PLACE, TEXT, WORLD, ZONE
+from btlang.vocabulary.word_tree import find
+
+_MOST_ADJECTIVES = 3
+_GROUPS = {"weekdays": [WEEKDAYS[day] for day in WORKDAYS], "weekends": [WEEKDAYS[day] for day in WEEKEND]}
+_ENDING = frozenset((END_OF_STATEMENT, END_OF_TEXT, ",", ";", ")"))
+
+
+def reworded(text: Words, vocabulary: Lexicon) -> list[Diagnostic]:
+    """Change the words of a text to those that are read. Returns notes about what is left out."""
+    _drop_words_of_turns(text, vocabulary)
+    _drop_still(text, vocabulary)
+    _drop_left(text, vocabulary)
+    _say_there(text, vocabulary)
+    _say_if_so(text, vocabulary)
+    _say_kind(text, vocabulary)
+    _list_days(text, vocabulary)
+    _drop_again(text, vocabulary)
+    _drop_commas(text, vocabulary)
+    _list_ranges(text, vocabulary)
+    return [*_drop_untold_sizes(text, vocabulary), *_drop_untold_contents(text, vocabulary)]
+
+
+def _drop_words_of_turns(text: Words, vocabulary: Lexicon) -> None:
+    """Take out what says nothing beside a list, with its commas: `the lab and the dock, in that order`.
+
+    `either` says nothing at an end: `avoid the lab. Don't go into the hall either`.
+    """
+    words, either = text.words, vocabulary.roles["either"]
+    last = [] if text.distinct.isdisjoint(either) else [at for at in range(1, len(words) - 1) if words[at] in either]
+    for at in (at for at in reversed(last) if words[at + 1][0] in _ENDING):
+        text.drop(at, at + 1)
+    if text.distinct.isdisjoint(vocabulary.in_turn):
+        return  # as nearly always
+    for at in reversed([at for at, word in enumerate(words) if word in vocabulary.in_turn]):
+        found = find(vocabulary.in_turn, words, at)
+        begins = at == 0 or words[at - 1] in (END_OF_STATEMENT, END_OF_TEXT, ":")
+        if found is not None and (not begins or words[found[1]] == ","):
+            first = at - (words[at - 1] == "," and not begins)
+            is_inserted = words[found[1]] == "," and words[found[1] + 1] not in vocabulary.joining
+            text.drop(first, found[1] + (is_inserted and (begins or first < at)))
+
+
+def _drop_still(text: Words, vocabulary: Lexicon) -> None:
+    """Take out `still` and `already` before what a condition says: `if he still says no`; but not `if he is still`.
+
+    `yet` stands at its end: `if he isn't there yet`.
+    """
+    words, still, motionless = text.words, vocabulary.asking["still"], vocabulary.asking["motionless"]
+    yet = vocabulary.yet
+    for at in reversed(range(1, len(words))) if not text.distinct.isdisjoint((*still, *yet)) else ():
+        is_still = words[at] in still and words[at - 1] not in motionless and words[at + 1][0].isalpha()
+        said = find(yet, words, at)
+        end = at + 1 if is_still else said[1] if said is not None and not words[said[1]][0].isalpha() else 0
+        if end:
+            _, first, _ = text.earlier(at)
+            first = max((i + 1 for i in range(first, at) if words[i] == ","), default=first)
+            if any(word in vocabulary.before_conditions for word in words[first:at]):
+                text.drop(at, end)
+
+
+def _drop_left(text: Words, vocabulary: Lexicon) -> None:
+    """Take out `left` in a condition: `if nobody is left in the lab`, `if there are no cups left`; not `turn left`."""
+    words, remaining, values = text.words, vocabulary.asking["remaining"], vocabulary.values
+    if not remaining or remaining[0] not in text.distinct:
+        return  # as nearly always
+    prepositions = {phrase[0] for phrases in values.role_words.introducing.values() for phrase in phrases}
+    be, things = vocabulary.asking["asking_be"], (OBJECT, "kind", "kinds")
+    for at in reversed([at for at in range(1, len(words) - 1) if words[at] == remaining[0]]):
+        ends, before = not words[at + 1][0].isalpha(), words[at - 1]
+        asks = (i for i in reversed(range(text.earlier(at)[1], at)) if words[i] in vocabulary.before_conditions)
+        first = next(asks, at)
+        is_thing = before in vocabulary.quantifiers or any(values.takes_word(kind, before) for kind in things)
+        is_thing = is_thing or values.is_number([before])
+        if before in be and ends and first < at:
+            text.replace(at, [remaining[1]])
+        elif (before in be or is_thing) and any(word in be for word in words[first:at]):
+            if ends or words[at + 1] in prepositions:
+                text.drop(at, at + 1)
+
+
+def _say_there(text: Words, vocabulary: Lexicon) -> None:
+    """Put `there` behind `go in` where it is left out: `At 11, go in and wave`."""
+    if text.distinct.isdisjoint(vocabulary.entering):
+        return  # as nearly always
+    words, there = text.words, vocabulary.asking["remaining"][-1:]
+    for at in reversed([at for at in range(len(words) - 1) if words[at] in vocabulary.entering]):
+        found = find(vocabulary.entering, words, at)
+        if found is not None and (words[found[1]][0] in _ENDING or words[found[1]] in vocabulary.joining):
+            text.replace(found[1] - 1, [words[found[1] - 1], *there])
+
+
+def _say_if_so(text: Words, vocabulary: Lexicon) -> None:
+    """Put `if it is` for `that is` behind doors, which are as the robot finds them: `close every door that is open`."""
+    words, values, asking = text.words, vocabulary.values, vocabulary.asking
+    if text.distinct.isdisjoint(vocabulary.relatives):
+        return  # as nearly always
+    it = next(iter(pronouns_for(values.pronouns, DOOR)), "")
+    entries = (vocabulary.entry(id) for id in ("DoorOpen", "DoorClosed"))
+    states = {form[-1] for entry in entries if entry is not None for each in entry.phrases for form in forms(each)}
+    for at in reversed([at for at in range(1, len(words) - 1) if words[at] in vocabulary.relatives]):
+        found = find(vocabulary.relatives, words, at)
+        if found is None or not values.phrases.is_type(DOOR, text, at - 1):
+            continue
+        state = found[1] + (words[found[1]] in asking["still"])
+        if words[state] in states and (words[state + 1][0] in _ENDING or words[state + 1] in vocabulary.joining):
+            text.drop(at + 1, state)
+            text.replace(at, [vocabulary.word("if"), it, asking["asking_be"][0]])
+
+
+def _say_kind(text: Words, vocabulary: Lexicon) -> None:
+    """Put the kind behind `all` that what is left out has: `all but the blue cups` as `all cups but the blue cups`."""
+    words, values, every = text.words, vocabulary.values, frozenset(vocabulary.roles["all_names"])
+    for at in reversed([at for at, word in enumerate(words) if word in every]):
+        end = values.exception(text, at + 1)
+        nouns = (word for word in words[end : end + _MOST_ADJECTIVES] if end and values.takes_word("kinds", word))
+        noun = next(nouns, "")
+        if noun:
+            text.replace(at, [words[at], noun])
+
+
+def _list_days(text: Words, vocabulary: Lexicon) -> None:
+    """Say days as one list: `on Mondays and on Fridays`, and `every day except Sunday` by the names of the others."""
+    words, values, tree = text.words, vocabulary.values, vocabulary.values.names_tree("days")
+    if text.distinct.isdisjoint(tree):
+        return  # as nearly always
+    on, joints = {phrase.split()[0] for phrase in vocabulary.roles["on_days"]}, {",", *vocabulary.roles["and"]}
+    for at in reversed([at for at in range(2, len(words) - 1) if words[at] in on and words[at - 1] in joints]):
+        is_listed = find(tree, words, at - 2 - (words[at - 2] == ",")) is not None
+        if is_listed and find(tree, words, at + 1) is not None:
+            text.drop(at, at + 1)
+    every = vocabulary.asking["any_day"][0].split()[0]
+    for at in reversed([at for at in range(len(words)) if words[at] in vocabulary.any_day]):
+        found = find(vocabulary.any_day, words, at)
+        end = values.exception(text, found[1]) if found is not None else 0
+        left_out, last = set[str](), 0
+        end += bool(end) and words[end] in on
+        while end and (day := find(tree, words, end)) is not None:
+            left_out.update(_GROUPS.get(day[0], day[:1]))
+            last, end = day[1], day[1] + (words[day[1]] in joints)
+        others = [day for day in WEEKDAYS if day not in left_out]
+        if left_out and len(others) > 1:
+            text.drop(at, last - 1)
+            listed = [word for day in others for word in (",", day.lower())]
+            text.replace(at, [every, *listed[1:-2], vocabulary.word("and"), listed[-1]])
+
+
+def _drop_again(text: Words, vocabulary: Lexicon) -> None:
+    """Take out `again` between times: `at 9 am and again at 3 pm`."""
+    words, again, joints = text.words, vocabulary.roles["again"][0], {",", *vocabulary.roles["and"]}
+    if again not in text.distinct:
+        return  # as nearly always
+    times = {phrase.split()[0] for phrase in vocabulary.roles["at"]}
+    for at in reversed([at for at in range(2, len(words) - 2) if words[at] == again]):
+        _, first, _ = text.earlier(at)
+        is_time = words[at + 2][0].isdigit() or vocabulary.values.takes_word("time_of_day", words[at + 2])
+        is_between = words[at - 1] in joints and words[at + 1] in times and not times.isdisjoint(words[first : at - 1])
+        if is_time and is_between:
+            text.drop(at, at + 1)
+
+
+def _drop_commas(text: Words, vocabulary: Lexicon) -> None:
+    """Take out the comma between a word that joins and one before a condition: `wave and, if bumped, nod`."""
+    words, joints = text.words, vocabulary.joining.difference(vocabulary.roles["or"])
+    for at in reversed([at for at in range(1, len(words) - 1) if words[at] == ","]):
+        if words[at - 1] in joints and words[at + 1] in vocabulary.before_conditions:
+            text.drop(at, at + 1)
+
+
+def _list_ranges(text: Words, vocabulary: Lexicon) -> None:
+    """Put all names of a range in the place of the last one: `rooms 1 to 3` as `rooms 1, 2 and 3`."""
+    words, heads = text.words, vocabulary.values.shared_heads
+    joints = set(vocabulary.asking["between_joint"]).difference(vocabulary.roles["and"])
+    if joints.isdisjoint(text.distinct):
+        return  # as often
+    for at in reversed(range(len(words) - 3)):
+        if words[at + 2] not in joints or not words[at + 1].isdecimal():
+            continue
+        numbers = next((found for kind in WORLD if (found := heads.between(kind, words, at, words[at + 3]))), [])
+        if numbers:
+            listed = [word for number in numbers for word in (",", number)]
+            text.replace(at + 3, [*listed[1:-2], vocabulary.word("and"), numbers[-1]] if len(numbers) > 1 else numbers)
+            text.replace(at + 2, [","] if len(numbers) > 1 else [vocabulary.word("and")])
+
+
+def _drop_untold_sizes(text: Words, vocabulary: Lexicon) -> Iterator[Diagnostic]:
+    """Take out a size before the name of a place where nothing is known of sizes: `the large red room` is that room."""
+    sizes, places = vocabulary.values.names_tree("size"), vocabulary.values.names_tree(PLACE)
+    if text.distinct.isdisjoint(sizes) or vocabulary.values.likenesses.is_told(PLACE, "size"):
+        return
+    found = [(at, find(sizes, text.words, at)) for at in range(len(text.words)) if text.words[at] in sizes]
+    ends = [(at, size[1]) for at, size in found if size is not None and find(places, text.words, at) is None]
+    named = {text.words[end] for at, end in ends if text.earlier(at)[1] == at}  # `the large kitchen is at (3, 4)`
+    before = {phrase[0] for phrases in vocabulary.values.role_words.introducing.values() for phrase in phrases}
+    entries = [entry for same in vocabulary.entries.values() for entry in same]
+    types = [(entry, {slot.type for slot in entry.slots}) for entry in entries]
+    goes = [entry for entry, own in types if own & {PLACE, ZONE} and TEXT not in own]
+    verbs = tuple(phrase.split()[0] for entry in goes for phrase in entry.phrases)
+    for at, end in reversed(ends):
+        if (
+            find(places, text.words, end)
+            and text.words[end] not in named
+            and (text.words[at - 1] in before or text.words[at - 1].startswith(verbs))
+        ):
+            span = text.span(at, end)
+            text.drop(at, end)
+            yield diagnostic("BT158", span, words=span.text)
+
+
+def _drop_untold_contents(text: Words, vocabulary: Lexicon) -> Iterator[Diagnostic]:
+    """Take out what is in a thing where nothing is known of that: `a cup of tea` is the cup."""
+    words, values = text.words, vocabulary.values
+    contents, joints = vocabulary.contents, vocabulary.content_words
+    if text.distinct.isdisjoint(contents) or text.distinct.isdisjoint(joints):
+        return
+    if any(part == "content" for _, parts in values.likenesses.features.get(OBJECT, ()) for part, _ in parts):
+        return
+    names = (values.names_tree(OBJECT), values.names_tree("kind"))
+    entries = [entry for same in vocabulary.entries.values() for entry in same]
+    says = {
+        phrase.split()[0]
+        for entry in entries
+        if any(slot.type == TEXT for slot in entry.slots)
+        for phrase in (*entry.phrases, *(verb for verbs, _ in entry.verbs for verb in verbs))
+    }
+    for at in reversed([at for at in range(1, len(words)) if words[at] in joints]):
+        inside = find(contents, words, at + 1)
+        begins = range(max(at - 3, 0), at)
+        is_thing = any((found := find(tree, words, first)) and found[1] == at for tree in names for first in begins)
+        is_name = any((found := find(names[0], words, first)) and found[1] > at for first in begins)
+        is_said = inside is not None and not says.isdisjoint(words[text.earlier(at)[1] : at])
+        if inside is not None and is_thing and not (is_name or is_said):
+            span = text.span(at, inside[1])
+            text.drop(at, inside[1])
+            yield diagnostic("BT158", span, words=span.text)
