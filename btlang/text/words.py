@@ -198,7 +198,7 @@ class Words:
         self.articles = {
             at - number * (at >= last): place for at, place in self.articles.items() if not first <= at < last
         }
-        self._distinct = None
+        self._changed()
 
     def replace(self, at: int, words: Sequence[str]) -> None:
         """Put words in the place of one, where it stands; only before anybody has looked for anything."""
@@ -210,7 +210,11 @@ class Words:
             for line in self.lines
         ]
         self.articles = {place + more * (place > at): where for place, where in self.articles.items()}
+        self._changed()
+
+    def _changed(self) -> None:
         self._distinct = None
+        self.memo.clear()
 
     def begin(self, at: int) -> int:
         """Return the character at which a word begins, or the article before it."""

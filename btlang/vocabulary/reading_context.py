@@ -128,9 +128,7 @@ class ReadingContext:
     def ways(self, kind: str, text: Words, at: int) -> Iterator[tuple[str, int]]:
         """Every value of a type that begins at a word and where it ends: the plain one, then with what describes it."""
         value = self.read(kind, text, at)
-        if value is not None:
-            yield value
-        yield from self.wider(kind, text, at, value)
+        yield from () if value is None else (value, *self.wider(kind, text, at, value))
 
     def sets(self, kind: str, text: Words, at: int) -> Iterator[tuple[str, Description, int]]:
         """The sets of names of a type that begin at a word: the choice of all, what is meant, and where it ends.
@@ -142,10 +140,14 @@ class ReadingContext:
             if spoken is not None:
                 parts = spoken or self._settled(kind, meant.parts)
                 choice = Choice(ALL, kind, self.keys.get(kind, kind), parts)
-                yield "" if self.values.likenesses.members(choice) == () else choice.text, meant, end
                 is_there = PLACE in self.pronouns.get(text.words[end], ()) and PLACE not in self.listed
+                is_there = is_there and text.words[end + 1] not in self.values.texts.inverting  # `tell all there is tea`
+                self.lacked |= is_there and PLACE not in self.latest
                 there = self.latest.get(PLACE, "{") if is_there else "{"
-                if there[:1] != "{" and kind in (PERSON, OBJECT) and "inside" not in dict(parts):  # `everyone there`
+                is_there = there[:1] != "{" and kind in (PERSON, OBJECT) and "inside" not in dict(parts)
+                if not (is_there and kind == PERSON):
+                    yield "" if self.values.likenesses.members(choice) == () else choice.text, meant, end
+                if is_there:  # `everyone there`
                     placed = meant.replace(parts=tuple(sorted((*parts, ("inside", there)))))
                     yield choice.replace(parts=placed.parts).text, placed, end + 1
 

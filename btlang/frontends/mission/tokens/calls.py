@@ -4,31 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.explanations.times import assumed_times
 from btlang.frontends.mission.symbols.nodes import GivenTwice, is_detail, read_details, unreadable
 from btlang.frontends.mission.token import Called, Listed, Token, arguments_of
-from btlang.frontends.mission.tokens.counted_things import COUNTED
+from btlang.frontends.mission.tokens.mentions import ODD, Mentions
 from btlang.frontends.mission.tokens.two_goals import two_goals
 from btlang.text.source import Span
-from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
-from btlang.vocabulary.adjectives import OWNER
-from btlang.vocabulary.antecedents import pronouns_for
-from btlang.vocabulary.capabilities import MOVES
+from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
 from btlang.vocabulary.entry import MANNER, Entry
-from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match, SlotValue
-from btlang.vocabulary.reading_context import ReadingContext
-from btlang.vocabulary.references import ALL, NAMES, SELF, Choice, choice_of, free_key, keys_in, point_ports, renamed
+from btlang.vocabulary.references import ALL, NAMES, Choice, choice_of, keys_in, point_ports, renamed
 from btlang.vocabulary.trie import TrieNode, longest
-from btlang.vocabulary.value_type import DOOR, KINDS, PERSON, PLACE, WORLD, ZONE
+from btlang.vocabulary.value_type import PLACE
 from btlang.vocabulary.values import key_of
-from btlang.vocabulary.word_tree import find
 
 NEGATED = frozenset(("negated", "negated_twice"))
 """The roles of conditions that say `not` themselves."""
 _ENDS = (END_OF_STATEMENT, END_OF_TEXT, ";", ")")
-_ODD = ("", "{", "(")  # how texts begin that are no plain values: of unknown names, references, choices and points
 
 
 def _leaves_none(value: SlotValue) -> bool:
@@ -49,18 +42,8 @@ def _sets_of(token: Token) -> list[Choice]:
     return [of for of in map(choice_of, texts) if of is not None and of.how == ALL]
 
 
-class Calls:
+class Calls(Mentions):
     """Makes tokens of the phrases of one text; what is wrong with their values becomes `problems`."""
-
-    def __init__(self, text: Words, vocabulary: Lexicon, context: ReadingContext, problems: list[Diagnostic]) -> None:
-        self._text, self._vocabulary, self._context, self.problems = text, vocabulary, context, problems
-        self.manner = ""
-        """How all journeys are made whose command says nothing else: `drive slowly`."""
-        self._lists: dict[str, tuple[Token, SlotValue]] = {}
-        self._alternatives: dict[str, tuple[Token, SlotValue]] = {}  # by the reference to the one that succeeds
-        # in most missions nobody is spoken of by a pronoun
-        self.speaks_of_people = not text.distinct.isdisjoint(pronouns_for(vocabulary.values.pronouns, PERSON))
-        self._owners = not text.distinct.isdisjoint(vocabulary.values.names_tree(OWNER))
 
     def token(self, match: Match, at: int) -> Token:
         """The token of a phrase."""
@@ -85,7 +68,8 @@ class Calls:
             made = Token(kind, start, end, self._called(meaning.entry, match, at))
             if isinstance(made.value, Listed) and made.value.joiner in ("and", "") and kind == "command":
                 listed = next(value for value in match.values if value.more)
-                self._lists = {listed.type: (made, listed)}
+                is_odd = any(text[:1] in ODD for text in listed.texts)  # no round: where each one is would be lost
+                self._lists = {} if is_odd else {listed.type: (made, listed)}
             elif isinstance(made.value, Listed) and made.value.joiner == "or" and kind == "command":
                 listed = next(value for value in match.values if value.more)
                 self._alternatives[self._reference(listed.type)] = made, listed
@@ -174,10 +158,6 @@ class Calls:
         changed: Match = match.replace(values=tuple(values))
         return changed
 
-    def _reference(self, kind: str) -> str:
-        """To the value that stands for the one of several alternatives that succeeds."""
-        return f"{{{free_key(kind, self._context.known or {})}}}"
-
     def is_alternative(self, token: Token, reference: str) -> bool:
         """Whether a value is the one of a command's alternatives that succeeds."""
         return reference in self._alternatives and self._alternatives[reference][0] is token
@@ -197,9 +177,9 @@ class Calls:
         if len({tuple((name, each[name]) for name in each if name not in names) for each in before}) > 1:
             return None  # `look for Bob and Alice in the kitchen, then in the lab`
         if any(added[name] != each.get(name) for each in before for name in added.keys() - names):
-            return False if all(text[:1] not in _ODD for text in added.values()) else None
+            return False if all(text[:1] not in ODD for text in added.values()) else None
         name = places[0].name if len(places) == 1 else ""
-        if not name or any(each.get(name, "")[:1] in _ODD for each in (*before, added)):
+        if not name or any(each.get(name, "")[:1] in ODD for each in (*before, added)):
             return None
         more = (tuple({**added, name: text}.items()) for text in places[0].texts)
         reference = self._reference(PLACE)
@@ -212,94 +192,6 @@ class Calls:
         made = self._alternatives.get(reference)
         if made is not None and isinstance(made[0].value, Listed):
             made[0].value = made[0].value.replace(writes=(reference[1:-1], made[1].type, made[1].name))
-
-    def note(self, match: Match, is_alternative: bool = False) -> None:
-        """What pronouns stand for from here on: of alternatives only the run knows which one it was."""
-        before = dict(self._context.latest) if is_alternative else {}
-        if self.speaks_of_people and match.meaning.entry is not None and match.meaning.role != "negated":
-            self._note_somebody(match.meaning.entry, match)
-        self._note_values(match)
-        if match.meaning.entry is not None and match.meaning.role == "command":
-            self._note_counted(match.meaning.entry, match)
-        for kind, value in before.items():
-            if self._context.latest.get(kind, value) != value:
-                del self._context.latest[kind]
-
-    def _note_somebody(self, entry: Entry, match: Match) -> None:
-        """`wait until someone comes, then greet them`, `if someone is in the lab, greet them`: the nearest one."""
-        somebody = self._vocabulary.negative_subjects.keys()
-        names_none = all(slot.type != PERSON for slot in entry.slots)
-        if names_none and entry.phrases and not somebody.isdisjoint(entry.phrases[0].split()):
-            places = [value for value in match.values if value.type == PLACE and not value.more]
-            self.note_nearest(tuple(("at", value.text) for value in places if value.text[:1] not in _ODD))
-
-    def note_nearest(self, parts: tuple[tuple[str, str], ...] = ()) -> None:
-        """Make pronouns stand for the nearest person of whom these parts are true."""
-        key = self._context.keys.get(PERSON, PERSON)
-        self._context.latest[PERSON] = Choice("nearest", PERSON, key, parts).text
-        self._context.listed.pop(PERSON, None)
-
-    def _note_counted(self, entry: Entry, match: Match) -> None:
-        """`count the people in the lab, then greet them`: all of those that are there, or in view."""
-        kind = COUNTED.get(entry.id, "")
-        place = next((value.text for value in match.values if value.type == PLACE and not value.more), "")
-        if not kind or place[:1] in _ODD[1:]:
-            return
-        kinds = tuple(("kind", value.text) for value in match.values if value.type == KINDS)
-        kind = PERSON if any(PERSON in self._vocabulary.values.likenesses.types_of(of) for _, of in kinds) else kind
-        relation = "at" if kind == PERSON else "inside"
-        where = ((relation, place),) if place else (("seen_by", SELF),)
-        key = self._context.keys.get(kind, kind)
-        self._lists.pop(kind, None)
-        self._context.listed[kind] = Choice(ALL, kind, key, tuple(sorted((*kinds, *where)))).text
-
-    def _note_values(self, match: Match) -> None:
-        for value in sorted(match.values, key=lambda value: value.name == value.type):  # a theme last: `it` prefers it
-            entry = match.meaning.entry
-            names = value.texts if value.more else ()
-            if entry is not None and MOVES in entry.resources and value.type in WORLD:
-                plain = (text for text in value.texts if text[:1] not in _ODD)
-                self._context.reached += [(value.first, value.type, text) for text in plain]
-            is_odd = any(text[:1] in _ODD for text in names)
-            if value.more and (value.joiner == "or" or (entry is not None and entry.first and value.type == PLACE)):
-                self._context.latest.pop(value.type, None)
-                self._context.listed.pop(value.type, None)
-                if match.meaning.role == "command" and not is_odd:
-                    self._context.latest[value.type] = self._reference(value.type)
-                continue
-            self._context.listed.pop(value.type, None)
-            if value.more and not value.group:
-                key = self._context.keys.get(value.type, value.type)
-                group = Choice(ALL, value.type, key, ((NAMES, ";".join(names)),)).text
-                self._context.listed[value.type] = "" if is_odd else group
-            latest = value.group or (value.more[-1] if value.more else value.text)
-            choice = choice_of(latest) if latest[:1] == "{" else None
-            if choice is not None:
-                self._context.met[choice.key] = choice.how == ALL
-            self._context.latest[value.type] = f"{{{choice.key}}}" if choice is not None else latest
-            if value.type in (PLACE, ZONE) and latest in self._vocabulary.values.listed(DOOR):
-                self._context.latest[DOOR] = latest  # `if somebody is at the front door, open it`
-            if value.type == PLACE and latest in self._vocabulary.values.listed(ZONE):
-                self._context.latest[ZONE] = latest  # `go to the lab, then leave it`
-            if value.type == ZONE and latest in self._vocabulary.values.listed(PLACE):
-                self._context.latest[PLACE] = latest  # `never enter the lab while Bob is in it`
-
-    def _note_owners(self, value: SlotValue) -> None:
-        """BT177 for each owner of whom it isn't known what they own: `my cup`, but not the cup called "my cup"."""
-        known = self._vocabulary.values
-        named = choice_of(value.group or value.text)
-        names = [*value.texts, *(text for _, text in (named.parts if named is not None else ()))]
-        said = {word for name in names for word in name.lower().split()}
-        if value.type not in WORLD:
-            return
-        for first, last in known.adjectives.nobody_known(self._text, value.first, value.last, known.names_tree):
-            if self._text.words[first] not in said and not any(word.endswith(known.adjectives.ending) for word in said):
-                span = self._text.span(first, last)
-                self.problems.append(diagnostic("BT177", span, words=span.text))
-                name = self._text.words[first].removesuffix(known.adjectives.ending)
-                owner = find(known.names_tree(PERSON), [name, END_OF_TEXT], 0)
-                if owner is not None:  # `find Bob's book and bring it to him`
-                    self._context.latest[PERSON] = owner[0]
 
     def _called(self, entry: Entry, match: Match, at: int) -> Called | Listed:
         """The entry with its arguments, or with several of them where one slot holds a list."""
@@ -318,7 +210,7 @@ class Calls:
             match = match.replace(values=tuple(values))
         for value in match.values:
             text = value.text
-            if value.more or text[:1] in _ODD or "{" in text:
+            if value.more or text[:1] in ODD or "{" in text:
                 break
             arguments.append((value.name, text))
         else:

@@ -14,6 +14,7 @@ from btlang.vocabulary.references import choice_of
 from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE
 from btlang.vocabulary.word_tree import find
 
+_ASKED = ("condition", "negated")
 COMES, _COMES_BACK, _DURATION = "WaitForPerson", "ComeBack", "duration"
 _TAKES, _FROM = "Take", ("off", "at", "inside", "on")
 _LOOPED = frozenset(("command", "name", "wait", "every", "count", "repeat", "open", "close", "comma", "and", "then"))
@@ -269,9 +270,9 @@ class JourneyWords(SentenceReader):
 
     def inspection(self, at: int, end: int) -> int:
         """`check the lab`: no condition, but a place that is looked at."""
-        found = self._with_front(at, end, "inspecting")
-        if found is None:
-            return 0
+        found, asked = self._with_front(at, end, "inspecting"), self._phrase(end)
+        if found is None or (asked is not None and asked.last > found.last and asked.meaning.role in _ASKED):
+            return 0  # `check that the lab door and the hall door are closed`
         behind = self._phrase(found.last)
         joins = behind is not None and behind.meaning.entry is None and behind.meaning.role not in NOT_ALONE
         if not (joins or self._is_end(found.last) or self._text.words[found.last] == ","):

@@ -175,14 +175,17 @@ class OrderWords(ClockWords, JourneyWords, RuleWords):
             is_behind = bool(self._tokens) and self._tokens[-1].kind in ("command", "comma")
             return is_behind and (self._is_end(match.last) or self._text.words[match.last] == ",")
         tokens, words, roles = self._tokens, self._text.words, self._vocabulary.roles
-        if not tokens or tokens[-1].kind != "command":
+        if not tokens or tokens[-1].kind not in ("command", "name", "wait", "close"):
             return False
+        behind = self._phrase(self._behind_comma(match.last))
+        ends = self._is_end(match.last) or (behind is not None and behind.meaning.role in ("and", "then"))
         if words[at] in (*self._vocabulary.asked_once, *roles["once"]):
-            behind = self._phrase(match.last)
-            return self._is_end(match.last) or (behind is not None and behind.meaning.role in ("and", "then"))
-        is_later = self._is_end(match.last) and len(tokens) > 1 and tokens[-2].kind in (*JOINTS, "semi", "newline")
-        if is_later and tokens[-2].kind == "and":  # `go to the lab and wave afterwards`
-            tokens[-2].kind = "then"
+            return ends
+        opening = (at for at in range(len(tokens) - 1, -1, -1) if tokens[at].kind == "open")
+        before = (next(opening, 0) if tokens[-1].kind == "close" else len(tokens) - 1) - 1
+        is_later = ends and before >= 0 and tokens[before].kind in (*JOINTS, "semi", "newline")
+        if is_later and tokens[before].kind == "and":  # `go to the lab and wave afterwards`
+            tokens[before].kind = "then"
         return is_later
 
     def _instead(self, match: Match, at: int) -> int:

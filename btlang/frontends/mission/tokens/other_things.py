@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.token import (
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 Arguments: TypeAlias = "tuple[tuple[str, str], ...]"
 _TAKING, _PLACED = ("PickUp", "Take", "Bring"), {NAMES, *RELATIONS}
 _NEAREST, _OTHER = "nearest", "other_than"
+_ALL_OR_ONE = (ALL, _NEAREST)
 _REASON = "it may be one that was meant before"
 _SIMPLE = frozenset(("command", "name", "open", "close", *JOINTS, *STATEMENT_ENDS))
 
@@ -136,7 +137,7 @@ def with_goals_there(tokens: list[Token], vocabulary: Lexicon, source: Source) -
             been.update(said.entry.given(PLACE, arguments_of(said)[-1]))
         if said.entry.id != _TAKING[0]:
             continue
-        words, thing = source.text[token.start : token.end].lower(), _chosen(arguments_of(said)[0])
+        words, thing = source.text[token.start : token.end].lower(), _chosen(arguments_of(said)[0], _ALL_OR_ONE)
         place = dict(thing.parts).get("inside", "") if thing is not None else ""
         is_taken = words.startswith(take.phrases[0].partition("{")[0])
         is_goal = place not in ("", *been) and says_there(words, vocabulary.values.pronouns)
@@ -156,10 +157,10 @@ def _placed(said: str, place: str) -> str:
     return text
 
 
-def _chosen(arguments: Arguments) -> Choice | None:
-    """The object that a command chooses, the nearest of its kind."""
+def _chosen(arguments: Arguments, ways: Sequence[str] = (_NEAREST,)) -> Choice | None:
+    """The object that a command chooses in one of some ways, or one of its kind."""
     for choice in (choice_of(said) for _, said in arguments if said[:1] == "{"):
-        is_one = choice is not None and (choice.how == _NEAREST or (COUNT, "1") in choice.parts)  # `one cup`
+        is_one = choice is not None and (choice.how in ways or (COUNT, "1") in choice.parts)  # `one cup`
         if choice is not None and choice.type == OBJECT and is_one and choice.parts:
             return choice
     return None

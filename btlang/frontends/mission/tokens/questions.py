@@ -6,7 +6,16 @@ Each becomes the commands that answer it: what is asked is measured, and said.
 from __future__ import annotations
 
 from btlang.diagnostics.diagnostic import diagnostic
-from btlang.frontends.mission.token import JOINTS, STATEMENT_ENDS, Called, Listed, Remembered, Token, statement_start
+from btlang.frontends.mission.token import (
+    JOINTS,
+    STATEMENT_ENDS,
+    Called,
+    Listed,
+    Remembered,
+    Token,
+    drives,
+    statement_start,
+)
 from btlang.frontends.mission.tokens.addressed_texts import TELL
 from btlang.frontends.mission.tokens.answers import Answers
 from btlang.frontends.mission.tokens.sentence_reader import is_question, latest_question
@@ -93,12 +102,13 @@ class Questions(Answers):
         return end
 
     def _found_out(self, at: int, end: int, told: Called, slot: str) -> int:
-        """`ask Bob what he wants and tell Alice`, `count the cups and tell me`: the answer, or how many there are."""
-        before = next((token for token in reversed(self._tokens) if token.kind not in _BETWEEN), None)
+        """`ask Bob what he wants and tell Alice`, `count the cups, come back and tell me`: the answer, or how many."""
+        done = (each for each in reversed(self._tokens) if each.kind not in _BETWEEN)
+        before = next((each for each in done if not drives(each.value) or _finds_out(each)), None)
         if before is None or not isinstance(before.value, Called | Listed) or not self._ends(end):
             return 0
         counts = before.value.entry.id in COUNTING
-        entry = self._vocabulary.entry(COUNT if counts else _ANSWER) if counts or is_question(before) else None
+        entry = self._vocabulary.entry(COUNT if counts else _ANSWER) if _finds_out(before) else None
         if entry is None:
             return 0
         command = Token("command", self._text.starts[at], self._text.ends[end - 1], told)
@@ -334,3 +344,8 @@ class Questions(Answers):
         words = entry.quantity[0].split()
         slot = next((at for at, word in enumerate(words) if "{" in word), len(words) + 1)
         return free_key(key_of(words[: slot - 1]), self._context.known or ())
+
+
+def _finds_out(token: Token) -> bool:
+    """Whether a command counts something, or asks somebody."""
+    return is_question(token) or (isinstance(token.value, Called | Listed) and token.value.entry.id in COUNTING)

@@ -33,6 +33,8 @@ def with_rules_behind(tokens: list[Token]) -> None:
         if tokens[at].kind in RULES and tokens[at - 1].kind in _DONE:
             _split(tokens, at)
             _end(tokens, at)
+        elif tokens[at].kind in RULES and tokens[at - 1].kind == "and":
+            _begin(tokens, at)
 
 
 def find_counted_rules(tokens: Sequence[Token], source: Source) -> Iterator[Diagnostic]:
@@ -169,6 +171,13 @@ def _split(tokens: list[Token], rule: int) -> None:
     if form == second or _behind(tokens, form) == statement_end(tokens, form):
         tokens[form].kind = "whenever" if tokens[form].kind == "if" else tokens[form].kind
         tokens[last:second] = [Token("semi", tokens[last].start, tokens[last].start)]
+
+
+def _begin(tokens: list[Token], rule: int) -> None:
+    """`whenever C, A, and whenever D, B`: the second rule is one of its own."""
+    first, joint = statement_of(tokens, rule)[0], run_start(tokens, rule, ("comma", "and"))
+    if joint > first and tokens[first].kind in RULES and not any(each.kind == "open" for each in tokens[first:joint]):
+        tokens[joint:rule] = [Token("semi", tokens[joint].start, tokens[joint].start)]
 
 
 def _end(tokens: list[Token], rule: int) -> None:

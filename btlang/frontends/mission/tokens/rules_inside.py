@@ -68,8 +68,10 @@ def _front(tokens: list[Token], rule: int) -> None:
     joint = run_start(tokens, rule - 1, JOINTS)
     first = _last_then(tokens, first, joint)
     condition = tokens[rule + 1 : run_start(tokens, end, STATEMENT_ENDS)]
-    is_command = rule > 0 and tokens[rule - 1].kind == "command" and tokens[first].kind not in _LATER
+    is_command = rule > 0 and tokens[rule - 1].kind in ("command", "wait") and tokens[first].kind not in _LATER
     if not is_command or not first < joint < rule - 1 or any(each.kind not in _IN_CONDITIONS for each in condition):
+        return
+    if all(_accompanies(token) for token in tokens[first:joint]):  # `wave and nod whenever C` may mean both each time
         return
     done, here = tokens[rule - 1], tokens[rule].start
     made = [tokens[rule], *condition, Token("comma", here, here), done]
@@ -79,6 +81,11 @@ def _front(tokens: list[Token], rule: int) -> None:
     if keeps_in or command[-1].role == STAYS:  # `stand at the door and wave whenever C`
         command += [Token("semi" if keeps_in else "then", here, here), Token("wait_forever", here, here)]
     tokens[first:end] = _made(tokens[first:end], command, made)
+
+
+def _accompanies(token: Token) -> bool:
+    """Whether a token joins commands, or is a command that may go along with others: it doesn't last."""
+    return token.kind in JOINTS or (isinstance(token.value, Called | Listed) and token.value.entry.accompaniment)
 
 
 def _last_then(tokens: Sequence[Token], first: int, last: int) -> int:

@@ -4,8 +4,18 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from itertools import dropwhile
 
-from btlang.frontends.mission.token import JOINTS, STATEMENT_ENDS, Called, run_start, statement_start
+from btlang.frontends.mission.token import (
+    FORMS,
+    JOINTS,
+    STATEMENT_ENDS,
+    Called,
+    Listed,
+    arguments_of,
+    run_start,
+    statement_start,
+)
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, is_question, searches
 from btlang.frontends.mission.tokens.settling import FAILS, WORKS, is_about
 from btlang.frontends.mission.tokens.word_matches import words_of
@@ -15,6 +25,8 @@ from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE, TEXT, WORLD
 from btlang.vocabulary.word_tree import find
 
+_COMES = "WaitForPerson"
+_AWAITING = frozenset(("within", "wait_up_to", "condition", "not", "and"))
 _ASKED_BY = frozenset(("if", "whenever", "first_time", "as_soon_as", WORKS))
 _IN_CONDITIONS = frozenset(("condition", "not", "either", "neither", "or"))
 _LINE_ENDS = frozenset(("semi", "newline", "otherwise"))
@@ -80,15 +92,16 @@ class ToldWords(SentenceReader):
         """The words of the one condition that the command being read depends on, with names for pronouns; else ""."""
         tokens = self._tokens
         failed = next((at for at in reversed(range(len(tokens))) if tokens[at].kind in (*_LINE_ENDS, "or")), 0)
-        if tokens and tokens[failed].value == FAILS:
+        is_plain = failed > 0 and (tokens[failed - 1].kind, tokens[failed].kind) == ("stop", "otherwise")
+        is_plain = is_plain and all(each.kind not in FORMS for each in tokens[statement_start(tokens, failed) : failed])
+        if tokens and (tokens[failed].value == FAILS or is_plain):  # `pick up the cup. Otherwise tell Bob`
             works = (at for at in reversed(range(failed)) if tokens[at].kind == WORKS)
-            form = next(works, 0) if tokens[failed].kind == "otherwise" else failed
-            return self._failed(run_start(tokens, form, JOINTS | STATEMENT_ENDS))
+            is_other = tokens[failed].kind == "otherwise" and not is_plain
+            return self._failed(next(works, 0) if is_other else failed)
         form = next((at for at in reversed(range(len(tokens))) if tokens[at].kind in _ASKED_BY), 0)
         is_other = any(token.kind in _LINE_ENDS for token in tokens[form:])
         if tokens and tokens[form].kind == WORKS:
-            tried = run_start(tokens, form, JOINTS | STATEMENT_ENDS)
-            return self._failed(tried) if is_other else self._found(tried)
+            return self._failed(form) if is_other else self._found(run_start(tokens, form, JOINTS | STATEMENT_ENDS))
         if tokens and tokens[form].start == tokens[form].end:
             return "" if is_other else self._replied(form)
         asked = [token for token in tokens[form:] if token.kind in _IN_CONDITIONS]
@@ -122,19 +135,50 @@ class ToldWords(SentenceReader):
             said = re.sub(rf"\b(?:{pattern})\b", lambda match: of_robot[match[0].lower()], said, flags=re.IGNORECASE)
         return said[:1].upper() + said[1:]
 
-    def _failed(self, end: int) -> str:
-        """`pick up the cup. If you can't find it, tell Bob`: that the command before some token has failed."""
-        tried = self._tokens[end - 1] if end else None
-        if tried is None or tried.kind != "command" or end - 1 != statement_start(self._tokens, end):
+    def _failed(self, form: int) -> str:
+        """`pick up the cup. If you can't find it, tell Bob`: that the command before some token has failed.
+
+        Of a question and of a wait what the token says: `wait for Bob. If he hasn't come, tell Alice`.
+        """
+        tokens, text = self._tokens, self._text
+        at = run_start(tokens, form, JOINTS | STATEMENT_ENDS) - 1
+        while at > 0 and tokens[at].kind in _AWAITING:
+            at -= 1
+        tried = tokens[at] if at >= 0 else None
+        is_first = at == statement_start(tokens, max(at, 0)) or tokens[at - 1].kind == "comma"
+        if tried is None or tried.kind != "command" or not is_first or not isinstance(tried.value, Called | Listed):
             return ""
-        words = [at for at in words_of(self._text, tried) if self._text.words[at][0] != '"']
-        people = self._vocabulary.values.texts.of_persons
-        if any(self._text.words[at] in people or self._text.words[at] in self._context.pronouns for at in words):
+        front, words = self._vocabulary.asking["failing"][0], list(words_of(text, tried))
+        if is_question(tried) or tried.value.entry.id == _COMES:
+            joining = {
+                word for role in ("if", "and") for phrase in self._vocabulary.roles[role] for word in phrase.split()
+            }
+            words = list(dropwhile(lambda at: text.words[at] in joining, words_of(text, tokens[form])))
+            front = ""
+            if not words or PERSON not in self._context.pronouns.get(text.words[words[0]], ()):
+                return ""
+        words = [at for at in words if text.words[at][0] not in '",']
+        said = self._with_names(self._sought(words) if searches(tried) else words, tried.value)
+        if not said:
             return ""
-        front, done = self._vocabulary.asking["failing"][0], " ".join(map(self._written, words))
-        if searches(tried):
-            done = f"{self._vocabulary.asking['search'][0]} {self._sought(words)}"
-        return f"{front[:1].upper()}{front[1:]} {done[:1].lower()}{done[1:]}".replace(" ,", ",")
+        said = f"{self._vocabulary.asking['search'][0]} {said}" if searches(tried) and front else said
+        said = f"{front} {said[:1].lower()}{said[1:]}" if front else said
+        return f"{said[:1].upper()}{said[1:]}".replace(" ,", ",")
+
+    def _with_names(self, words: Sequence[int], command: Called | Listed) -> str:
+        """Words with the names of a command in the place of pronouns, "" where one may stand for others."""
+        types, said = {slot.name: slot.type for slot in command.entry.slots}, list[str]()
+        rows = arguments_of(command)
+        named = [(types[name], value) for name, value in rows[0] if all((name, value) in row for row in rows)]
+        for at in words:
+            pronoun = find(self._vocabulary.values.pronoun_words, self._text.words, at)
+            kinds = self._context.pronouns[pronoun[0]] if pronoun is not None else ()
+            meant = [value for kind, value in named if kind in kinds]
+            is_person = self._text.words[at] in self._vocabulary.values.texts.of_persons
+            if PLACE not in kinds and (kinds or is_person) and (len(meant) != 1 or meant[0][:1] == "{"):
+                return ""
+            said.append(meant[0] if meant and PLACE not in kinds else self._written(at))
+        return " ".join(said)
 
     def _found(self, end: int) -> str:
         """`look for the cup. If you find it, tell Bob`: that what the command before some token looks for was found."""
@@ -145,12 +189,13 @@ class ToldWords(SentenceReader):
         if any(self._text.words[at] in self._context.pronouns for at in words):
             return ""
         front = self._vocabulary.asking["found"][0]
-        return f"{front[:1].upper()}{front[1:]} {self._sought(words)}".replace(" ,", ",")
+        sought = " ".join(map(self._written, self._sought(words)))
+        return f"{front[:1].upper()}{front[1:]} {sought}".replace(" ,", ",")
 
-    def _sought(self, words: Sequence[int]) -> str:
-        """What a search is for, and where."""
+    def _sought(self, words: Sequence[int]) -> Sequence[int]:
+        """The words for what a search is for, and where."""
         things = (at for at in words for kind in (OBJECT, PERSON) if self._context.read(kind, self._text, at))
-        return " ".join(map(self._written, words[words.index(next(things, words[0])) :]))
+        return words[words.index(next(things, words[0])) :]
 
     def _replied(self, form: int) -> str:
         """`ask Bob "Tea?". If so, tell Alice`: what somebody says by name to a question, which a form depends on."""

@@ -1,0 +1,148 @@
+"""What pronouns stand for behind a phrase: the values that it has, and what it is about."""
+
+from __future__ import annotations
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.frontends.mission.token import Token
+from btlang.frontends.mission.tokens.counted_things import COUNTED
+from btlang.text.words import END_OF_TEXT, Words
+from btlang.vocabulary.adjectives import OWNER
+from btlang.vocabulary.antecedents import pronouns_for
+from btlang.vocabulary.capabilities import MOVES
+from btlang.vocabulary.descriptions import NAME
+from btlang.vocabulary.entry import Entry
+from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.match import Match, SlotValue
+from btlang.vocabulary.reading_context import ReadingContext
+from btlang.vocabulary.references import ALL, NAMES, SELF, Choice, choice_of, free_key
+from btlang.vocabulary.value_type import DOOR, KINDS, OBJECT, PERSON, PLACE, WORLD, ZONE
+from btlang.vocabulary.word_tree import find
+
+ODD = ("", "{", "(")
+"""How texts begin that are no plain values: of unknown names, references, choices and points."""
+
+
+class Mentions:
+    """Those of one text; what is wrong with them becomes `problems`."""
+
+    def __init__(self, text: Words, vocabulary: Lexicon, context: ReadingContext, problems: list[Diagnostic]) -> None:
+        self._text, self._vocabulary, self._context, self.problems = text, vocabulary, context, problems
+        self.manner = ""
+        """How all journeys are made whose command says nothing else: `drive slowly`."""
+        self._themes: tuple[str, list[str]] = "", []
+        """The id of the command that was read last, and the things that it and those before it with that id had."""
+        self._lists: dict[str, tuple[Token, SlotValue]] = {}
+        self._alternatives: dict[str, tuple[Token, SlotValue]] = {}  # by the reference to the one that succeeds
+        # in most missions nobody is spoken of by a pronoun
+        self.speaks_of_people = not text.distinct.isdisjoint(pronouns_for(vocabulary.values.pronouns, PERSON))
+        self._owners = not text.distinct.isdisjoint(vocabulary.values.names_tree(OWNER))
+
+    def _reference(self, kind: str) -> str:
+        """To the value that stands for the one of several alternatives that succeeds."""
+        return f"{{{free_key(kind, self._context.known or {})}}}"
+
+    def note(self, match: Match, is_alternative: bool = False) -> None:
+        """What pronouns stand for from here on: of alternatives only the run knows which one it was."""
+        before = dict(self._context.latest) if is_alternative else {}
+        if self.speaks_of_people and match.meaning.entry is not None and match.meaning.role != "negated":
+            self._note_somebody(match.meaning.entry, match)
+        self._note_values(match)
+        if match.meaning.entry is not None and match.meaning.role == "command":
+            self._note_counted(match.meaning.entry, match)
+        for kind, value in before.items():
+            if self._context.latest.get(kind, value) != value:
+                del self._context.latest[kind]
+
+    def _note_somebody(self, entry: Entry, match: Match) -> None:
+        """`wait until someone comes, then greet them`, `if someone is in the lab, greet them`: the nearest one."""
+        somebody = self._vocabulary.negative_subjects.keys()
+        names_none = all(slot.type != PERSON for slot in entry.slots)
+        if names_none and entry.phrases and not somebody.isdisjoint(entry.phrases[0].split()):
+            places = [value for value in match.values if value.type == PLACE and not value.more]
+            self.note_nearest(tuple(("at", value.text) for value in places if value.text[:1] not in ODD))
+
+    def note_nearest(self, parts: tuple[tuple[str, str], ...] = ()) -> None:
+        """Make pronouns stand for the nearest person of whom these parts are true."""
+        key = self._context.keys.get(PERSON, PERSON)
+        self._context.latest[PERSON] = Choice("nearest", PERSON, key, parts).text
+        self._context.listed.pop(PERSON, None)
+
+    def _note_counted(self, entry: Entry, match: Match) -> None:
+        """`count the people in the lab, then greet them`: all of those that are there, or in view."""
+        kind = COUNTED.get(entry.id, "")
+        place = next((value.text for value in match.values if value.type == PLACE and not value.more), "")
+        if not kind or place[:1] in ODD[1:]:
+            return
+        kinds = tuple(("kind", value.text) for value in match.values if value.type == KINDS)
+        kind = PERSON if any(PERSON in self._vocabulary.values.likenesses.types_of(of) for _, of in kinds) else kind
+        relation = "at" if kind == PERSON else "inside"
+        where = ((relation, place),) if place else (("seen_by", SELF),)
+        key = self._context.keys.get(kind, kind)
+        self._lists.pop(kind, None)
+        self._context.listed[kind] = Choice(ALL, kind, key, tuple(sorted((*kinds, *where)))).text
+
+    def _note_values(self, match: Match) -> None:
+        for value in sorted(match.values, key=lambda value: value.name == value.type):  # a theme last: `it` prefers it
+            entry = match.meaning.entry
+            names = tuple(map(_name, value.texts)) if value.more else ()
+            if entry is not None and MOVES in entry.resources and value.type in WORLD:
+                plain = (text for text in value.texts if text[:1] not in ODD)
+                self._context.reached += [(value.first, value.type, text) for text in plain]
+            is_odd = any(text[:1] in ODD for text in names)
+            if value.more and (value.joiner == "or" or (entry is not None and entry.first and value.type == PLACE)):
+                self._context.latest.pop(value.type, None)
+                self._context.listed.pop(value.type, None)
+                if match.meaning.role == "command" and not is_odd:
+                    self._context.latest[value.type] = self._reference(value.type)
+                continue
+            self._context.listed.pop(value.type, None)
+            names = names or self._same_themes(match, value)
+            if len(names) > 1 and not value.group:
+                key = self._context.keys.get(value.type, value.type)
+                group = Choice(ALL, value.type, key, ((NAMES, ";".join(names)),)).text
+                self._context.listed[value.type] = "" if is_odd else group
+            latest = value.group or (value.more[-1] if value.more else value.text)
+            choice = choice_of(latest) if latest[:1] == "{" else None
+            if choice is not None:
+                self._context.met[choice.key] = choice.how == ALL
+            self._context.latest[value.type] = f"{{{choice.key}}}" if choice is not None else latest
+            if value.type in (PLACE, ZONE) and latest in self._vocabulary.values.listed(DOOR):
+                self._context.latest[DOOR] = latest  # `if somebody is at the front door, open it`
+            if value.type == PLACE and latest in self._vocabulary.values.listed(ZONE):
+                self._context.latest[ZONE] = latest  # `go to the lab, then leave it`
+            if value.type == ZONE and latest in self._vocabulary.values.listed(PLACE):
+                self._context.latest[PLACE] = latest  # `never enter the lab while Bob is in it`
+
+    def _same_themes(self, match: Match, value: SlotValue) -> tuple[str, ...]:
+        """`fetch the cup from the lab and the book from the hall, and bring them`: the things of commands in a row."""
+        entry = match.meaning.entry
+        if entry is None or match.meaning.role != "command" or value.type != OBJECT:
+            return ()
+        name = _name(value.text)
+        is_plain = not value.group and name[:1] not in ODD
+        before = self._themes[1] if self._themes[0] == entry.id and is_plain else []
+        self._themes = entry.id, [*before, name] if is_plain else []
+        return tuple(dict.fromkeys(self._themes[1]))
+
+    def _note_owners(self, value: SlotValue) -> None:
+        """BT177 for each owner of whom it isn't known what they own: `my cup`, but not the cup called "my cup"."""
+        known = self._vocabulary.values
+        named = choice_of(value.group or value.text)
+        names = [*value.texts, *(text for _, text in (named.parts if named is not None else ()))]
+        said = {word for name in names for word in name.lower().split()}
+        if value.type not in WORLD:
+            return
+        for first, last in known.adjectives.nobody_known(self._text, value.first, value.last, known.names_tree):
+            if self._text.words[first] not in said and not any(word.endswith(known.adjectives.ending) for word in said):
+                span = self._text.span(first, last)
+                self.problems.append(diagnostic("BT177", span, words=span.text))
+                name = self._text.words[first].removesuffix(known.adjectives.ending)
+                owner = find(known.names_tree(PERSON), [name, END_OF_TEXT], 0)
+                if owner is not None:  # `find Bob's book and bring it to him`
+                    self._context.latest[PERSON] = owner[0]
+
+
+def _name(text: str) -> str:
+    """The name of a value: also of what is chosen by it, `the red cup from the kitchen`."""
+    chosen = choice_of(text)
+    return text if chosen is None else dict(chosen.parts).get(NAME, text)
