@@ -11,6 +11,7 @@ from btlang.api import Mission, parse_tree
 from btlang.cli.parser import looks_like_path, quote_mission, reads_as_mission
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.diagnostics.files import read_source
+from btlang.passes.lint.tree_lints import UNDECLARED
 from btlang.robots.platforms import ROBOTS
 from btlang.support.test_files import is_test_file
 from btlang.text.source import Source, Span
@@ -37,10 +38,13 @@ def add_robot_files(options: argparse.Namespace) -> None:
         options.world = options.world or body.world or None
 
 
-def mission_of(options: argparse.Namespace, source: Source | None = None) -> Mission:
-    """Compile what the options name; warnings go to the report. Raises MissionError."""
+def mission_of(options: argparse.Namespace, source: Source | None = None, *, is_checked: bool = False) -> Mission:
+    """Compile what the options name; warnings go to the report. Raises MissionError.
+
+    Where the mission `is_checked` next, undeclared nodes are errors then, and no warnings here.
+    """
     mission = parse_mission(source_of(options) if source is None else source, options)
-    options.report.add(mission.warnings)
+    options.report.add(each for each in mission.warnings if not (is_checked and each.code == UNDECLARED))
     return mission
 
 

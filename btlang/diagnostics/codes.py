@@ -297,6 +297,8 @@ _ALL = (
          "text as a number"),
     Code("BT247", "BehaviorTree.CPP ignores _onlyIf, which only some programs know.",
          "If yours doesn't, write: _skipIf=\"{script}\"", "warning", "unknown condition"),
+    Code("BT248", "Nothing declares the node '{id}': this mission can be shown, but not run.",
+         "If a keyword file has it, add: --keywords FILE", "warning", "undeclared node"),
     Code("BT250", "'{sign}' isn't a word.", "Write comparisons in words."),
 )  # fmt: skip
 

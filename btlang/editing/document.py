@@ -11,6 +11,7 @@ from btlang.editing.syntax import Syntax
 from btlang.editing.values import abilities, values_of
 from btlang.editing.words import RobotWords
 from btlang.frontends.table import frontend_of
+from btlang.passes.lint.tree_lints import UNDECLARED
 from btlang.printer.mission import printer_of
 from btlang.printer.phrase import is_written
 from btlang.support.gc_pause import gc_paused
@@ -43,7 +44,8 @@ class _Read:
         except MissionError as error:
             self.problems = error.diagnostics
         else:
-            self.problems = (*self.mission.warnings, *_report_misnamed(self.mission))
+            kept = (each for each in self.mission.warnings if each.code != UNDECLARED)
+            self.problems = (*kept, *_report_misnamed(self.mission))
 
     def summary(self) -> dict[str, Any]:
         ok = self.mission is not None

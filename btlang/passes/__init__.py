@@ -13,7 +13,13 @@ from btlang.passes.compilation import Compilation, Pass
 from btlang.passes.lint.allow import apply_allow, apply_allow_in_xml
 from btlang.passes.lint.asked_once import find_asked_once
 from btlang.passes.lint.definitions import find_line_ends, find_rules_only, find_unused
-from btlang.passes.lint.tree_lints import find_busy_loops, find_cut_off, find_empty_loops, find_unreachable
+from btlang.passes.lint.tree_lints import (
+    find_busy_loops,
+    find_cut_off,
+    find_empty_loops,
+    find_undeclared,
+    find_unreachable,
+)
 from btlang.passes.lint.two_readings import (
     find_conditional_alternatives,
     find_counts_behind_lists,
@@ -67,6 +73,7 @@ PASSES = (
     Pass("no rounds", find_empty_loops),
     Pass("busy loop", find_busy_loops),
     Pass("cut off", find_cut_off),
+    Pass("undeclared nodes", find_undeclared, needs_text=True),
     Pass("line end", find_line_ends, needs_text=True),
     Pass("allow", apply_allow, needs_text=True),
     Pass("allow in XML", apply_allow_in_xml),

@@ -24,6 +24,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import TypeAlias
 
+UNDECLARED = "BT248"
+"""The code of the warning about nodes that nothing declares."""
 ASKS, INSTANT, TAKES_TIME = range(3)
 """What the leaves below a node are at most: conditions, things that end in the tick they start, others."""
 Found: TypeAlias = "Exposed | None"
@@ -146,6 +148,15 @@ class Exposed(Record):
 
     leaf: Node
     place: Node
+
+
+def find_undeclared(compilation: Compilation) -> Iterator[Diagnostic]:
+    """Report the nodes that a mission says by an id that no keyword entry has (BT248), each id once."""
+    unknown = set(compilation.ids.difference(CATALOGUE, compilation.vocabulary.entries))
+    for node in compilation.tree.walk() if unknown else ():
+        if node.id in unknown and node.span is not None:
+            unknown.discard(node.id)
+            yield diagnostic(UNDECLARED, node.span, id=node.id)
 
 
 def find_cut_off(compilation: Compilation) -> list[Diagnostic]:

@@ -178,7 +178,8 @@ class OrderWords(ClockWords, JourneyWords, RuleWords):
         if not tokens or tokens[-1].kind not in ("command", "name", "wait", "close"):
             return False
         behind = self._phrase(self._behind_comma(match.last))
-        ends = self._is_end(match.last) or (behind is not None and behind.meaning.role in ("and", "then"))
+        joins = behind is not None and behind.meaning.role in ("and", "then") and words[at] not in roles["and"]
+        ends = self._is_end(match.last) or joins
         if words[at] in (*self._vocabulary.asked_once, *roles["once"]):
             return ends
         opening = (at for at in range(len(tokens) - 1, -1, -1) if tokens[at].kind == "open")

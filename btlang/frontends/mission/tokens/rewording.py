@@ -5,14 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.frontends.mission.tokens.each_and_any import say_each
 from btlang.text.time_of_day import WEEKDAYS, WEEKEND, WORKDAYS
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
-from btlang.vocabulary.antecedents import pronouns_for
 from btlang.vocabulary.lexicon import Lexicon
-from btlang.vocabulary.pattern import forms
-from btlang.vocabulary.reading_context import ReadingContext
-from btlang.vocabulary.trie import longest
-from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE, TEXT, WORLD, ZONE
+from btlang.vocabulary.value_type import OBJECT, PLACE, TEXT, WORLD, ZONE
 from btlang.vocabulary.word_tree import find
 
 _MOST_ADJECTIVES = 3
@@ -26,10 +23,7 @@ def reworded(text: Words, vocabulary: Lexicon) -> list[Diagnostic]:
     _drop_still(text, vocabulary)
     _drop_left(text, vocabulary)
     _say_there(text, vocabulary)
-    _say_if_so(text, vocabulary)
-    _say_kind(text, vocabulary)
-    _say_there_is(text, vocabulary)
-    _list_any(text, vocabulary)
+    say_each(text, vocabulary)
     _list_days(text, vocabulary)
     _drop_again(text, vocabulary)
     _say_again(text, vocabulary)
@@ -107,131 +101,6 @@ def _say_there(text: Words, vocabulary: Lexicon) -> None:
             text.replace(found[1] - 1, [words[found[1] - 1], *there])
 
 
-def _say_if_so(text: Words, vocabulary: Lexicon) -> None:
-    """Put `if it is` for `that is` behind doors, which are as the robot finds them: `close every door that is open`."""
-    words, values, asking = text.words, vocabulary.values, vocabulary.asking
-    if text.distinct.isdisjoint(vocabulary.relatives):
-        return  # as nearly always
-    it = next(iter(pronouns_for(values.pronouns, DOOR)), "")
-    entries = (vocabulary.entry(id) for id in ("DoorOpen", "DoorClosed"))
-    states = {form[-1] for entry in entries if entry is not None for each in entry.phrases for form in forms(each)}
-    for at in reversed([at for at in range(1, len(words) - 1) if words[at] in vocabulary.relatives]):
-        found = find(vocabulary.relatives, words, at)
-        if found is None or not values.phrases.is_type(DOOR, text, at - 1):
-            continue
-        state = found[1] + (words[found[1]] in asking["still"])
-        if words[state] in states and (words[state + 1][0] in _ENDING or words[state + 1] in vocabulary.joining):
-            text.drop(at + 1, state)
-            text.replace(at, [vocabulary.word("if"), it, asking["asking_be"][0]])
-
-
-def _say_kind(text: Words, vocabulary: Lexicon) -> None:
-    """Put the kind behind `all` that what is left out has: `all but the blue cups` as `all cups but the blue cups`."""
-    words, values, every = text.words, vocabulary.values, frozenset(vocabulary.roles["all_names"])
-    for at in reversed([at for at, word in enumerate(words) if word in every]):
-        end = values.exception(text, at + 1)
-        nouns = (word for word in words[end : end + _MOST_ADJECTIVES] if end and values.takes_word("kinds", word))
-        noun = next(nouns, "")
-        if noun:
-            text.replace(at, [words[at], noun])
-
-
-def _say_there_is(text: Words, vocabulary: Lexicon) -> None:
-    """Say that there is something that isn't named: `if a cup is on the table` as `if there is a cup on the table`."""
-    words, values, asking = text.words, vocabulary.values, vocabulary.asking
-    if text.distinct.isdisjoint(vocabulary.before_conditions):
-        return
-    there, places = asking["remaining"][-1], values.role_words.introducing["location"]
-    for at in reversed([at for at in range(1, len(words)) if words[at - 1] in vocabulary.before_conditions]):
-        article = text.source.text[slice(*text.articles[at])].lower() if at in text.articles else ""
-        is_some, is_none = words[at] in asking["any_place"], words[at] in asking["no_thing"]
-        found = values.choice(text, at + (is_some or is_none), OBJECT)
-        if found is None or not (is_some or is_none or article in asking["indefinite"]):
-            continue
-        end = found[1]
-        if words[end] in asking["asking_be"] and any(
-            words[end + 1 : end + 1 + len(each)] == [*each] for each in places
-        ):
-            be = words[end]
-            text.drop(end, end + 1)
-            text.replace(at, [there, be, *([] if is_some else [words[at]])])
-
-
-def _list_any(text: Words, vocabulary: Lexicon) -> None:
-    """Say all names with `or` for any of them in a condition: `if any door is open`, `if one of them is open`.
-
-    What depends on it and speaks of it is said for each: `if any door is open, close it`.
-    """
-    words, asking = text.words, vocabulary.asking
-    if text.distinct.isdisjoint(asking["any_of_them"]):
-        return  # as nearly always
-    denied = (form for verb in asking["asking_be"] for form in vocabulary.negations.get(verb, ()))
-    be = {*asking["asking_be"], *(form.split()[0] for form in denied)}
-    for at in reversed([at for at in range(1, len(words)) if words[at] in asking["any_of_them"]]):
-        _, first, _ = text.earlier(at)
-        form = next((i for i in reversed(range(first, at)) if words[i] in vocabulary.before_conditions), -1)
-        if form < 0 or "," in words[form:at]:
-            continue
-        idiom = longest(vocabulary.trie, text, form, ReadingContext(vocabulary.values), lists=False)
-        if idiom is not None and idiom.last > at:
-            continue  # `if one of them is missing, A`
-        found = _names_meant(text, vocabulary, at, first)
-        if found is None:
-            continue
-        kind, names, end = found
-        last = next(i for i in range(end, len(words)) if words[i] in _ENDING or words[i] in vocabulary.joining)
-        stop = next(i for i in range(last, len(words) - 1) if words[i] in (END_OF_STATEMENT, END_OF_TEXT))
-        is_subject = words[end] in be
-        if not is_subject and words[at - 1] not in asking["located"]:
-            continue
-        pronouns = pronouns_for(vocabulary.values.pronouns, kind)
-        if not set(pronouns).isdisjoint(words[last:stop]):
-            ends = vocabulary.firsts["otherwise"].isdisjoint((*words[last:stop], words[stop + 1]))  # else for each, too
-            if is_subject and ends and kind != PERSON and names == [*vocabulary.values.listed(kind)]:
-                text.drop(at, end - 1)
-                text.replace(at, [pronouns[0]])
-                text.replace(form, [*asking["for_each"], *vocabulary.values.choices(kind)[0], ",", words[form]])
-            continue
-        said = [[*name.lower().split(), *(words[end:last] if is_subject else ())] for name in names]
-        listed = [word for each in said for word in (*each, vocabulary.word("or"))][:-1]
-        text.drop(at, (last if is_subject else end) - 1)
-        text.replace(at, listed)
-
-
-def _names_meant(text: Words, vocabulary: Lexicon, at: int, first: int) -> tuple[str, list[str], int] | None:
-    """The type and names of `any of them`, `one of the doors` or `any room` at a word, and where these words end."""
-    words, values, of = text.words, vocabulary.values, vocabulary.asking["of_them"]
-    noun = at + 1 + (words[at + 1] in of)
-    if noun > at + 1 and PERSON in values.pronouns.get(words[noun], ()):
-        named = _named(text, vocabulary, text.earlier(first - 1)[1] if first else first, at)
-        several = ((kind, names) for kind, names in named.items() if len(names) > 1)
-        kind, names = next(several, ("", []))
-        return (kind, names, noun + 1) if kind else None
-    if noun == at + 1 and words[at] not in vocabulary.asking["any_place"]:
-        return None
-    for kind in (DOOR, PLACE):
-        if values.phrases.is_type(kind, text, noun):
-            return kind, [*values.listed(kind)], noun + 1
-        for meant, end in values.groups(text, noun, kind, is_bare=True):
-            names = list(values.likenesses.described(meant.uncounted()))
-            if meant.type == kind and names:
-                return kind, names, end
-    return None
-
-
-def _named(text: Words, vocabulary: Lexicon, first: int, last: int) -> dict[str, list[str]]:
-    """The names between two words, by type."""
-    found: dict[str, list[str]] = {}
-    while first < last:
-        ways = ((find(vocabulary.values.names_tree(kind), text.words, first), kind) for kind in WORLD)
-        names = [(name[1], name[0], kind) for name, kind in ways if name is not None]
-        end, name, kind = max(names, default=(first + 1, "", ""))
-        if name and name not in found.setdefault(kind, []):
-            found[kind].append(name)
-        first = end
-    return found
-
-
 def _list_days(text: Words, vocabulary: Lexicon) -> None:
     """Say days as one list: `on Mondays and on Fridays`, and `every day except Sunday` by the names of the others."""
     words, values, tree = text.words, vocabulary.values, vocabulary.values.names_tree("days")
@@ -242,7 +111,6 @@ def _list_days(text: Words, vocabulary: Lexicon) -> None:
         is_listed = find(tree, words, at - 2 - (words[at - 2] == ",")) is not None
         if is_listed and find(tree, words, at + 1) is not None:
             text.drop(at, at + 1)
-    every = vocabulary.asking["any_day"][0].split()[0]
     for at in reversed([at for at in range(len(words)) if words[at] in vocabulary.any_day]):
         found = find(vocabulary.any_day, words, at)
         end = values.exception(text, found[1]) if found is not None else 0
@@ -255,17 +123,18 @@ def _list_days(text: Words, vocabulary: Lexicon) -> None:
         if left_out and len(others) > 1:
             text.drop(at, last - 1)
             listed = [word for day in others for word in (",", day.lower())]
-            text.replace(at, [every, *listed[1:-2], vocabulary.word("and"), listed[-1]])
+            every = vocabulary.asking["any_day"][0].split()[:1]
+            text.replace(at, [*every, *listed[1:-2], vocabulary.word("and"), listed[-1]])
 
 
 def _drop_again(text: Words, vocabulary: Lexicon) -> None:
     """Take out `again` between times before what is done: `at 9 am and again at 3 pm, wave`."""
-    words, again, joints = text.words, vocabulary.roles["again"][0], {",", *vocabulary.roles["and"]}
-    if again not in text.distinct:
+    words, again, joints = text.words, {*vocabulary.roles["again"]}, {",", *vocabulary.roles["and"]}
+    if text.distinct.isdisjoint(again):
         return  # as nearly always
     times = {phrase.split()[0] for phrase in vocabulary.roles["at"]}
     fronts = {*times, *(phrase.split()[0] for phrase in (*vocabulary.roles["on_days"], *vocabulary.roles["every_day"]))}
-    for at in reversed([at for at in range(2, len(words) - 2) if words[at] == again]):
+    for at in reversed([at for at in range(2, len(words) - 2) if words[at] in again]):
         _, first, _ = text.earlier(at)
         is_time = words[at + 2][0].isdigit() or vocabulary.values.takes_word("time_of_day", words[at + 2])
         is_between = words[at - 1] in joints and words[at + 1] in times and not times.isdisjoint(words[first : at - 1])

@@ -1,0 +1,258 @@
+"""Words about each or any of several things, in the words that are read: `if any door is open`, `close A and B if they
+are open`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
+from btlang.vocabulary.antecedents import pronouns_for
+from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.pattern import forms
+from btlang.vocabulary.reading_context import ReadingContext
+from btlang.vocabulary.trie import longest
+from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE, WORLD
+from btlang.vocabulary.word_tree import find
+
+_MOST_ADJECTIVES = 3
+_STOPS = (END_OF_STATEMENT, END_OF_TEXT)
+_ENDING = frozenset((*_STOPS, ",", ";", ")"))
+
+
+def say_each(text: Words, vocabulary: Lexicon) -> None:
+    """Change such words of a text; none in a language without words for `any of them`."""
+    if not vocabulary.asking["any_of_them"]:
+        return
+    _say_each_if_so(text, vocabulary)
+    _say_every_if_so(text, vocabulary)
+    _say_if_so(text, vocabulary)
+    _say_kind(text, vocabulary)
+    _say_there_is(text, vocabulary)
+    _list_any(text, vocabulary)
+
+
+def _say_each_if_so(text: Words, vocabulary: Lexicon) -> None:
+    """Ask of each name: `close A and B if they are open`, `Check that A and B are shut. Close any that aren't`."""
+    words, asking, values = text.words, vocabulary.asking, vocabulary.values
+    be, them = _forms_of_be(vocabulary), asking["those"]
+    fronts = {*vocabulary.relatives, vocabulary.word("if")}
+    if text.distinct.isdisjoint(fronts) or text.distinct.isdisjoint(be):
+        return  # as nearly always
+    for at in reversed([at for at in range(1, len(words) - 2) if words[at] in fronts]):
+        verb = at + 1 + (words[at + 1] in values.plural_pronouns)
+        behind = verb + 1 + (words[verb + 1] in asking["still"])
+        last, (_, first, _) = _end_of_condition(text, vocabulary, verb), text.earlier(at)
+        if words[verb] not in be or (words[at] not in vocabulary.relatives and verb == at + 1) or last > behind + 1:
+            continue
+        begin, names = _listed_before(text, vocabulary, at, first)
+        state, is_pronoun = words[behind] if last > behind else "", words[at - 1] in them and first > 0
+        if is_pronoun:
+            _, before, _ = text.earlier(first - 1)
+            begin, names = at - 1, max(_named(text, vocabulary, before, first).values(), key=len, default=[])
+            states = [words[i + 1] for i in range(before, first - 1) if words[i] in be]
+            state = state or "".join(states[-1:])
+        start = next((i + 1 for i in reversed(range(first, begin)) if words[i] in (",", *vocabulary.joining)), first)
+        if not state or start == begin or len(names) < 2 - is_pronoun:
+            continue
+        is_so = vocabulary.negations[asking["asking_be"][0]][0].split() if be[words[verb]] else asking["asking_be"][:1]
+        split = [name.lower().split() for name in names]
+        _put_each(
+            text, vocabulary, [[*name, *is_so, state, ",", *words[start:begin], *name] for name in split], start, last
+        )
+
+
+def _put_each(text: Words, vocabulary: Lexicon, rows: Iterable[Sequence[str]], start: int, last: int) -> None:
+    """Put conditions with what is done in the place of some words: as statements where they are all of one."""
+    words, joints = text.words, vocabulary.joining.difference(vocabulary.roles["or"])
+    is_whole = text.earlier(start)[1] == start and (words[last] in joints or words[last] in _STOPS)
+    said: list[str] = []
+    for row in rows:
+        one = [vocabulary.word("if"), *row]
+        said += [END_OF_STATEMENT, *one] if is_whole else [vocabulary.word("then"), "(", *one, ")"]
+    goes_on = is_whole and words[last] in joints
+    text.drop(start, last - 1 + goes_on)
+    text.replace(start, [*said[1:], *([END_OF_STATEMENT] if goes_on else ())])
+
+
+def _forms_of_be(vocabulary: Lexicon) -> dict[str, bool]:
+    """The forms of `be` with which something is said of a thing, and whether they deny it: `is`, `aren't`."""
+    be = vocabulary.asking["asking_be"]
+    denied = [form for verb in be for form in vocabulary.negations.get(verb, ()) if " " not in form]
+    return {**dict.fromkeys(be, False), **dict.fromkeys(denied, True)}
+
+
+def _end_of_condition(text: Words, vocabulary: Lexicon, at: int) -> int:
+    """Where a condition ends that goes on at a word."""
+    words = text.words
+    return next(i for i in range(at, len(words)) if words[i] in _ENDING or words[i] in vocabulary.joining)
+
+
+def _say_every_if_so(text: Words, vocabulary: Lexicon) -> None:
+    """Ask of each of a set: `close the doors if they are open`, `close any door that is open`."""
+    words, asking, values = text.words, vocabulary.asking, vocabulary.values
+    one, be = asking["asking_be"][0], {*asking["asking_be"]}
+    for at in reversed([at for at in range(2, len(words) - 2) if words[at] in values.plural_pronouns]):
+        ends = {end for i in range(text.earlier(at)[1], at - 1) for _, end in values.groups(text, i, DOOR)}
+        if words[at - 1] == vocabulary.word("if") and words[at + 1] in be and at - 1 in ends:
+            text.replace(at + 1, [one])
+            text.replace(at, pronouns_for(values.pronouns, DOOR)[:1])
+    for at in reversed([at for at in range(1, len(words) - 3) if words[at] in asking["whichever"]]):
+        noun, verb = at + 1, at + 2
+        verb += words[verb] in vocabulary.relatives
+        is_any = words[at] in asking["any_of_them"]
+        if values.phrases.is_type(DOOR, text, noun) and words[verb] in be and is_any == (verb > noun + 1):
+            if verb == noun + 1:
+                text.replace(verb, [next(iter(vocabulary.relatives)), words[verb]])
+            text.replace(at, values.choices(DOOR)[0][:1])
+
+
+def _listed_before(text: Words, vocabulary: Lexicon, at: int, first: int) -> tuple[int, list[str]]:
+    """The names joined by `and` that end at a word, and where they begin."""
+    words, joints = text.words, {",", *vocabulary.roles["and"]}
+    for begin in range(first, at):
+        names, i = list[str](), begin
+        while i < at:
+            ways = [find(vocabulary.values.names_tree(kind), words, i) for kind in WORLD]
+            found = max((way for way in ways if way is not None), key=lambda way: way[1], default=None)
+            if found is None:
+                break
+            names.append(found[0])
+            i = found[1]
+            while i < at and words[i] in joints:
+                i += 1
+        if i == at and names and words[at - 1] not in joints:
+            return begin, names
+    return at, []
+
+
+def _say_if_so(text: Words, vocabulary: Lexicon) -> None:
+    """Put `if it is` for `that is` behind doors, which are as the robot finds them: `close every door that is open`."""
+    words, values, asking = text.words, vocabulary.values, vocabulary.asking
+    if text.distinct.isdisjoint(vocabulary.relatives):
+        return  # as nearly always
+    it = next(iter(pronouns_for(values.pronouns, DOOR)), "")
+    entries = (vocabulary.entry(id) for id in ("DoorOpen", "DoorClosed"))
+    states = {form[-1] for entry in entries if entry is not None for each in entry.phrases for form in forms(each)}
+    for at in reversed([at for at in range(1, len(words) - 1) if words[at] in vocabulary.relatives]):
+        found = find(vocabulary.relatives, words, at)
+        if found is None or not values.phrases.is_type(DOOR, text, at - 1):
+            continue
+        state = found[1] + (words[found[1]] in asking["still"])
+        if words[state] in states and (words[state + 1][0] in _ENDING or words[state + 1] in vocabulary.joining):
+            text.drop(at + 1, state)
+            text.replace(at, [vocabulary.word("if"), it, asking["asking_be"][0]])
+
+
+def _say_kind(text: Words, vocabulary: Lexicon) -> None:
+    """Put the kind behind `all` that what is left out has: `all but the blue cups` as `all cups but the blue cups`."""
+    words, values, every = text.words, vocabulary.values, frozenset(vocabulary.roles["all_names"])
+    for at in reversed([at for at, word in enumerate(words) if word in every]):
+        end = values.exception(text, at + 1)
+        nouns = (word for word in words[end : end + _MOST_ADJECTIVES] if end and values.takes_word("kinds", word))
+        noun = next(nouns, "")
+        if noun:
+            text.replace(at, [words[at], noun])
+
+
+def _say_there_is(text: Words, vocabulary: Lexicon) -> None:
+    """Say that there is something that isn't named: `if a cup is on the table` as `if there is a cup on the table`."""
+    words, values, asking = text.words, vocabulary.values, vocabulary.asking
+    if text.distinct.isdisjoint(vocabulary.before_conditions):
+        return
+    there, places = asking["remaining"][-1], values.role_words.introducing["location"]
+    for at in reversed([at for at in range(1, len(words)) if words[at - 1] in vocabulary.before_conditions]):
+        article = text.source.text[slice(*text.articles[at])].lower() if at in text.articles else ""
+        is_some, is_none = words[at] in asking["any_place"], words[at] in asking["no_thing"]
+        found = values.choice(text, at + (is_some or is_none), OBJECT)
+        if found is None or not (is_some or is_none or article in asking["indefinite"]):
+            continue
+        end = found[1]
+        if words[end] in asking["asking_be"] and any(
+            words[end + 1 : end + 1 + len(each)] == [*each] for each in places
+        ):
+            be = words[end]
+            text.drop(end, end + 1)
+            text.replace(at, [there, be, *([] if is_some else [words[at]])])
+
+
+def _list_any(text: Words, vocabulary: Lexicon) -> None:
+    """Say all names with `or` for any of them in a condition: `if any door is open`, `if one of them is open`.
+
+    What depends on it and speaks of it is done for each: `if any door is open, close it`.
+    """
+    words, asking = text.words, vocabulary.asking
+    if text.distinct.isdisjoint(asking["any_of_them"]):
+        return  # as nearly always
+    be = _forms_of_be(vocabulary)
+    for at in reversed([at for at in range(1, len(words)) if words[at] in asking["any_of_them"]]):
+        _, first, _ = text.earlier(at)
+        form = next((i for i in reversed(range(first, at)) if words[i] in vocabulary.before_conditions), -1)
+        if form < 0 or "," in words[form:at]:
+            continue
+        idiom = longest(vocabulary.trie, text, form, ReadingContext(vocabulary.values), lists=False)
+        is_idiom = idiom is not None and idiom.meaning.entry is None and idiom.last > at
+        found = None if is_idiom else _names_meant(text, vocabulary, at, first)
+        if found is None:  # also `if one of them is missing, A`
+            continue
+        kind, names, end = found
+        last, is_subject = _end_of_condition(text, vocabulary, end), words[end] in be
+        stop = next(i for i in range(last, len(words) - 1) if words[i] in _STOPS)
+        if not is_subject and words[at - 1] not in asking["located"]:
+            continue
+        split, pronouns = [name.lower().split() for name in names], pronouns_for(vocabulary.values.pronouns, kind)
+        if not set(pronouns).isdisjoint(words[last:stop]):
+            is_else = any(_is_otherwise(text, vocabulary, i) for i in range(last, stop + 2) if i < len(words) - 1)
+            is_pronoun = [i for i in range(last, stop) if words[i] in pronouns]
+            is_owner = any(vocabulary.values.texts.is_owned(text, i) for i in is_pronoun)
+            if is_subject and form == at - 1 and words[form] == vocabulary.word("if") and not (is_else or is_owner):
+                rows = []
+                for name in split:
+                    done = (part for word in words[last:stop] for part in (name if word in pronouns else [word]))
+                    rows.append([*name, *words[end:last], *done])
+                _put_each(text, vocabulary, rows, form, stop)
+            continue
+        said = [[*name, *(words[end:last] if is_subject else ())] for name in split]
+        listed = [word for each in said for word in (*each, vocabulary.word("or"))][:-1]
+        text.drop(at, (last if is_subject else end) - 1)
+        text.replace(at, listed)
+
+
+def _is_otherwise(text: Words, vocabulary: Lexicon, at: int) -> bool:
+    """Whether words begin what is done else."""
+    match = longest(vocabulary.trie, text, at, ReadingContext(vocabulary.values), lists=False)
+    return match is not None and match.meaning.role == "otherwise"
+
+
+def _names_meant(text: Words, vocabulary: Lexicon, at: int, first: int) -> tuple[str, list[str], int] | None:
+    """The type and names of `any of them`, `one of the doors` or `any room` at a word, and where these words end."""
+    words, values, of = text.words, vocabulary.values, vocabulary.asking["of_them"]
+    noun = at + 1 + (words[at + 1] in of)
+    if noun > at + 1 and PERSON in values.pronouns.get(words[noun], ()):
+        named = _named(text, vocabulary, text.earlier(first - 1)[1] if first else first, at)
+        several = ((kind, names) for kind, names in named.items() if len(names) > 1)
+        kind, names = next(several, ("", []))
+        return (kind, names, noun + 1) if kind else None
+    if noun == at + 1 and words[at] not in vocabulary.asking["any_place"]:
+        return None
+    for kind in (DOOR, PLACE):
+        if values.phrases.is_type(kind, text, noun):
+            return kind, [*values.listed(kind)], noun + 1
+        for meant, end in values.groups(text, noun, kind, is_bare=True):
+            names = list(values.likenesses.described(meant.uncounted()))
+            if meant.type == kind and names:
+                return kind, names, end
+    return None
+
+
+def _named(text: Words, vocabulary: Lexicon, first: int, last: int) -> dict[str, list[str]]:
+    """The names between two words, by type."""
+    found: dict[str, list[str]] = {}
+    while first < last:
+        ways = ((find(vocabulary.values.names_tree(kind), text.words, first), kind) for kind in WORLD)
+        names = [(name[1], name[0], kind) for name, kind in ways if name is not None]
+        end, name, kind = max(names, default=(first + 1, "", ""))
+        if name and name not in found.setdefault(kind, []):
+            found[kind].append(name)
+        first = end
+    return found
