@@ -264,6 +264,31 @@ def person_is_at(robot: Base, person: str, place: str) -> bool:
     return person in robot.described("person", {"named": person, "at": place})
 
 
+def someone_near_place(robot: Base, place: str) -> bool:
+    """Return whether anybody is near a place, as far as the robot knows."""
+    return bool(robot.described("person", {"near": place}))
+
+
+def person_near_place(robot: Base, person: str, place: str) -> bool:
+    """Return whether a person is near a place, as far as the robot knows."""
+    return person in robot.described("person", {"named": person, "near": place})
+
+
+def object_near_place(robot: Base, object: str, place: str) -> bool:
+    """Return whether an object is near a place, as far as the robot knows."""
+    return object in robot.described("object", {"named": object, "near": place})
+
+
+def someone_at_door(robot: Base, door: str) -> bool:
+    """Return whether anybody is near a door, as far as the robot knows."""
+    return bool(robot.described("person", {"near": door}))
+
+
+def person_at_door(robot: Base, person: str, door: str) -> bool:
+    """Return whether a person is near a door, as far as the robot knows."""
+    return person in robot.described("person", {"named": person, "near": door})
+
+
 def something_is_at(robot: Base, place: str) -> bool:
     """Return whether any object is at a place, as far as the robot knows."""
     return bool(robot.described("object", {"at": place}))

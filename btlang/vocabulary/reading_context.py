@@ -141,7 +141,7 @@ class ReadingContext:
                 parts = spoken or self._settled(kind, meant.parts)
                 choice = Choice(ALL, kind, self.keys.get(kind, kind), parts)
                 is_there = PLACE in self.pronouns.get(text.words[end], ()) and PLACE not in self.listed
-                is_there = is_there and text.words[end + 1] not in self.values.texts.inverting  # `tell all there is tea`
+                is_there = is_there and text.words[end + 1] not in self.values.texts.inverting  # `all there is tea`
                 self.lacked |= is_there and PLACE not in self.latest
                 there = self.latest.get(PLACE, "{") if is_there else "{"
                 is_there = there[:1] != "{" and kind in (PERSON, OBJECT) and "inside" not in dict(parts)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from btlang.actions import motion, sensing
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.geometry import Pose
-from btlang.robots.worlds.world import FurnitureBox, Person, Place, WorldFault
+from btlang.robots.worlds.world import Door, FurnitureBox, Person, Place, WorldFault, WorldObject
 from btlang.robots.worlds.world_file import load_world
 
 ROOM = Path(__file__).parents[2] / "examples" / "worlds" / "walled_room.toml"
@@ -127,6 +127,21 @@ def test_nothing_is_kept_of_a_scan_that_may_be_overwritten(bench):
     assert sensing.path_is_clear(b.robot)
     scan[:] = 0.3
     assert sensing.wall_in_front(b.robot)
+
+
+def test_who_and_what_is_near_a_place_or_at_a_door(bench):
+    door = Door("gate", (4.0, 0.0), (4.0, 1.0))
+    people = (Person("Ann", 4.5, 1.0, 0.25), Person("Bob", 1.0, 4.0, 0.25))
+    b = bench(
+        doors=(door,), people=people, objects=(WorldObject("mug", 1.0, 3.0, 0.04),), places=(Place("Desk", 1.0, 3.5),)
+    )
+    assert sensing.someone_at_door(b.robot, "gate")
+    assert sensing.person_at_door(b.robot, "Ann", "gate")
+    assert not sensing.person_at_door(b.robot, "Bob", "gate")
+    assert sensing.someone_near_place(b.robot, "Desk")
+    assert sensing.person_near_place(b.robot, "Bob", "Desk")
+    assert not sensing.person_near_place(b.robot, "Ann", "Desk")
+    assert sensing.object_near_place(b.robot, "mug", "Desk")
 
 
 def test_names_are_those_of_the_present_mission(bench):

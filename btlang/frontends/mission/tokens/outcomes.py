@@ -45,6 +45,7 @@ from btlang.vocabulary.value_type import OBJECT, PERSON, PLACE
 from btlang.vocabulary.word_tree import find
 
 _ASKING = frozenset(("if", "as_soon_as", "once"))
+_DENIED = (("not", "condition"), ("unless", "condition"))
 _HOLDS, _WHERE, _DONE = "Holding", ("PersonIsAt", "ObjectIsAt"), ("command", "name")
 
 
@@ -226,16 +227,15 @@ class Outcomes(Limits):
 
     def _search_missing(self, at: int) -> int:
         """`if Bob isn't in the lab, look in the hall`: for him."""
-        token, located = self._tokens[run_start(self._tokens, len(self._tokens), JOINTS) - 1], self._vocabulary
-        said = token.value
-        if token.kind != "condition" or not isinstance(said, Called) or said.entry.id not in _WHERE:
+        located, last = self._vocabulary, run_start(self._tokens, len(self._tokens), JOINTS) - 1
+        kinds, said = tuple(token.kind for token in self._tokens[last - 1 : last + 1]), self._tokens[last].value
+        if kinds not in _DENIED or not isinstance(said, Called) or said.entry.id not in _WHERE:
             return 0
         if self._text.words[at + 1] not in located.asking["located"]:
             return 0
         kind = next(slot.type for slot in said.entry.slots if slot.type in (PERSON, OBJECT))
         pronoun = next(iter(pronouns_for(located.values.pronouns, kind)), "")
-        verb = located.asking["search"][0]
-        match = self._partial.with_front(at, at + 1, [verb, pronoun])
+        match = self._partial.with_front(at, at + 1, [located.asking["search"][0], pronoun])
         if match is None:
             return 0
         self._partial.append(match, at)
