@@ -153,6 +153,12 @@ class Lexicon:
         """The words that deny what was checked: `it isn't`."""
         self.relatives = tree_of((words, True) for words in language["relatives"])
         """The words that begin what is said of a thing: `that is`."""
+        denied = (form for verb in self.asking["asking_be"] for form in language["negations"].get(verb, ()))
+        self.forms_of_be = {**dict.fromkeys(self.asking["asking_be"], False)}
+        """The forms of `be` with which something is said of a thing, and whether they deny it: `is`, `aren't`."""
+        self.forms_of_be.update((form, True) for form in denied if " " not in form)
+        self.try_again = tree_of((words, True) for words in ways(self.roles["try_again"], self.articles))
+        """The words that begin to try something anew: `try again`."""
         self.any_day = tree_of((words, True) for words in self.asking["any_day"])
         """The words for all days, from which some may be left out: `every day`."""
         self.entering = tree_of((words, True) for words in self.asking["entering"])

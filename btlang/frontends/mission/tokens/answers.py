@@ -5,7 +5,16 @@ from __future__ import annotations
 from functools import cached_property
 
 from btlang.diagnostics.diagnostic import diagnostic
-from btlang.frontends.mission.token import BEFORE_CONDITIONS, JOINTS, Called, Listed, Token, run_start, statement_start
+from btlang.frontends.mission.token import (
+    BEFORE_CONDITIONS,
+    JOINTS,
+    Called,
+    Listed,
+    Token,
+    go_on,
+    run_start,
+    statement_start,
+)
 from btlang.frontends.mission.tokens.addressed_texts import AddressedTexts
 from btlang.frontends.mission.tokens.sentence_reader import is_answer, is_question, latest_question
 from btlang.frontends.mission.tokens.silent_words import begins
@@ -21,6 +30,7 @@ from btlang.vocabulary.word_tree import find
 _PERSON_SAYS, _SOMEBODY_SAYS = "PersonSays", "SomebodySays"
 _LIMITS = frozenset(("within", "up_to"))
 _BEFORE_NAME = 3  # words: `and if Bob`
+_REPLIES = (_PERSON_SAYS, _SOMEBODY_SAYS, ANSWERED)
 _BEFORE_REPLY = BEFORE_CONDITIONS | {"semi", "newline", "stop", "comma", "and", "then", "or"}
 _OF_REPLY = frozenset(("if", "unless", "until", "not", "condition", "or", "and", "comma", "then"))
 _STOPS = frozenset(("semi", "newline"))
@@ -76,6 +86,13 @@ class Answers(AddressedTexts):
         if self._question(behind, right_before=role == "otherwise") is None:
             return 0
         start, end = self._text.starts[at], self._text.ends[found[1] - 1]
+        if not found[0] and self._replied_else(behind):  # `if he says red, A, if not B`
+            if is_first:
+                go_on(self._tokens)
+            else:
+                del self._tokens[behind:]
+            self._tokens.append(Token("otherwise", start, end))
+            return found[1] + (self._text.words[found[1]] == ",")
         if not is_first:
             is_listed = self._tokens[-1].kind == "comma" and self._replies_before(behind)
             if self._text.words[at] not in self._vocabulary.joining and not is_listed:
@@ -86,6 +103,15 @@ class Answers(AddressedTexts):
         self.note_answerer()
         self._if(Token("condition", start, end, yes), found[0])
         return found[1] + (self._text.words[found[1]] == ",")
+
+    def _replied_else(self, end: int) -> bool:
+        """Whether the statement that ends there depends on another answer than yes."""
+        end = run_start(self._tokens, end, _STOPS)
+        said = self._tokens[statement_start(self._tokens, end) : end]
+        asked = said[1].value if len(said) > 1 and said[0].kind == "if" and is_answer(said[1]) else None
+        is_one = sum(token.kind in ("if", "otherwise") for token in said) == 1
+        yes = self._vocabulary.asking["answers"][0]
+        return isinstance(asked, Called) and is_one and asked.arguments[0][1] != yes
 
     def _replies_before(self, end: int) -> bool:
         """Whether the statement that ends there depends on a reply: `if they do, A, if they don't, B`."""
@@ -145,10 +171,29 @@ class Answers(AddressedTexts):
         if isinstance(token.value, Called) and token.value.entry.id in ABOUT_ANSWERS:
             self.note_answerer()
 
+    def whole_answer(self, token: Token, match: Match) -> int:
+        """`if he says picture book, A`: all words of an answer without quotes. Returns where the condition ends."""
+        said, words, end = token.value, self._text.words, match.last
+        value = match.values[-1] if match.values else None
+        if value is None or value.type != TEXT or not isinstance(said, Called) or said.entry.id not in _REPLIES:
+            return end
+        first, number, asking = value.first, self._context.values.is_number, self._vocabulary.asking
+        known = (*asking["answers"], *asking["silence"], *asking["any_answer"])
+        if value.last != end or words[first][0] == '"' or words[first] in known or self._phrase(end) is not None:
+            return end
+        while not (self._is_end(end) or words[end] == "," or words[end] in self._vocabulary.joining):
+            end += 1
+        odd = any(word[0] == '"' or word in self._vocabulary.values.texts.of_persons for word in words[first:end])
+        if end == match.last or odd or any(number([word]) for word in words[first:end]):
+            return match.last
+        self._set_text(token, value.name, " ".join(words[first:end]))
+        token.end = self._text.ends[end - 1]
+        return end
+
     def _miss_words(self, token: Token) -> None:
         """BT012 for `wait until Bob says so`, which doesn't say in which words."""
         value = token.value
-        if isinstance(value, Called) and value.entry.id in (_PERSON_SAYS, _SOMEBODY_SAYS, ANSWERED):
+        if isinstance(value, Called) and value.entry.id in _REPLIES:
             words = Span(self._text.source, token.start, token.end)
             *front, last = words.text.split()
             if last.lower() in self._vocabulary.asking["so"] and front:

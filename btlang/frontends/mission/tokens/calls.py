@@ -14,7 +14,7 @@ from btlang.text.source import Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
 from btlang.vocabulary.entry import MANNER, Entry
 from btlang.vocabulary.match import Match, SlotValue
-from btlang.vocabulary.references import ALL, NAMES, Choice, choice_of, keys_in, point_ports, renamed
+from btlang.vocabulary.references import ALL, COUNT, NAMES, Choice, choice_of, keys_in, point_ports, renamed
 from btlang.vocabulary.trie import TrieNode, longest
 from btlang.vocabulary.value_type import PLACE
 from btlang.vocabulary.values import key_of
@@ -28,6 +28,16 @@ def _leaves_none(value: SlotValue) -> bool:
     """Whether words leave out by name every name that there is: `everyone except Alice`."""
     choice = choice_of(value.group)
     return not value.text and choice is not None and [name for name, _ in choice.parts] == ["not_kind"]
+
+
+def _alone(value: SlotValue) -> SlotValue:
+    """The nearest one for a set of one: `one cup`."""
+    choice = choice_of(value.group)
+    if choice is None or (COUNT, "1") not in choice.parts:
+        return value
+    parts = tuple(part for part in choice.parts if part != (COUNT, "1"))
+    alone: SlotValue = value.replace(text=choice.replace(how="nearest", parts=parts).text, more=(), group="")
+    return alone
 
 
 def _keys(text: str) -> Iterable[str]:
@@ -205,6 +215,12 @@ class Calls(Mentions):
         if entry.first:
             match = match.replace(values=tuple(map(self._anywhere, match.values)))
         sets = [value for value in match.values if value.group and not _leaves_none(value)]
+        if len(sets) > 1:
+            match = match.replace(values=tuple(map(_alone, match.values)))  # `bring one cup to each guest`
+            sets = [value for value in match.values if value.group and not _leaves_none(value)]
+        if len(sets) > 1:
+            words = self._text.span(at, match.last)
+            self.problems.append(diagnostic("BT034", words, words=words.text))
         if sets and entry.sort in ("action", "name"):
             values = [value.replace(text=value.group, more=()) if value in sets else value for value in match.values]
             match = match.replace(values=tuple(values))

@@ -4,7 +4,7 @@ are open`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Container, Iterable, Sequence
 
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.antecedents import pronouns_for
@@ -30,12 +30,13 @@ def say_each(text: Words, vocabulary: Lexicon) -> None:
     _say_kind(text, vocabulary)
     _say_there_is(text, vocabulary)
     _list_any(text, vocabulary)
+    _part_sets(text, vocabulary)
 
 
 def _say_each_if_so(text: Words, vocabulary: Lexicon) -> None:
     """Ask of each name: `close A and B if they are open`, `Check that A and B are shut. Close any that aren't`."""
     words, asking, values = text.words, vocabulary.asking, vocabulary.values
-    be, them = _forms_of_be(vocabulary), asking["those"]
+    be, them = vocabulary.forms_of_be, asking["those"]
     fronts = {*vocabulary.relatives, vocabulary.word("if")}
     if text.distinct.isdisjoint(fronts) or text.distinct.isdisjoint(be):
         return  # as nearly always
@@ -73,13 +74,6 @@ def _put_each(text: Words, vocabulary: Lexicon, rows: Iterable[Sequence[str]], s
     goes_on = is_whole and words[last] in joints
     text.drop(start, last - 1 + goes_on)
     text.replace(start, [*said[1:], *([END_OF_STATEMENT] if goes_on else ())])
-
-
-def _forms_of_be(vocabulary: Lexicon) -> dict[str, bool]:
-    """The forms of `be` with which something is said of a thing, and whether they deny it: `is`, `aren't`."""
-    be = vocabulary.asking["asking_be"]
-    denied = [form for verb in be for form in vocabulary.negations.get(verb, ()) if " " not in form]
-    return {**dict.fromkeys(be, False), **dict.fromkeys(denied, True)}
 
 
 def _end_of_condition(text: Words, vocabulary: Lexicon, at: int) -> int:
@@ -184,7 +178,7 @@ def _list_any(text: Words, vocabulary: Lexicon) -> None:
     words, asking = text.words, vocabulary.asking
     if text.distinct.isdisjoint(asking["any_of_them"]):
         return  # as nearly always
-    be = _forms_of_be(vocabulary)
+    be = vocabulary.forms_of_be
     for at in reversed([at for at in range(1, len(words)) if words[at] in asking["any_of_them"]]):
         _, first, _ = text.earlier(at)
         form = next((i for i in reversed(range(first, at)) if words[i] in vocabulary.before_conditions), -1)
@@ -216,6 +210,72 @@ def _list_any(text: Words, vocabulary: Lexicon) -> None:
         listed = [word for each in said for word in (*each, vocabulary.word("or"))][:-1]
         text.drop(at, (last if is_subject else end) - 1)
         text.replace(at, listed)
+
+
+def _part_sets(text: Words, vocabulary: Lexicon) -> None:
+    """Say of each of several sets what is said of all: `pick up every cup and every book and take them to the hall`."""
+    words, values, joints = text.words, vocabulary.values, {",", *vocabulary.roles["and"]}
+    names = values.names_tree(OBJECT)
+    starts = values.choice_starts | values.group_starts | names.keys() | values.names_tree(PERSON).keys()
+    it = pronouns_for(values.pronouns, OBJECT)[0]
+    if text.distinct.isdisjoint(values.plural_pronouns) or text.distinct.isdisjoint(starts):
+        return  # as nearly always
+    at = -1
+    while at < len(words) - 1:
+        at += 1
+        _, first, _ = text.earlier(at)
+        found = _sets_at(text, vocabulary, at, joints) if words[at] in starts else None
+        if found is None:
+            continue
+        sets, behind = found
+        stop = next(i for i in range(behind, len(words)) if words[i] in _STOPS)
+        spoken = [i for i in range(behind, stop) if words[i] in values.plural_pronouns]
+        start = next((i + 1 for i in reversed(range(first, at)) if words[i] in (",", *vocabulary.joining)), first)
+        if not spoken or start == at:
+            continue
+        last = _end_of_condition(text, vocabulary, spoken[-1])
+        rest = words[behind:last]
+        said_of = {True: [it if word in values.plural_pronouns else word for word in rest], False: rest}
+        rows = [[*words[start:at], *each, *said_of[find(names, [*each, END_OF_TEXT], 0) is not None]] for each in sets]
+        is_whole = start == first and last == stop
+        begin, end, joint = ("", "", END_OF_STATEMENT) if is_whole else ("(", ")", vocabulary.word("then"))
+        said = [word for row in rows for word in (joint, begin, *row, end) if word][1:]
+        text.drop(start, last - 1)
+        text.replace(start, said)
+        at = start + len(said) - 1
+
+
+def _sets_at(text: Words, vocabulary: Lexicon, at: int, joints: Container[str]) -> tuple[list[list[str]], int] | None:
+    """The words of each of several sets that are listed at a word, and where the list ends.
+
+    Behind `every cup and book in the lab` both are in the lab.
+    """
+    words, values = text.words, vocabulary.values
+    for kind in (OBJECT, PERSON):
+        tree, sets, shared, begin, behind, has_set = (
+            values.names_tree(kind),
+            list[list[str]](),
+            list[str](),
+            at,
+            at,
+            False,
+        )
+        while True:
+            own = [end for _, end in values.groups(text, begin, kind)]
+            is_bare = bool(sets) and has_set and not own and begin not in text.articles
+            bare = [*values.groups(text, begin, kind, is_bare=True)] if is_bare else []
+            named = find(tree, words, begin) if not (own or bare) else None
+            ends = own or [end for _, end in bare] or ([named[1]] if named is not None else [])
+            if not ends:
+                break
+            sets.append([*(words[at : at + 1] if bare else ()), *words[begin : ends[0]]])
+            shared, behind, has_set = words[ends[0] : ends[-1]] if bare else [], ends[-1], has_set or bool(own)
+            if words[behind] not in joints:
+                break
+            begin = behind + 1 + (words[behind] == "," and words[behind + 1] in joints)
+        if len(sets) > 1 and has_set:
+            return [[*each, *shared] for each in sets], behind
+    return None
 
 
 def _is_otherwise(text: Words, vocabulary: Lexicon, at: int) -> bool:

@@ -31,6 +31,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import TypeAlias
 
+    from btlang.frontends.mission.token import Value
+
 Arguments: TypeAlias = "tuple[tuple[str, str], ...]"
 _TAKING, _PLACED = ("PickUp", "Take", "Bring"), {NAMES, *RELATIONS}
 _NEAREST, _OTHER = "nearest", "other_than"
@@ -55,7 +57,7 @@ def with_other_things(tokens: list[Token], vocabulary: Lexicon, text: Words) -> 
     for token in tokens:
         if token.kind not in _SIMPLE:
             before.clear()
-        value = token.value
+        value = token.value = _in_rows(token, tokens, vocabulary)
         if token.kind != "command" or not isinstance(value, Called | Listed):
             continue
         if all(slot.type != OBJECT for slot in value.entry.slots):
@@ -85,6 +87,23 @@ def with_other_things(tokens: list[Token], vocabulary: Lexicon, text: Words) -> 
             words, names = Span(text.source, token.start, token.end), vocabulary.values.likenesses.members(unclear)
             example = next(iter(names or ()), words.text)
             yield diagnostic("BT150", words, words=words.text, reason=_REASON, example=example)
+
+
+def _in_rows(token: Token, tokens: Sequence[Token], vocabulary: Lexicon) -> Value:
+    """`bring a cup to each guest` for each by name, where nothing else is done in the round: a cup for each."""
+    said = token.value
+    if token.kind != "command" or not isinstance(said, Called) or len(said.arguments) < 2:
+        return said
+    sets = [choice for _, text in said.arguments if (choice := choice_of(text)) is not None and choice.how == ALL]
+    names = vocabulary.values.likenesses.members(sets[0]) if len(sets) == 1 and sets[0].type != OBJECT else None
+    if _chosen(said.arguments) is None or names is None or len(names) < 2:
+        return said
+    used = (text for each in tokens if isinstance(each.value, Called | Listed) for row in arguments_of(each.value)
+            for _, text in row)  # fmt: skip
+    if any(f"{{{sets[0].key}}}" in text for text in used):
+        return said
+    rows = (tuple((name, one if text == sets[0].text else text) for name, text in said.arguments) for one in names)
+    return Listed(said.entry, tuple(rows), "and")
 
 
 def _named_in(said: Called | Listed, rows: Iterable[Arguments]) -> list[_Meant]:

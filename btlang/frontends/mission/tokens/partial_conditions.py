@@ -10,12 +10,12 @@ from functools import cached_property
 
 from btlang.frontends.mission.token import HOLDING, RULES, Called, Remembered, Token, statement_start
 from btlang.frontends.mission.tokens.partial_commands import LONGEST_VERB, PartialCommands
-from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of
+from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of, words_of
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.value_type import OBJECT
+from btlang.vocabulary.value_type import OBJECT, WORLD
 from btlang.vocabulary.word_tree import find
 
 _BETWEEN = frozenset(("every", "comma", "and", "then"))
@@ -29,7 +29,10 @@ class PartialConditions(PartialCommands):
 
     def add_condition(self, at: int) -> int:
         """A condition that isn't said as its phrases are. Returns where to go on, 0 where there is none."""
-        ways = (self._add_quantity, self._add_contracted, self._add_lasting, self._add_ended, self._add_denied)
+        ways = (
+            self._add_quantity, self._add_contracted, self._add_lasting, self._add_ended, self._add_denied,
+            self._add_elliptic,
+        )  # fmt: skip
         return next((end for way in ways if (end := way(at))), 0)
 
     def _add_quantity(self, at: int) -> int:
@@ -133,6 +136,31 @@ class PartialConditions(PartialCommands):
             *paces, *([comma] if paces else []), tokens[form], Token("not", here, here), asked, comma, command,
         ]  # fmt: skip
         return denied[1]
+
+    def _add_elliptic(self, at: int) -> int:
+        """`if Alice isn't in the lab, A, and if Bob isn't, B`: the same is asked of somebody or something else."""
+        text, tokens, be = self._text, self._tokens, self._vocabulary.forms_of_be
+        named = [find(self._vocabulary.values.names_tree(kind), text.words, at) for kind in WORLD]
+        verb = max((name[1] for name in named if name is not None), default=at)
+        before = next((token for token in reversed(tokens[:-1]) if token.kind == "condition"), None)
+        if verb == at or text.words[verb] not in be or before is None or tokens[-1].kind not in ("if", "unless"):
+            return 0
+        if text.words[verb + 1] not in (",", END_OF_STATEMENT, END_OF_TEXT):
+            return 0
+        said = list(words_of(text, before))
+        asked = next((place for place in said if text.words[place] in be), None)
+        if asked is None or said[-1] == asked:
+            return 0
+        places = [*range(at, verb + 1), *range(asked + 1, said[-1] + 1)]
+        other = {verb - at: self._vocabulary.asking["asking_be"][0]}
+        match = match_of(text, [*places, places[-1]], other, self._tries, self._context)
+        if match is None or match.meaning.role not in ("condition", "negated") or match.last != len(places):
+            return 0
+        if be[text.words[verb]]:
+            tokens.append(Token("not", text.starts[at], text.starts[at]))
+        self._condition(relocated(match, places), at)
+        tokens[-1].end = text.ends[verb]
+        return verb + 1
 
     def _condition(self, found: Match, at: int) -> int:
         """Add a condition, or its denial. Returns where to go on."""

@@ -5,15 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.frontends.mission.tokens.counted_things import COUNTED
 from btlang.frontends.mission.tokens.each_and_any import say_each
 from btlang.text.time_of_day import WEEKDAYS, WEEKEND, WORKDAYS
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.lexicon import Lexicon
-from btlang.vocabulary.value_type import OBJECT, PLACE, TEXT, WORLD, ZONE
+from btlang.vocabulary.value_type import OBJECT, PERSON, PLACE, TEXT, WORLD, ZONE
 from btlang.vocabulary.word_tree import find
 
 _MOST_ADJECTIVES = 3
 _GROUPS = {"weekdays": [WEEKDAYS[day] for day in WORKDAYS], "weekends": [WEEKDAYS[day] for day in WEEKEND]}
+_LONGEST_TRY = 6  # words
 _ENDING = frozenset((END_OF_STATEMENT, END_OF_TEXT, ",", ";", ")"))
 
 
@@ -27,6 +29,9 @@ def reworded(text: Words, vocabulary: Lexicon) -> list[Diagnostic]:
     _list_days(text, vocabulary)
     _drop_again(text, vocabulary)
     _say_again(text, vocabulary)
+    _count_again(text, vocabulary)
+    _tell_again(text, vocabulary)
+    _wait_to_try(text, vocabulary)
     _drop_commas(text, vocabulary)
     _list_ranges(text, vocabulary)
     return [*_drop_untold_sizes(text, vocabulary), *_drop_untold_contents(text, vocabulary)]
@@ -155,6 +160,45 @@ def _say_again(text: Words, vocabulary: Lexicon) -> None:
         is_often = vocabulary.values.is_number(words[at + 1 : at + 2])
         if said and not said.endswith("?") and (words[at + 1] in behind or is_often):
             text.replace(at, [said])
+
+
+def _count_again(text: Words, vocabulary: Lexicon) -> None:
+    """Leave out what is counted again: `count them again`."""
+    words, again = text.words, {phrase.split()[0] for phrase in vocabulary.roles["again"]}
+    if text.distinct.isdisjoint(again):
+        return  # as nearly always
+    entries = (vocabulary.entry(id) for id in COUNTED)
+    verbs = {phrase.split()[0] for entry in entries if entry is not None for phrase in entry.phrases}
+    for at in reversed([at for at in range(1, len(words) - 1) if words[at - 1] in verbs and words[at + 1] in again]):
+        if words[at] in vocabulary.values.pronoun_words:
+            text.drop(at, at + 1)
+
+
+def _tell_again(text: Words, vocabulary: Lexicon) -> None:
+    """Say `tell` for `remind` where that is done again: `remind her again at 4 pm`."""
+    words, asking = text.words, vocabulary.asking
+    if text.distinct.isdisjoint(asking["reminding"]):
+        return  # as nearly always
+    again = {phrase.split()[0] for phrase in vocabulary.roles["again"]}
+    for at in (at for at in range(len(words) - 2) if words[at] in asking["reminding"]):
+        person = find(vocabulary.values.names_tree(PERSON), words, at + 1)
+        if words[at + 2 if person is None else person[1]] in again:
+            text.replace(at, asking["informing"][:1])
+
+
+def _wait_to_try(text: Words, vocabulary: Lexicon) -> None:
+    """Say the pause first: `try again after 5 minutes` as `wait 5 minutes and try again`."""
+    words, wait, pause = text.words, vocabulary.word("wait"), {*vocabulary.asking["pausing"]}
+    if text.distinct.isdisjoint(pause):
+        return  # as nearly always
+    for at in reversed([at for at in range(2, len(words) - 2) if words[at] in pause]):
+        fronts = (first for first in range(max(at - _LONGEST_TRY, 0), at))
+        first = next((i for i in fronts if (found := find(vocabulary.try_again, words, i)) and found[1] == at), None)
+        lasts = vocabulary.values.read("duration", text, at + 1)
+        if first is not None and lasts is not None and words[lasts[1]][0] in _ENDING:
+            said = words[at + 1 : lasts[1]]
+            text.drop(at, lasts[1])
+            text.replace(first, [wait, *said, vocabulary.word("and"), words[first]])
 
 
 def _drop_commas(text: Words, vocabulary: Lexicon) -> None:

@@ -408,13 +408,14 @@ class WordReader:
         token = self._calls.token(match, at)
         self._places.placed_before(token)
         self._requests.said(token, at)
+        last = self._requests.whole_answer(token, match)
         tokens.append(token)
         if match.meaning.role != "negated_twice":
             shared = self._origin if self._shares else None
             self._origin = (token, *shared[1:]) if shared is not None else (token, at, match, self._root)
         if isinstance(token.value, Called) and token.value.entry.id == UNANSWERED:
             return self._outcomes.unanswered(match.last)
-        return self._outcomes.settle(match.last) if len(tokens) > 2 else match.last
+        return self._outcomes.settle(last) if len(tokens) > 2 else last
 
     def _is_said_twice(self, said: Token) -> bool:
         """Whether a command is that before `and` in other words: `take it to the lab and leave it there`."""
