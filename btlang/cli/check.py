@@ -112,7 +112,7 @@ class _FileCheck:
 
                     report.add(check_tests(source))
                 else:
-                    mission = mission_of(self._options, source, is_checked=True)
+                    mission = mission_of(self._options, source, tells_undeclared=False)
                     mission.check(robot)
         if self._trees:
             with self._report_errors():

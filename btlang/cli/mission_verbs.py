@@ -127,12 +127,12 @@ def compile_mission(options: argparse.Namespace) -> int:
             options.refuse("the dialect is that of the file with --onto")
         from btlang.editing.english_of_xml import write_onto
 
-        write_onto(mission_of(options), options.onto, options.out, force=options.force)
+        write_onto(mission_of(options, tells_undeclared=False), options.onto, options.out, force=options.force)
         return _SUCCESS
     from btlang.backends.checking import missing_trees
     from btlang.diagnostics.files import write_output
 
-    mission = mission_of(options)
+    mission = mission_of(options, tells_undeclared=False)
     if TARGETS[name].runs and (problems := missing_trees(mission.tree, mission.vocabulary)):
         raise MissionError(problems)
     write_output(mission.to(name, dialect=options.dialect), options.out)

@@ -38,13 +38,13 @@ def add_robot_files(options: argparse.Namespace) -> None:
         options.world = options.world or body.world or None
 
 
-def mission_of(options: argparse.Namespace, source: Source | None = None, *, is_checked: bool = False) -> Mission:
+def mission_of(options: argparse.Namespace, source: Source | None = None, *, tells_undeclared: bool = True) -> Mission:
     """Compile what the options name; warnings go to the report. Raises MissionError.
 
-    Where the mission `is_checked` next, undeclared nodes are errors then, and no warnings here.
+    `tells_undeclared` is False where undeclared nodes are errors next, or are those of another program.
     """
     mission = parse_mission(source_of(options) if source is None else source, options)
-    options.report.add(each for each in mission.warnings if not (is_checked and each.code == UNDECLARED))
+    options.report.add(each for each in mission.warnings if tells_undeclared or each.code != UNDECLARED)
     return mission
 
 

@@ -39,7 +39,7 @@ _SUCCESS, _FAILED = 0, 1
 
 def run(options: argparse.Namespace) -> int:
     """Run a mission as the options say; return the exit code."""
-    robot, mission = choose_robot(options), mission_of(options, is_checked=True)
+    robot, mission = choose_robot(options), mission_of(options, tells_undeclared=False)
     if mission.robot and options.robot in ROBOTS:
         if options.robot != "simulated":
             options.over = options.robot

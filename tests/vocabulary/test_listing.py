@@ -206,6 +206,9 @@ charge [to {percent}]
           go/get back to charging
           return to charging
           start charging
+          charge/recharge until battery is [at [least]] {percent} [full]
+          charge/recharge until it/you is/are [at [least]] {percent} [full]
+          charge/recharge until it/battery/you reaches/reach {percent}
     {percent}: a number and one of %; 100% if left out
     needs: base
     node: Charge

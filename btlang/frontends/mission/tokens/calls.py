@@ -218,7 +218,7 @@ class Calls(Mentions):
         if len(sets) > 1:
             match = match.replace(values=tuple(map(_alone, match.values)))  # `bring one cup to each guest`
             sets = [value for value in match.values if value.group and not _leaves_none(value)]
-        if len(sets) > 1:
+        if len(sets) > 1 and all(value.first >= at for value in sets):
             words = self._text.span(at, match.last)
             self.problems.append(diagnostic("BT034", words, words=words.text))
         if sets and entry.sort in ("action", "name"):

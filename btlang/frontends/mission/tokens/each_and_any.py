@@ -44,7 +44,8 @@ def _say_each_if_so(text: Words, vocabulary: Lexicon) -> None:
         verb = at + 1 + (words[at + 1] in values.plural_pronouns)
         behind = verb + 1 + (words[verb + 1] in asking["still"])
         last, (_, first, _) = _end_of_condition(text, vocabulary, verb), text.earlier(at)
-        if words[verb] not in be or (words[at] not in vocabulary.relatives and verb == at + 1) or last > behind + 1:
+        is_relative = words[at] in vocabulary.relatives  # but `tell Alice and Bob that they are late`
+        if words[verb] not in be or is_relative == (verb > at + 1) or last > behind + 1:
             continue
         begin, names = _listed_before(text, vocabulary, at, first)
         state, is_pronoun = words[behind] if last > behind else "", words[at - 1] in them and first > 0
