@@ -82,6 +82,19 @@ class ClockWords(SentenceReader):
         is_whole = self._is_end(last) or (is_front and self._begins_there(last))
         return (times, last) if times and is_whole else ([], at)
 
+    def until_both(self, match: Match, at: int) -> int:
+        """`wait until 4 pm and nobody is in the lab`: until it is later than that, and the other is so, too."""
+        text, entry = self._text, self._vocabulary.entry(_DAYTIME)
+        joins = text.words[match.last] in self._vocabulary.roles["and"] and not match.values[0].more
+        behind = self._phrase(match.last + 1) if joins else None
+        if entry is None or behind is None or behind.meaning.role not in ("condition", "negated"):
+            return 0
+        start, end = text.starts[at], text.ends[match.last - 1]
+        kind = "wait_until" if match.meaning.role == "wait_time" else "until"
+        asked = Called(entry, (("at_least", match.values[0].text),))
+        self._tokens += [Token(kind, start, start), Token("condition", start, end, asked)]
+        return match.last
+
     def _not_then(self, at: int) -> int:
         """`every hour, go to the lab, but not between 10 pm and 7 am`: unless it is then."""
         text, vocabulary = self._text, self._vocabulary

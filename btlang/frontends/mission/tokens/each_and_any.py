@@ -31,6 +31,8 @@ def say_each(text: Words, vocabulary: Lexicon) -> None:
     _say_there_is(text, vocabulary)
     _list_any(text, vocabulary)
     _part_sets(text, vocabulary)
+    _part_stops(text, vocabulary)
+    _join_replies(text, vocabulary)
 
 
 def _say_each_if_so(text: Words, vocabulary: Lexicon) -> None:
@@ -277,6 +279,61 @@ def _sets_at(text: Words, vocabulary: Lexicon, at: int, joints: Container[str]) 
         if len(sets) > 1 and has_set:
             return [[*each, *shared] for each in sets], behind
     return None
+
+
+def _part_stops(text: Words, vocabulary: Lexicon) -> None:
+    """Ask in each place of a journey: `go to the lab and the hall. If nobody is there, wave, otherwise nod`."""
+    words, values, form = text.words, vocabulary.values, vocabulary.word("if")
+    if form not in text.distinct or text.distinct.isdisjoint(vocabulary.journey_verbs):
+        return  # as often
+    for at in reversed([at for at in range(1, len(words)) if words[at] == form]):
+        last = at
+        while last > 0 and words[last - 1] in (END_OF_STATEMENT, ",", *vocabulary.roles["and"]):
+            last -= 1
+        _, first, _ = text.earlier(last)
+        begin, names = _listed_before(text, vocabulary, last, first)
+        tree = values.names_tree(PLACE)
+        are_places = len(names) > 1 and all(find(tree, [*name.lower().split(), END_OF_TEXT], 0) for name in names)
+        if last == at or not are_places or words[first] not in vocabulary.journey_verbs:
+            continue
+        behind = _end_of_condition(text, vocabulary, at + 1)
+        there = [i for i in range(at + 1, behind) if PLACE in values.pronouns.get(words[i], ())]
+        room = [i for i in range(at + 1, behind) if words[i] in vocabulary.asking["located"] and i + 1 in text.articles]
+        room = [
+            i for i in room if values.phrases.is_type(PLACE, text, i + 1) or words[i + 1] in vocabulary.asking["stops"]
+        ]
+        stop = next(i for i in range(behind, len(words) - 1) if words[i] in _STOPS)
+        if words[stop + 1] not in _STOPS and _is_otherwise(text, vocabulary, stop + 1):
+            stop = next(i for i in range(stop + 1, len(words) - 1) if words[i] in _STOPS)
+        if not (there or room) or any(word in _STOPS for word in words[first:last]):
+            continue
+        asked = words[at:stop]
+        for i in room:
+            asked[i - at : i - at + 2] = vocabulary.asking["remaining"][-1:]
+        rows = [
+            [END_OF_STATEMENT, *words[first:begin], *name.lower().split(), END_OF_STATEMENT, *asked] for name in names
+        ]
+        text.drop(first, stop - 1)
+        text.replace(first, [word for row in rows for word in row][1:])
+
+
+def _join_replies(text: Words, vocabulary: Lexicon) -> None:
+    """Ask each for the answer: `ask every guest "Tea?". If any of them says no, tell them to wait`."""
+    words, asking = text.words, vocabulary.asking
+    if text.distinct.isdisjoint(asking["any_of_them"]):
+        return  # as nearly always
+    for at in reversed([at for at in range(2, len(words) - 3) if words[at] in asking["any_of_them"]]):
+        end = at + 2 + (words[at + 1] in asking["of_them"])
+        is_of_them = end == at + 3 and PERSON in vocabulary.values.pronouns.get(words[at + 2], ())
+        _, first, _ = text.earlier(at - 2)
+        groups = (each for i in range(first, at - 1) for each in vocabulary.values.groups(text, i, PERSON))
+        asks = words[at - 3][0] == '"' and words[at - 2] == END_OF_STATEMENT and words[at - 1] == vocabulary.word("if")
+        if asks and is_of_them and words[end] not in vocabulary.forms_of_be and next(groups, None) is not None:
+            text.drop(at, end)
+            text.replace(at - 2, [vocabulary.word("and")])
+            text.replace(
+                at - 1, [vocabulary.word("if"), pronouns_for(vocabulary.values.pronouns, PERSON, alone=True)[0]]
+            )
 
 
 def _is_otherwise(text: Words, vocabulary: Lexicon, at: int) -> bool:

@@ -5,7 +5,9 @@ from __future__ import annotations
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.token import Token
 from btlang.frontends.mission.tokens.counted_things import COUNTED
-from btlang.text.words import END_OF_TEXT, Words
+from btlang.text.source import Source
+from btlang.text.words import END_OF_TEXT, Words, split
+from btlang.tree.answers import ASK
 from btlang.vocabulary.adjectives import OWNER
 from btlang.vocabulary.antecedents import pronouns_for
 from btlang.vocabulary.capabilities import MOVES
@@ -15,7 +17,7 @@ from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.references import ALL, NAMES, SELF, Choice, choice_of, free_key
-from btlang.vocabulary.value_type import DOOR, KINDS, OBJECT, PERSON, PLACE, WORLD, ZONE
+from btlang.vocabulary.value_type import DOOR, KINDS, OBJECT, PERSON, PLACE, TEXT, WORLD, ZONE
 from btlang.vocabulary.word_tree import find
 
 ODD = ("", "{", "(")
@@ -106,12 +108,26 @@ class Mentions:
             if choice is not None:
                 self._context.met[choice.key] = choice.how == ALL
             self._context.latest[value.type] = f"{{{choice.key}}}" if choice is not None else latest
+            if value.type == TEXT and entry is not None and entry.id == ASK and OBJECT not in self._context.latest:
+                self._note_asked(latest)
             if value.type in (PLACE, ZONE) and latest in self._vocabulary.values.listed(DOOR):
                 self._context.latest[DOOR] = latest  # `if somebody is at the front door, open it`
             if value.type == PLACE and latest in self._vocabulary.values.listed(ZONE):
                 self._context.latest[ZONE] = latest  # `go to the lab, then leave it`
             if value.type == ZONE and latest in self._vocabulary.values.listed(PLACE):
                 self._context.latest[PLACE] = latest  # `never enter the lab while Bob is in it`
+
+    def _note_asked(self, question: str) -> None:
+        """`ask Bob "Do you need the book?". If not, bring it to me`: the one thing that a question names."""
+        words, values = split(Source(question), self._vocabulary.orthography).words, self._vocabulary.values
+        things, at = list[tuple[int, int, str]](), 0
+        while at < len(words):
+            found = [find(values.names_tree(kind), words, at) for kind in ("kind", KINDS, OBJECT)]
+            ways = [(way[1], sort, way[0]) for sort, way in enumerate(found) if way is not None]
+            things += [max(ways)] if ways else []
+            at = max(ways)[0] if ways else at + 1
+        if len(things) == 1 and things[0][1] == 2:  # `the cup or the book` are two, also where one is a kind
+            self._context.latest[OBJECT] = things[0][2]
 
     def _same_themes(self, match: Match, value: SlotValue) -> tuple[str, ...]:
         """`fetch the cup from the lab and the book from the hall, and bring them`: the things of commands in a row."""

@@ -131,6 +131,10 @@ class OrderWords(ClockWords, JourneyWords, RuleWords):
         elif role in WAITING:
             self._waits(role)
             self._until()
+        elif role == "held" and len(self._tokens) > 1 and self._tokens[-2].kind == "command":
+            words = self._text.source.text[self._tokens[-1].start : self._tokens[-1].end].lower()
+            if any(least in words for least in self._vocabulary.asking["at_least"]):
+                self._tokens[-1].kind = "for"  # `charge for at least an hour`
 
     def _waits(self, role: str) -> None:
         """`stand at the door until noon`: goes there, then waits until then."""

@@ -28,6 +28,7 @@ def reworded(text: Words, vocabulary: Lexicon) -> list[Diagnostic]:
     say_each(text, vocabulary)
     _list_days(text, vocabulary)
     _drop_again(text, vocabulary)
+    _drop_back(text, vocabulary)
     _say_again(text, vocabulary)
     _count_again(text, vocabulary)
     _tell_again(text, vocabulary)
@@ -144,6 +145,17 @@ def _drop_again(text: Words, vocabulary: Lexicon) -> None:
         is_time = words[at + 2][0].isdigit() or vocabulary.values.takes_word("time_of_day", words[at + 2])
         is_between = words[at - 1] in joints and words[at + 1] in times and not times.isdisjoint(words[first : at - 1])
         if is_time and is_between and words[first] in fronts:
+            text.drop(at, at + 1)
+
+
+def _drop_back(text: Words, vocabulary: Lexicon) -> None:
+    """Leave out `back` before from whom something is taken: `take the book back from Bob`."""
+    words, values = text.words, vocabulary.values
+    sources = {phrase[0] for phrase in values.role_words.introducing.get("source", ())}
+    for at in reversed([at for at in range(1, len(words) - 2) if words[at] in vocabulary.and_back]):
+        person = find(values.names_tree(PERSON), words, at + 2)
+        is_person = person is not None or PERSON in values.pronouns.get(words[at + 2], ())
+        if words[at + 1] in sources and is_person and words[at - 1] not in vocabulary.journey_verbs:
             text.drop(at, at + 1)
 
 

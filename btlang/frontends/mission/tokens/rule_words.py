@@ -38,7 +38,7 @@ class RuleWords(SentenceReader):
             return end
         if not tokens or tokens[first].kind not in (*RULES, "if"):
             return 0
-        if found is not None and self._is_end(found[1]) and any(token.kind in _DONE for token in tokens[-3:]):
+        if found is not None and self._is_end(found[1]) and any(token.kind in _DONE for token in tokens[first + 2 :]):
             while tokens[-1].kind in JOINTS:
                 tokens.pop()
             is_last = all(word in (END_OF_STATEMENT, END_OF_TEXT) for word in words[found[1] :])

@@ -97,11 +97,12 @@ class ToldWords(SentenceReader):
         if tokens and (tokens[failed].value == FAILS or is_plain):  # `pick up the cup. Otherwise tell Bob`
             works = (at for at in reversed(range(failed)) if tokens[at].kind == WORKS)
             is_other = tokens[failed].kind == "otherwise" and not is_plain
-            return self._failed(next(works, 0) if is_other else failed)
+            return self._failed(next(works, 0) if is_other else failed) or self._own_words(failed)
         form = next((at for at in reversed(range(len(tokens))) if tokens[at].kind in _ASKED_BY), 0)
         is_other = any(token.kind in _LINE_ENDS for token in tokens[form:])
         if tokens and tokens[form].kind == WORKS:
-            return self._failed(form) if is_other else self._found(run_start(tokens, form, JOINTS | STATEMENT_ENDS))
+            tried = run_start(tokens, form, JOINTS | STATEMENT_ENDS)
+            return self._failed(form) if is_other else self._found(tried) or self._worked(tried)
         if tokens and tokens[form].start == tokens[form].end:
             return "" if is_other else self._replied(form)
         asked = [token for token in tokens[form:] if token.kind in _IN_CONDITIONS]
@@ -115,7 +116,9 @@ class ToldWords(SentenceReader):
         types = {slot.name: slot.type for slot in asked[0].value.entry.slots}
         named = [(types[name], value) for name, value in asked[0].value.arguments if types[name] in WORLD]
         if asked[0].value.entry.id in ABOUT_ANSWERS:  # `if she says yes, tell Bob`: of who was asked
-            named = [(PERSON, person) for person in [self._context.latest.get(PERSON, "")] if person]
+            named = [(PERSON, person) for person in [self._context.latest.get(PERSON, "{")] if person[:1] != "{"]
+            if not named:
+                return self._replied(form)
         words: list[str] = []
         things = [value for kind, value in named if kind in (OBJECT, DOOR)]
         done = (token for token in tokens[form:] if token.kind == "command")
@@ -150,26 +153,31 @@ class ToldWords(SentenceReader):
             return ""
         front, words = self._vocabulary.asking["failing"][0], list(words_of(text, tried))
         if is_question(tried) or tried.value.entry.id == _COMES:
-            joining = {
-                word for role in ("if", "and") for phrase in self._vocabulary.roles[role] for word in phrase.split()
-            }
-            words = list(dropwhile(lambda at: text.words[at] in joining, words_of(text, tokens[form])))
-            front = ""
-            if not words or PERSON not in self._context.pronouns.get(text.words[words[0]], ()):
-                return ""
+            front, words = "", self._asked_words(form)
         words = [at for at in words if text.words[at][0] not in '",']
-        said = self._with_names(self._sought(words) if searches(tried) else words, tried.value)
+        said = self._with_names(self._sought(words) if searches(tried) else words, _names_in(tried.value))
         if not said:
             return ""
         said = f"{self._vocabulary.asking['search'][0]} {said}" if searches(tried) and front else said
         said = f"{front} {said[:1].lower()}{said[1:]}" if front else said
         return f"{said[:1].upper()}{said[1:]}".replace(" ,", ",")
 
-    def _with_names(self, words: Sequence[int], command: Called | Listed) -> str:
-        """Words with the names of a command in the place of pronouns, "" where one may stand for others."""
-        types, said = {slot.name: slot.type for slot in command.entry.slots}, list[str]()
-        rows = arguments_of(command)
-        named = [(types[name], value) for name, value in rows[0] if all((name, value) in row for row in rows)]
+    def _own_words(self, form: int) -> str:
+        """`wait until Bob comes, then A. If he hasn't come, tell Alice`: what isn't so, as it is said."""
+        person = self._context.latest.get(PERSON, "")
+        said = self._with_names(self._asked_words(form), [(PERSON, person)] if person else [])
+        return f"{said[:1].upper()}{said[1:]}"
+
+    def _asked_words(self, form: int) -> list[int]:
+        """The words of a form behind `if`, where they are about somebody: `he hasn't come`."""
+        text, roles = self._text, self._vocabulary.roles
+        joining = {word for phrase in (*roles["if"], *roles["and"]) for word in phrase.split()}
+        words = list(dropwhile(lambda at: text.words[at] in joining, words_of(text, self._tokens[form])))
+        return words if words and PERSON in self._context.pronouns.get(text.words[words[0]], ()) else []
+
+    def _with_names(self, words: Sequence[int], named: Sequence[tuple[str, str]]) -> str:
+        """Words with names in the place of pronouns, "" where one may stand for others."""
+        said = list[str]()
         for at in words:
             pronoun = find(self._vocabulary.values.pronoun_words, self._text.words, at)
             kinds = self._context.pronouns[pronoun[0]] if pronoun is not None else ()
@@ -179,6 +187,16 @@ class ToldWords(SentenceReader):
                 return ""
             said.append(meant[0] if meant and PLACE not in kinds else self._written(at))
         return " ".join(said)
+
+    def _worked(self, end: int) -> str:
+        """`close the door. If that works, tell Bob`: that the command before some token has worked."""
+        done = self._tokens[end - 1] if end else None
+        if done is None or done.kind != "command" or not isinstance(done.value, Called | Listed):
+            return ""
+        front, words = self._vocabulary.asking["working"][0], list(words_of(self._text, done))
+        said = self._with_names([at for at in words if self._text.words[at][0] not in '",'], _names_in(done.value))
+        said = f"{front[:1].upper()}{front[1:]} {said[:1].lower()}{said[1:]}" if said else ""
+        return said.replace(" ,", ",")
 
     def _found(self, end: int) -> str:
         """`look for the cup. If you find it, tell Bob`: that what the command before some token looks for was found."""
@@ -204,14 +222,22 @@ class ToldWords(SentenceReader):
         asked = next(questions, None)
         if not isinstance(asked, Called) or not isinstance(condition, Called) or condition.entry.id != ANSWERED:
             return ""
-        said = {slot.type: text for slot, (_, text) in zip(asked.entry.slots, asked.arguments, strict=True)}
-        if said.get(PERSON, "{")[:1] == "{":
+        types = {slot.name: slot.type for slot in asked.entry.slots}
+        said = {types[name]: text for name, text in asked.arguments}
+        person = said.get(PERSON) or self._vocabulary.asking["somebody"][0].capitalize()
+        if person[:1] == "{":
             return ""
         words = self._vocabulary.asking["replied"][0]
-        return words.format(person=said[PERSON], answer=condition.arguments[0][1], question=said[TEXT])
+        return words.format(person=person, answer=condition.arguments[0][1], question=said[TEXT])
 
     def _written(self, at: int) -> str:
         """A word as it is written, with its article."""
         text = self._text
         whole = text.source.text[text.begin(at) : text.ends[at]]
         return whole if whole.lower().endswith(text.words[at]) else text.words[at]
+
+
+def _names_in(said: Called | Listed) -> list[tuple[str, str]]:
+    """The values of a command, each with its type; of a list those that all of it have."""
+    types, rows = {slot.name: slot.type for slot in said.entry.slots}, arguments_of(said)
+    return [(types[name], value) for name, value in rows[0] if all((name, value) in row for row in rows)]

@@ -385,6 +385,8 @@ class WordReader:
             return self._places.in_place_of_command(match, at)
         if role in ("at", "every_day"):
             return self._order.times(match, at)
+        if role in ("wait_time", "until_time"):
+            return self._order.until_both(match, at)
         if role == "count":
             return self._order.rounds(match, at)
         if role == "retry":
