@@ -179,10 +179,10 @@ def _list_any(text: Words, vocabulary: Lexicon) -> None:
     What depends on it and speaks of it is done for each: `if any door is open, close it`.
     """
     words, asking = text.words, vocabulary.asking
-    if text.distinct.isdisjoint(asking["any_of_them"]):
+    if text.distinct.isdisjoint((*asking["any_of_them"], *asking["no_thing"])):
         return  # as nearly always
-    be = vocabulary.forms_of_be
-    for at in reversed([at for at in range(1, len(words)) if words[at] in asking["any_of_them"]]):
+    be, none = vocabulary.forms_of_be, {*asking["no_thing"]}
+    for at in reversed([at for at in range(1, len(words)) if words[at] in asking["any_of_them"] or words[at] in none]):
         _, first, _ = text.earlier(at)
         form = next((i for i in reversed(range(first, at)) if words[i] in vocabulary.before_conditions), -1)
         if form < 0 or "," in words[form:at]:
@@ -198,11 +198,19 @@ def _list_any(text: Words, vocabulary: Lexicon) -> None:
         if not is_subject and words[at - 1] not in asking["located"]:
             continue
         split, pronouns = [name.lower().split() for name in names], pronouns_for(vocabulary.values.pronouns, kind)
-        if not set(pronouns).isdisjoint(words[last:stop]):
+        if words[at] in none and (not is_subject or be[words[end]] or len(names) < 2):
+            continue
+        if words[at] not in none and not set(pronouns).isdisjoint(words[last:stop]):
             is_else = any(_is_otherwise(text, vocabulary, i) for i in range(last, stop + 2) if i < len(words) - 1)
             is_pronoun = [i for i in range(last, stop) if words[i] in pronouns]
             is_owner = any(vocabulary.values.texts.is_owned(text, i) for i in is_pronoun)
-            if is_subject and form == at - 1 and words[form] == vocabulary.word("if") and not (is_else or is_owner):
+            if (
+                kind != PLACE
+                and is_subject
+                and form == at - 1
+                and words[form] == vocabulary.word("if")
+                and not (is_else or is_owner)
+            ):
                 rows = []
                 for name in split:
                     done = (part for word in words[last:stop] for part in (name if word in pronouns else [word]))
@@ -210,7 +218,9 @@ def _list_any(text: Words, vocabulary: Lexicon) -> None:
                 _put_each(text, vocabulary, rows, form, stop)
             continue
         said = [[*name, *(words[end:last] if is_subject else ())] for name in split]
-        listed = [word for each in said for word in (*each, vocabulary.word("or"))][:-1]
+        joint = vocabulary.word("nor" if words[at] in none else "or")
+        listed = [word for each in said for word in (*each, joint)][:-1]
+        listed = [vocabulary.word("neither"), *listed] if words[at] in none else listed
         text.drop(at, (last if is_subject else end) - 1)
         text.replace(at, listed)
 
@@ -284,7 +294,10 @@ def _sets_at(text: Words, vocabulary: Lexicon, at: int, joints: Container[str]) 
 def _part_stops(text: Words, vocabulary: Lexicon) -> None:
     """Ask in each place of a journey: `go to the lab and the hall. If nobody is there, wave, otherwise nod`."""
     words, values, form = text.words, vocabulary.values, vocabulary.word("if")
-    if form not in text.distinct or text.distinct.isdisjoint(vocabulary.journey_verbs):
+    patrol = vocabulary.entry("Patrol")
+    patrols = (*(patrol.phrases if patrol is not None else ()), *vocabulary.roles["check"])
+    verbs = vocabulary.journey_verbs.union(phrase.split()[0] for phrase in patrols)
+    if form not in text.distinct or text.distinct.isdisjoint(verbs):
         return  # as often
     for at in reversed([at for at in range(1, len(words)) if words[at] == form]):
         last = at
@@ -294,10 +307,11 @@ def _part_stops(text: Words, vocabulary: Lexicon) -> None:
         begin, names = _listed_before(text, vocabulary, last, first)
         tree = values.names_tree(PLACE)
         are_places = len(names) > 1 and all(find(tree, [*name.lower().split(), END_OF_TEXT], 0) for name in names)
-        if last == at or not are_places or words[first] not in vocabulary.journey_verbs:
+        if last == at or not are_places or words[first] not in verbs:
             continue
         behind = _end_of_condition(text, vocabulary, at + 1)
         there = [i for i in range(at + 1, behind) if PLACE in values.pronouns.get(words[i], ())]
+        there = [i for i in there if words[i + 1] not in vocabulary.forms_of_be]  # but `if there is a cup`
         room = [i for i in range(at + 1, behind) if words[i] in vocabulary.asking["located"] and i + 1 in text.articles]
         room = [
             i for i in room if values.phrases.is_type(PLACE, text, i + 1) or words[i + 1] in vocabulary.asking["stops"]
@@ -307,14 +321,16 @@ def _part_stops(text: Words, vocabulary: Lexicon) -> None:
             stop = next(i for i in range(stop + 1, len(words) - 1) if words[i] in _STOPS)
         if not (there or room) or any(word in _STOPS for word in words[first:last]):
             continue
-        asked = words[at:stop]
+        then = next((i for i in range(behind, stop) if words[i] in vocabulary.roles["then"]), stop)
+        asked = words[at : then - (words[then - 1] == ",")]
         for i in room:
             asked[i - at : i - at + 2] = vocabulary.asking["remaining"][-1:]
         rows = [
             [END_OF_STATEMENT, *words[first:begin], *name.lower().split(), END_OF_STATEMENT, *asked] for name in names
         ]
-        text.drop(first, stop - 1)
-        text.replace(first, [word for row in rows for word in row][1:])
+        ends = then < stop
+        text.drop(first, then - 1 + ends)
+        text.replace(first, [*[word for row in rows for word in row][1:], *([END_OF_STATEMENT] if ends else ())])
 
 
 def _join_replies(text: Words, vocabulary: Lexicon) -> None:
@@ -351,7 +367,7 @@ def _names_meant(text: Words, vocabulary: Lexicon, at: int, first: int) -> tuple
         several = ((kind, names) for kind, names in named.items() if len(names) > 1)
         kind, names = next(several, ("", []))
         return (kind, names, noun + 1) if kind else None
-    if noun == at + 1 and words[at] not in vocabulary.asking["any_place"]:
+    if noun == at + 1 and words[at] not in (*vocabulary.asking["any_place"], *vocabulary.asking["no_thing"]):
         return None
     for kind in (DOOR, PLACE):
         if values.phrases.is_type(kind, text, noun):

@@ -113,21 +113,26 @@ def _list_days(text: Words, vocabulary: Lexicon) -> None:
     if text.distinct.isdisjoint(tree):
         return  # as nearly always
     on, joints = {phrase.split()[0] for phrase in vocabulary.roles["on_days"]}, {",", *vocabulary.roles["and"]}
+    times = {phrase.split()[0] for phrase in vocabulary.roles["at"]}
     for at in reversed([at for at in range(2, len(words) - 1) if words[at] in on and words[at - 1] in joints]):
         is_listed = find(tree, words, at - 2 - (words[at - 2] == ",")) is not None
         if is_listed and find(tree, words, at + 1) is not None:
             text.drop(at, at + 1)
     for at in reversed([at for at in range(len(words)) if words[at] in vocabulary.any_day]):
         found = find(vocabulary.any_day, words, at)
-        end = values.exception(text, found[1]) if found is not None else 0
+        first = found[1] if found is not None else at
+        if words[first] in times:  # `every day at 9 am except on Sundays`
+            first = next((i for i in range(first, first + _LONGEST_TRY) if values.exception(text, i)), first)
+        end = values.exception(text, first) if found is not None else 0
         left_out, last = set[str](), 0
         end += bool(end) and words[end] in on
         while end and (day := find(tree, words, end)) is not None:
             left_out.update(_GROUPS.get(day[0], day[:1]))
             last, end = day[1], day[1] + (words[day[1]] in joints)
         others = [day for day in WEEKDAYS if day not in left_out]
-        if left_out and len(others) > 1:
-            text.drop(at, last - 1)
+        if found is not None and left_out and len(others) > 1:
+            text.drop(first, last)
+            text.drop(at, found[1] - 1)
             listed = [word for day in others for word in (",", day.lower())]
             every = vocabulary.asking["any_day"][0].split()[:1]
             text.replace(at, [*every, *listed[1:-2], vocabulary.word("and"), listed[-1]])
@@ -166,7 +171,8 @@ def _say_again(text: Words, vocabulary: Lexicon) -> None:
         return  # as often
     verbs = {phrase.split()[0] for phrase in entry.phrases}
     again = (phrase.split()[0] for phrase in (*vocabulary.roles["again"], *vocabulary.counts))
-    behind = {*_ENDING, *vocabulary.joining, *again}
+    to = (phrase[0] for phrase in vocabulary.values.role_words.introducing.get("recipient", ()))
+    behind = {*_ENDING, *vocabulary.joining, *again, *to}
     for at in [at for at in range(1, len(words) - 1) if words[at] in it and words[at - 1] in verbs]:
         said = next((word for word in reversed(words[:at]) if word[0] == '"'), "")
         is_often = vocabulary.values.is_number(words[at + 1 : at + 2])
