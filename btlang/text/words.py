@@ -126,6 +126,7 @@ class Words:
         "comments",
         "ends",
         "going_on",
+        "has_shared_places",
         "lines",
         "memo",
         "open_quotes",
@@ -156,6 +157,8 @@ class Words:
         """The times of day that are the next ones behind another, by their first words: time, end, and that other."""
         self.memo: dict[object, dict[tuple[int, str], object]] = {}
         """What readers found at its words, each for itself: the same words are read again and again."""
+        self.has_shared_places = False
+        """Whether several words were put in the place of one, where they stand."""
         self._distinct: frozenset[str] | None = None
 
     @property
@@ -203,6 +206,7 @@ class Words:
     def replace(self, at: int, words: Sequence[str]) -> None:
         """Put words in the place of one, where it stands; only before anybody has looked for anything."""
         more, count = len(words) - 1, len(words)
+        self.has_shared_places |= count > 1
         self.words[at : at + 1] = words
         self.starts[at : at + 1], self.ends[at : at + 1] = [self.starts[at]] * count, [self.ends[at]] * count
         self.lines = [

@@ -163,12 +163,13 @@ class Token:
     The `value` of a command or condition is what it says, of a definition its header, of a loop what it goes through
     or its amount; of a count or duration it is the amount. `role` is what the kind leaves open: the raw kind that a
     form, loop, test or postfix was made of, or an operand that is no phrase, and what a connective means that has
-    another meaning between commands. An ELSE begins where what it is tried after ends.
+    another meaning between commands. An ELSE begins where what it is tried after ends. `words` are those of its phrase;
+    without them they are the ones at its characters, which several words may share where one was put for others.
 
     Mutable, for grouping learns later what a comma means and which count closes a `repeat`.
     """
 
-    __slots__ = ("end", "kind", "role", "start", "value")
+    __slots__ = ("end", "kind", "role", "start", "value", "words")
 
     def __init__(self, kind: str, start: int, end: int, value: Value = None, role: str = "") -> None:
         self.kind = kind
@@ -176,6 +177,7 @@ class Token:
         self.end = end
         self.value: Value = value
         self.role = role
+        self.words: range | None = None
 
     def __repr__(self) -> str:
         return f"{self.kind}({self.role or self.value or ''})"

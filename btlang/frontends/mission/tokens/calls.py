@@ -76,6 +76,8 @@ class Calls(Mentions):
                 for key in keys_in(value.text):
                     self._write_down(f"{{{key}}}")
             made = Token(kind, start, end, self._called(meaning.entry, match, at))
+            if text.has_shared_places and match.last > at:
+                made.words = range(at, match.last)
             if isinstance(made.value, Listed) and made.value.joiner in ("and", "") and kind == "command":
                 listed = next(value for value in match.values if value.more)
                 is_odd = any(text[:1] in ODD for text in listed.texts)  # no round: where each one is would be lost

@@ -4,7 +4,7 @@ are open`.
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.antecedents import pronouns_for
@@ -15,9 +15,10 @@ from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE, WORLD
 from btlang.vocabulary.word_tree import find
 
-_MOST_ADJECTIVES = 3
-_STOPS = (END_OF_STATEMENT, END_OF_TEXT)
-_ENDING = frozenset((*_STOPS, ",", ";", ")"))
+_MOST_ADJECTIVES, _MOST_BEFORE_TEXT = 3, 5
+_GOING_ON = frozenset(("otherwise", "if_works", "if_fails", "if_one_fails", "in_any_case"))
+STOPS = (END_OF_STATEMENT, END_OF_TEXT)
+_ENDING = frozenset((*STOPS, ",", ";", ")"))
 
 
 def say_each(text: Words, vocabulary: Lexicon) -> None:
@@ -30,9 +31,6 @@ def say_each(text: Words, vocabulary: Lexicon) -> None:
     _say_kind(text, vocabulary)
     _say_there_is(text, vocabulary)
     _list_any(text, vocabulary)
-    _part_sets(text, vocabulary)
-    _part_stops(text, vocabulary)
-    _join_replies(text, vocabulary)
 
 
 def _say_each_if_so(text: Words, vocabulary: Lexicon) -> None:
@@ -45,11 +43,11 @@ def _say_each_if_so(text: Words, vocabulary: Lexicon) -> None:
     for at in reversed([at for at in range(1, len(words) - 2) if words[at] in fronts]):
         verb = at + 1 + (words[at + 1] in values.plural_pronouns)
         behind = verb + 1 + (words[verb + 1] in asking["still"])
-        last, (_, first, _) = _end_of_condition(text, vocabulary, verb), text.earlier(at)
+        last, (_, first, _) = end_of_condition(text, vocabulary, verb), text.earlier(at)
         is_relative = words[at] in vocabulary.relatives  # but `tell Alice and Bob that they are late`
         if words[verb] not in be or is_relative == (verb > at + 1) or last > behind + 1:
             continue
-        begin, names = _listed_before(text, vocabulary, at, first)
+        begin, names = listed_before(text, vocabulary, at, first)
         state, is_pronoun = words[behind] if last > behind else "", words[at - 1] in them and first > 0
         if is_pronoun:
             _, before, _ = text.earlier(first - 1)
@@ -69,7 +67,9 @@ def _say_each_if_so(text: Words, vocabulary: Lexicon) -> None:
 def _put_each(text: Words, vocabulary: Lexicon, rows: Iterable[Sequence[str]], start: int, last: int) -> None:
     """Put conditions with what is done in the place of some words: as statements where they are all of one."""
     words, joints = text.words, vocabulary.joining.difference(vocabulary.roles["or"])
-    is_whole = text.earlier(start)[1] == start and (words[last] in joints or words[last] in _STOPS)
+    if speaks_freely(words[start:last], vocabulary):
+        return
+    is_whole = text.earlier(start)[1] == start and (words[last] in joints or words[last] in STOPS)
     said: list[str] = []
     for row in rows:
         one = [vocabulary.word("if"), *row]
@@ -79,7 +79,21 @@ def _put_each(text: Words, vocabulary: Lexicon, rows: Iterable[Sequence[str]], s
     text.replace(start, [*said[1:], *([END_OF_STATEMENT] if goes_on else ())])
 
 
-def _end_of_condition(text: Words, vocabulary: Lexicon, at: int) -> int:
+def speaks_freely(words: Sequence[str], vocabulary: Lexicon) -> bool:
+    """Whether words say something without quotes, which can't stand in several places: `tell Bob that tea is ready`."""
+    entries = [vocabulary.entry(id) for id in ("TellPerson", "Ask", "Say")]
+    speech = {phrase.split()[0] for entry in entries if entry is not None for phrase in entry.phrases}
+    for at in [at for at, word in enumerate(words) if word in speech or word in vocabulary.asking["informing"]]:
+        behind = words[at + 1 : at + 1 + _MOST_BEFORE_TEXT]
+        end = next((i for i, word in enumerate(behind) if word in _ENDING or word in vocabulary.joining), len(behind))
+        informs = end < len(behind) or len(behind) < _MOST_BEFORE_TEXT
+        is_named = end > 0 and find(vocabulary.values.names_tree(PERSON), [*behind[:end], END_OF_TEXT], 0) is not None
+        if not (any(word[0] == '"' for word in behind) or (informs and is_named)):
+            return True
+    return False
+
+
+def end_of_condition(text: Words, vocabulary: Lexicon, at: int) -> int:
     """Where a condition ends that goes on at a word."""
     words = text.words
     return next(i for i in range(at, len(words)) if words[i] in _ENDING or words[i] in vocabulary.joining)
@@ -104,7 +118,7 @@ def _say_every_if_so(text: Words, vocabulary: Lexicon) -> None:
             text.replace(at, values.choices(DOOR)[0][:1])
 
 
-def _listed_before(text: Words, vocabulary: Lexicon, at: int, first: int) -> tuple[int, list[str]]:
+def listed_before(text: Words, vocabulary: Lexicon, at: int, first: int) -> tuple[int, list[str]]:
     """The names joined by `and` that end at a word, and where they begin."""
     words, joints = text.words, {",", *vocabulary.roles["and"]}
     for begin in range(first, at):
@@ -193,15 +207,15 @@ def _list_any(text: Words, vocabulary: Lexicon) -> None:
         if found is None:  # also `if one of them is missing, A`
             continue
         kind, names, end = found
-        last, is_subject = _end_of_condition(text, vocabulary, end), words[end] in be
-        stop = next(i for i in range(last, len(words) - 1) if words[i] in _STOPS)
+        last, is_subject = end_of_condition(text, vocabulary, end), words[end] in be
+        stop = next(i for i in range(last, len(words) - 1) if words[i] in STOPS)
         if not is_subject and words[at - 1] not in asking["located"]:
             continue
         split, pronouns = [name.lower().split() for name in names], pronouns_for(vocabulary.values.pronouns, kind)
         if words[at] in none and (not is_subject or be[words[end]] or len(names) < 2):
             continue
         if words[at] not in none and not set(pronouns).isdisjoint(words[last:stop]):
-            is_else = any(_is_otherwise(text, vocabulary, i) for i in range(last, stop + 2) if i < len(words) - 1)
+            is_else = any(is_otherwise(text, vocabulary, i) for i in range(last, stop + 2) if i < len(words) - 1)
             is_pronoun = [i for i in range(last, stop) if words[i] in pronouns]
             is_owner = any(vocabulary.values.texts.is_owned(text, i) for i in is_pronoun)
             if (
@@ -225,137 +239,10 @@ def _list_any(text: Words, vocabulary: Lexicon) -> None:
         text.replace(at, listed)
 
 
-def _part_sets(text: Words, vocabulary: Lexicon) -> None:
-    """Say of each of several sets what is said of all: `pick up every cup and every book and take them to the hall`."""
-    words, values, joints = text.words, vocabulary.values, {",", *vocabulary.roles["and"]}
-    names = values.names_tree(OBJECT)
-    starts = values.choice_starts | values.group_starts | names.keys() | values.names_tree(PERSON).keys()
-    it = pronouns_for(values.pronouns, OBJECT)[0]
-    if text.distinct.isdisjoint(values.plural_pronouns) or text.distinct.isdisjoint(starts):
-        return  # as nearly always
-    at = -1
-    while at < len(words) - 1:
-        at += 1
-        _, first, _ = text.earlier(at)
-        found = _sets_at(text, vocabulary, at, joints) if words[at] in starts else None
-        if found is None:
-            continue
-        sets, behind = found
-        stop = next(i for i in range(behind, len(words)) if words[i] in _STOPS)
-        spoken = [i for i in range(behind, stop) if words[i] in values.plural_pronouns]
-        start = next((i + 1 for i in reversed(range(first, at)) if words[i] in (",", *vocabulary.joining)), first)
-        if not spoken or start == at:
-            continue
-        last = _end_of_condition(text, vocabulary, spoken[-1])
-        rest = words[behind:last]
-        said_of = {True: [it if word in values.plural_pronouns else word for word in rest], False: rest}
-        rows = [[*words[start:at], *each, *said_of[find(names, [*each, END_OF_TEXT], 0) is not None]] for each in sets]
-        is_whole = start == first and last == stop
-        begin, end, joint = ("", "", END_OF_STATEMENT) if is_whole else ("(", ")", vocabulary.word("then"))
-        said = [word for row in rows for word in (joint, begin, *row, end) if word][1:]
-        text.drop(start, last - 1)
-        text.replace(start, said)
-        at = start + len(said) - 1
-
-
-def _sets_at(text: Words, vocabulary: Lexicon, at: int, joints: Container[str]) -> tuple[list[list[str]], int] | None:
-    """The words of each of several sets that are listed at a word, and where the list ends.
-
-    Behind `every cup and book in the lab` both are in the lab.
-    """
-    words, values = text.words, vocabulary.values
-    for kind in (OBJECT, PERSON):
-        tree, sets, shared, begin, behind, has_set = (
-            values.names_tree(kind),
-            list[list[str]](),
-            list[str](),
-            at,
-            at,
-            False,
-        )
-        while True:
-            own = [end for _, end in values.groups(text, begin, kind)]
-            is_bare = bool(sets) and has_set and not own and begin not in text.articles
-            bare = [*values.groups(text, begin, kind, is_bare=True)] if is_bare else []
-            named = find(tree, words, begin) if not (own or bare) else None
-            ends = own or [end for _, end in bare] or ([named[1]] if named is not None else [])
-            if not ends:
-                break
-            sets.append([*(words[at : at + 1] if bare else ()), *words[begin : ends[0]]])
-            shared, behind, has_set = words[ends[0] : ends[-1]] if bare else [], ends[-1], has_set or bool(own)
-            if words[behind] not in joints:
-                break
-            begin = behind + 1 + (words[behind] == "," and words[behind + 1] in joints)
-        if len(sets) > 1 and has_set:
-            return [[*each, *shared] for each in sets], behind
-    return None
-
-
-def _part_stops(text: Words, vocabulary: Lexicon) -> None:
-    """Ask in each place of a journey: `go to the lab and the hall. If nobody is there, wave, otherwise nod`."""
-    words, values, form = text.words, vocabulary.values, vocabulary.word("if")
-    patrol = vocabulary.entry("Patrol")
-    patrols = (*(patrol.phrases if patrol is not None else ()), *vocabulary.roles["check"])
-    verbs = vocabulary.journey_verbs.union(phrase.split()[0] for phrase in patrols)
-    if form not in text.distinct or text.distinct.isdisjoint(verbs):
-        return  # as often
-    for at in reversed([at for at in range(1, len(words)) if words[at] == form]):
-        last = at
-        while last > 0 and words[last - 1] in (END_OF_STATEMENT, ",", *vocabulary.roles["and"]):
-            last -= 1
-        _, first, _ = text.earlier(last)
-        begin, names = _listed_before(text, vocabulary, last, first)
-        tree = values.names_tree(PLACE)
-        are_places = len(names) > 1 and all(find(tree, [*name.lower().split(), END_OF_TEXT], 0) for name in names)
-        if last == at or not are_places or words[first] not in verbs:
-            continue
-        behind = _end_of_condition(text, vocabulary, at + 1)
-        there = [i for i in range(at + 1, behind) if PLACE in values.pronouns.get(words[i], ())]
-        there = [i for i in there if words[i + 1] not in vocabulary.forms_of_be]  # but `if there is a cup`
-        room = [i for i in range(at + 1, behind) if words[i] in vocabulary.asking["located"] and i + 1 in text.articles]
-        room = [
-            i for i in room if values.phrases.is_type(PLACE, text, i + 1) or words[i + 1] in vocabulary.asking["stops"]
-        ]
-        stop = next(i for i in range(behind, len(words) - 1) if words[i] in _STOPS)
-        if words[stop + 1] not in _STOPS and _is_otherwise(text, vocabulary, stop + 1):
-            stop = next(i for i in range(stop + 1, len(words) - 1) if words[i] in _STOPS)
-        if not (there or room) or any(word in _STOPS for word in words[first:last]):
-            continue
-        then = next((i for i in range(behind, stop) if words[i] in vocabulary.roles["then"]), stop)
-        asked = words[at : then - (words[then - 1] == ",")]
-        for i in room:
-            asked[i - at : i - at + 2] = vocabulary.asking["remaining"][-1:]
-        rows = [
-            [END_OF_STATEMENT, *words[first:begin], *name.lower().split(), END_OF_STATEMENT, *asked] for name in names
-        ]
-        ends = then < stop
-        text.drop(first, then - 1 + ends)
-        text.replace(first, [*[word for row in rows for word in row][1:], *([END_OF_STATEMENT] if ends else ())])
-
-
-def _join_replies(text: Words, vocabulary: Lexicon) -> None:
-    """Ask each for the answer: `ask every guest "Tea?". If any of them says no, tell them to wait`."""
-    words, asking = text.words, vocabulary.asking
-    if text.distinct.isdisjoint(asking["any_of_them"]):
-        return  # as nearly always
-    for at in reversed([at for at in range(2, len(words) - 3) if words[at] in asking["any_of_them"]]):
-        end = at + 2 + (words[at + 1] in asking["of_them"])
-        is_of_them = end == at + 3 and PERSON in vocabulary.values.pronouns.get(words[at + 2], ())
-        _, first, _ = text.earlier(at - 2)
-        groups = (each for i in range(first, at - 1) for each in vocabulary.values.groups(text, i, PERSON))
-        asks = words[at - 3][0] == '"' and words[at - 2] == END_OF_STATEMENT and words[at - 1] == vocabulary.word("if")
-        if asks and is_of_them and words[end] not in vocabulary.forms_of_be and next(groups, None) is not None:
-            text.drop(at, end)
-            text.replace(at - 2, [vocabulary.word("and")])
-            text.replace(
-                at - 1, [vocabulary.word("if"), pronouns_for(vocabulary.values.pronouns, PERSON, alone=True)[0]]
-            )
-
-
-def _is_otherwise(text: Words, vocabulary: Lexicon, at: int) -> bool:
-    """Whether words begin what is done else."""
+def is_otherwise(text: Words, vocabulary: Lexicon, at: int) -> bool:
+    """Whether words begin what is done else, or depend on how it went."""
     match = longest(vocabulary.trie, text, at, ReadingContext(vocabulary.values), lists=False)
-    return match is not None and match.meaning.role == "otherwise"
+    return match is not None and match.meaning.role in _GOING_ON
 
 
 def _names_meant(text: Words, vocabulary: Lexicon, at: int, first: int) -> tuple[str, list[str], int] | None:

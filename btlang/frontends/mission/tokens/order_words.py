@@ -5,8 +5,6 @@ An arrival goes on as `then` would. A journey behind `on the way to` or `from` b
 
 from __future__ import annotations
 
-from bisect import bisect_left
-
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import (
     FORMS,
@@ -30,6 +28,7 @@ from btlang.frontends.mission.tokens.rules_inside import ON_WAY
 from btlang.frontends.mission.tokens.sentence_reader import leads_to
 from btlang.frontends.mission.tokens.settling import FAILS, MEASURES
 from btlang.frontends.mission.tokens.silent_words import BEGINS, begins
+from btlang.frontends.mission.tokens.word_matches import words_of
 from btlang.vocabulary.entry import THEME
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.value_type import OBJECT, PERSON
@@ -140,7 +139,7 @@ class OrderWords(ClockWords, JourneyWords, RuleWords):
         """`stand at the door until noon`: goes there, then waits until then."""
         tokens, text = self._tokens, self._text
         if len(tokens) > 1 and tokens[-2].kind == "command":
-            verb = text.words[bisect_left(text.starts, tokens[-2].start)]
+            verb = text.words[words_of(text, tokens[-2]).start]
             if verb in self._vocabulary.asking["standing_verbs"]:
                 tokens[-1].kind = WAITING[role]
                 tokens.insert(-1, Token("then", tokens[-1].start, tokens[-1].start))
@@ -274,9 +273,7 @@ class OrderWords(ClockWords, JourneyWords, RuleWords):
             return 0
         text = self._text
         commands = (token for token in reversed(self._tokens) if token.kind == "command")
-        said = next(
-            (each for each in commands if text.words[bisect_left(text.starts, each.start)] == text.words[at]), None
-        )
+        said = next((each for each in commands if text.words[words_of(text, each).start] == text.words[at]), None)
         if said is None:
             return 0
         self._tokens.append(Token("command", text.starts[at], text.ends[again.last - 1], said.value))

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.tokens.counted_things import COUNTED
 from btlang.frontends.mission.tokens.each_and_any import say_each
+from btlang.frontends.mission.tokens.parted import part_each
 from btlang.text.time_of_day import WEEKDAYS, WEEKEND, WORKDAYS
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.lexicon import Lexicon
@@ -26,6 +27,7 @@ def reworded(text: Words, vocabulary: Lexicon) -> list[Diagnostic]:
     _drop_left(text, vocabulary)
     _say_there(text, vocabulary)
     say_each(text, vocabulary)
+    part_each(text, vocabulary)
     _list_days(text, vocabulary)
     _drop_again(text, vocabulary)
     _drop_back(text, vocabulary)
@@ -122,7 +124,8 @@ def _list_days(text: Words, vocabulary: Lexicon) -> None:
         found = find(vocabulary.any_day, words, at)
         first = found[1] if found is not None else at
         if words[first] in times:  # `every day at 9 am except on Sundays`
-            first = next((i for i in range(first, first + _LONGEST_TRY) if values.exception(text, i)), first)
+            until = next(i for i in range(first, len(words)) if words[i] in _ENDING)
+            first = next((i for i in range(first, until) if values.exception(text, i)), first)
         end = values.exception(text, first) if found is not None else 0
         left_out, last = set[str](), 0
         end += bool(end) and words[end] in on

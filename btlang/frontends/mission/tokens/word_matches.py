@@ -30,7 +30,7 @@ def theme_of(match: Match) -> SlotValue | None:
 
 def words_of(text: Words, token: Token) -> range:
     """The words of a token."""
-    return range(bisect_left(text.starts, token.start), bisect_left(text.starts, token.end))
+    return token.words or range(bisect_left(text.starts, token.start), bisect_left(text.starts, token.end))
 
 
 def doing(
