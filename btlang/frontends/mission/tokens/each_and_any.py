@@ -103,9 +103,11 @@ def _say_every_if_so(text: Words, vocabulary: Lexicon) -> None:
     """Ask of each of a set: `close the doors if they are open`, `close any door that is open`."""
     words, asking, values = text.words, vocabulary.asking, vocabulary.values
     one, be = asking["asking_be"][0], {*asking["asking_be"]}
-    for at in reversed([at for at in range(2, len(words) - 2) if words[at] in values.plural_pronouns]):
+    form = vocabulary.word("if")
+    asked = [at for at in range(2, len(words) - 2) if words[at - 1] == form and words[at] in values.plural_pronouns]
+    for at in reversed([at for at in asked if words[at + 1] in be]):
         ends = {end for i in range(text.earlier(at)[1], at - 1) for _, end in values.groups(text, i, DOOR)}
-        if words[at - 1] == vocabulary.word("if") and words[at + 1] in be and at - 1 in ends:
+        if at - 1 in ends:
             text.replace(at + 1, [one])
             text.replace(at, pronouns_for(values.pronouns, DOOR)[:1])
     for at in reversed([at for at in range(1, len(words) - 3) if words[at] in asking["whichever"]]):
@@ -175,8 +177,9 @@ def _say_there_is(text: Words, vocabulary: Lexicon) -> None:
     for at in reversed([at for at in range(1, len(words)) if words[at - 1] in vocabulary.before_conditions]):
         article = text.source.text[slice(*text.articles[at])].lower() if at in text.articles else ""
         is_some, is_none = words[at] in asking["any_place"], words[at] in asking["no_thing"]
-        found = values.choice(text, at + (is_some or is_none), OBJECT)
-        if found is None or not (is_some or is_none or article in asking["indefinite"]):
+        is_indefinite = is_some or is_none or article in asking["indefinite"]
+        found = values.choice(text, at + (is_some or is_none), OBJECT) if is_indefinite else None
+        if found is None:
             continue
         end = found[1]
         if words[end] in asking["asking_be"] and any(
@@ -195,17 +198,23 @@ def _list_any(text: Words, vocabulary: Lexicon) -> None:
     words, asking = text.words, vocabulary.asking
     if text.distinct.isdisjoint((*asking["any_of_them"], *asking["no_thing"])):
         return  # as nearly always
-    be, none = vocabulary.forms_of_be, {*asking["no_thing"]}
-    for at in reversed([at for at in range(1, len(words)) if words[at] in asking["any_of_them"] or words[at] in none]):
+    be, none, values = vocabulary.forms_of_be, {*asking["no_thing"]}, vocabulary.values
+    starts = values.choice_starts | values.group_starts | {*asking["of_them"]}
+    some = [at for at in range(1, len(words) - 1) if words[at] in asking["any_of_them"] or words[at] in none]
+    for at in reversed(some):
+        is_other = words[at] in none and words[at + 1] not in starts
+        if is_other and not any(values.phrases.is_type(kind, text, at + 1) for kind in (DOOR, PLACE)):
+            continue  # `no longer than 5 min`
         _, first, _ = text.earlier(at)
         form = next((i for i in reversed(range(first, at)) if words[i] in vocabulary.before_conditions), -1)
         if form < 0 or "," in words[form:at]:
             continue
-        idiom = longest(vocabulary.trie, text, form, ReadingContext(vocabulary.values), lists=False)
-        is_idiom = idiom is not None and idiom.meaning.entry is None and idiom.last > at
-        found = None if is_idiom else _names_meant(text, vocabulary, at, first)
-        if found is None:  # also `if one of them is missing, A`
+        found = _names_meant(text, vocabulary, at, first)
+        if found is None:
             continue
+        idiom = longest(vocabulary.trie, text, form, ReadingContext(vocabulary.values), lists=False)
+        if idiom is not None and idiom.meaning.entry is None and idiom.last > at:
+            continue  # `if one of them is missing, A`
         kind, names, end = found
         last, is_subject = end_of_condition(text, vocabulary, end), words[end] in be
         stop = next(i for i in range(last, len(words) - 1) if words[i] in STOPS)

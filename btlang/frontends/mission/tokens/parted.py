@@ -105,33 +105,26 @@ def _part_stops(text: Words, vocabulary: Lexicon) -> None:
     verbs = vocabulary.journey_verbs.union(phrase.split()[0] for phrase in patrols)
     if form not in text.distinct or text.distinct.isdisjoint(verbs):
         return  # as often
-    for at in reversed([at for at in range(1, len(words)) if words[at] == form]):
-        last = at
-        while last > 0 and words[last - 1] in (END_OF_STATEMENT, ",", *vocabulary.roles["and"]):
+    joints, tree = {END_OF_STATEMENT, ",", *vocabulary.roles["and"]}, values.names_tree(PLACE)
+    for at in reversed([at for at in range(1, len(words)) if words[at] == form and words[at - 1] in joints]):
+        behind = end_of_condition(text, vocabulary, at + 1)
+        places = _places_again(text, vocabulary, at + 1, behind)
+        last = at if places else 0
+        while last > 0 and words[last - 1] in joints:
             last -= 1
         _, first, _ = text.earlier(last)
-        begin, names = listed_before(text, vocabulary, last, first)
-        tree = values.names_tree(PLACE)
-        are_places = len(names) > 1 and all(find(tree, [*name.lower().split(), END_OF_TEXT], 0) for name in names)
-        if last == at or not are_places or words[first] not in verbs:
+        if not places or words[first] not in verbs:
             continue
-        behind = end_of_condition(text, vocabulary, at + 1)
-        there = [i for i in range(at + 1, behind) if PLACE in values.pronouns.get(words[i], ())]
-        there = [i for i in there if words[i + 1] not in vocabulary.forms_of_be]  # but `if there is a cup`
-        room = [i for i in range(at + 1, behind) if words[i] in vocabulary.asking["located"] and i + 1 in text.articles]
-        room = [
-            i for i in room if values.phrases.is_type(PLACE, text, i + 1) or words[i + 1] in vocabulary.asking["stops"]
-        ]
+        begin, names = listed_before(text, vocabulary, last, first)
+        are_places = len(names) > 1 and all(find(tree, [*name.lower().split(), END_OF_TEXT], 0) for name in names)
         stop = next(i for i in range(behind, len(words) - 1) if words[i] in STOPS)
         if words[stop + 1] not in STOPS and is_otherwise(text, vocabulary, stop + 1):
             stop = next(i for i in range(stop + 1, len(words) - 1) if words[i] in STOPS)
-        if not (there or room) or any(word in STOPS for word in words[first:last]):
-            continue
-        if speaks_freely(words[at:stop], vocabulary):
+        if not are_places or speaks_freely(words[at:stop], vocabulary):
             continue
         then = next((i for i in range(behind, stop) if words[i] in vocabulary.roles["then"]), stop)
         asked = words[at : then - (words[then - 1] == ",")]
-        for i in room:
+        for i in (i for i in places if words[i] in vocabulary.asking["located"]):
             asked[i - at : i - at + 2] = vocabulary.asking["remaining"][-1:]
         rows = [
             [END_OF_STATEMENT, *words[first:begin], *name.lower().split(), END_OF_STATEMENT, *asked] for name in names
@@ -139,6 +132,19 @@ def _part_stops(text: Words, vocabulary: Lexicon) -> None:
         ends = then < stop
         text.drop(first, then - 1 + ends)
         text.replace(first, [*[word for row in rows for word in row][1:], *([END_OF_STATEMENT] if ends else ())])
+
+
+def _places_again(text: Words, vocabulary: Lexicon, first: int, last: int) -> list[int]:
+    """Where a condition says again where it is so: `there`, `in the room`; but not in `if there is a cup`."""
+    words, values, asking = text.words, vocabulary.values, vocabulary.asking
+    found = []
+    for at in range(first, last):
+        behind = words[at + 1]
+        is_there = PLACE in values.pronouns.get(words[at], ()) and behind not in vocabulary.forms_of_be
+        is_room = words[at] in asking["located"] and at + 1 in text.articles
+        if is_there or (is_room and (values.phrases.is_type(PLACE, text, at + 1) or behind in asking["stops"])):
+            found.append(at)
+    return found
 
 
 def _join_replies(text: Words, vocabulary: Lexicon) -> None:
