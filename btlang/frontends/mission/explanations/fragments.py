@@ -13,7 +13,7 @@ from btlang.text.source import Span
 from btlang.text.words import Words
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
-from btlang.vocabulary.pattern import Form, forms
+from btlang.vocabulary.pattern import Form, Part, forms
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.value_type import TEXT
 
@@ -111,24 +111,24 @@ def _gaps(vocabulary: Lexicon, start: str) -> list[_Gap]:
         for entries in vocabulary.entries.values()
         for entry in entries
         for form in _forms(entry, start, vocabulary)
-        for gap in _without_words(entry, form)
-        if _begins_with(gap, start)
+        for gap in _without_words(entry, form, start)
     ]
 
 
-def _without_words(entry: Entry, form: Form) -> Iterator[_Gap]:
-    """A phrase without some of its words side by side."""
-    for first in range(len(form)):
+def _without_words(entry: Entry, form: Form, start: str) -> Iterator[_Gap]:
+    """A phrase without some of its words side by side, where it begins with a word or slot then."""
+    for first in range(len(form) if _is(form[0], start, entry) else 1):
         for last in range(first + 1, min(first + _MOST_MISSING, len(form)) + 1):
             missing = [part for part in form[first:last] if isinstance(part, str)]
             if len(missing) < last - first or last - first == len(form):
                 break
-            yield _Gap(form[:first], tuple(missing), form[last:], entry)
+            if first or _is(form[last], start, entry):
+                yield _Gap(form[:first], tuple(missing), form[last:], entry)
 
 
-def _begins_with(gap: _Gap, start: str) -> bool:
-    part = gap.said[0]
-    return start == (part if isinstance(part, str) else f"{{{gap.entry.slot(part.name).type}}}")
+def _is(part: Part, start: str, entry: Entry) -> bool:
+    """Whether a part of a phrase is that word, or a slot of that type."""
+    return start == (part if isinstance(part, str) else f"{{{entry.slot(part.name).type}}}")
 
 
 def _forms(entry: Entry, start: str, vocabulary: Lexicon) -> Iterator[Form]:
