@@ -157,6 +157,8 @@ class Lexicon:
         self.forms_of_be = {**dict.fromkeys(self.asking["asking_be"], False)}
         """The forms of `be` with which something is said of a thing, and whether they deny it: `is`, `aren't`."""
         self.forms_of_be.update((form, True) for form in denied if " " not in form)
+        self.telling_to = tree_of((words, True) for words in self.asking["telling_to"])
+        """The words before what somebody tells the robot to do: `tells you to`."""
         self.try_again = tree_of((words, True) for words in ways(self.roles["try_again"], self.articles))
         """The words that begin to try something anew: `try again`."""
         self.any_day = tree_of((words, True) for words in self.asking["any_day"])

@@ -61,6 +61,8 @@ class Texts:
         self._joining = set().union(*self._joining_words)
         self.timing = {phrase.split()[0] for phrase in roles.get("at", ())}
         """The first words of times."""
+        self._pairs = {tuple(phrase.split()) for phrase in language["asking"].get("pairs", ())}
+        """Words that belong to the one before them: `look after`, `anything else`."""
         self._joints = words_of("nor") | words_of("and") | words_of("or")
         self._doubtful = {*_MARKS, *self.of_persons, *self._joining, *language.get("counts", ())}
 
@@ -141,6 +143,7 @@ class Texts:
         The words at `sure` places are neither.
         """
         doubtful = (at for at in range(first, last) if text.words[at] in self._doubtful and at not in sure)
+        doubtful = (at for at in doubtful if tuple(text.words[at - 1 : at + 1]) not in self._pairs)
         return next((at for at in doubtful if at == first or not self._belongs(text, at)), 0)
 
     def _begins_no_other(self, text: Words, at: int) -> bool:

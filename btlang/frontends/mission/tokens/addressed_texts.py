@@ -140,6 +140,7 @@ class AddressedTexts(Hearers):
         helps = is_thing and text.words[value.first] in asking["helping"]
         end = value.first + 1 if helps else texts.end_of_clause(text, value.first) or value.last
         end = (self._end_before_command(value.first, end, is_told=False) if is_thing else 0) or end
+        end = next((at for at in range(value.first, end) if self._leaves_out_days(at + 1)), end)
         heard = self._to_hearer(command, value.first, end, is_asked=True)
         clear = self._clear(heard, value.first, end)
         clear |= {place for place in range(value.first, end) if text.words[place - 1] in asking["coming"]}

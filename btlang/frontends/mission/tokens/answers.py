@@ -181,7 +181,7 @@ class Answers(AddressedTexts):
         known = (*asking["answers"], *asking["silence"], *asking["any_answer"])
         if value.last != end or words[first][0] == '"' or words[first] in known or self._phrase(end) is not None:
             return end
-        while not (self._is_end(end) or words[end] == "," or words[end] in self._vocabulary.joining):
+        while words[end][0].isalpha() and words[end] not in self._vocabulary.joining:
             end += 1
         odd = any(word[0] == '"' or word in self._vocabulary.values.texts.of_persons for word in words[first:end])
         if end == match.last or odd or any(number([word]) for word in words[first:end]):

@@ -105,6 +105,7 @@ def _part_stops(text: Words, vocabulary: Lexicon) -> None:
     verbs = vocabulary.journey_verbs.union(phrase.split()[0] for phrase in patrols)
     if form not in text.distinct or text.distinct.isdisjoint(verbs):
         return  # as often
+    prepositions = {word for phrases in values.role_words.introducing.values() for phrase in phrases for word in phrase}
     joints, tree = {END_OF_STATEMENT, ",", *vocabulary.roles["and"]}, values.names_tree(PLACE)
     for at in reversed([at for at in range(1, len(words)) if words[at] == form and words[at - 1] in joints]):
         behind = end_of_condition(text, vocabulary, at + 1)
@@ -116,6 +117,8 @@ def _part_stops(text: Words, vocabulary: Lexicon) -> None:
         if not places or words[first] not in verbs:
             continue
         begin, names = listed_before(text, vocabulary, last, first)
+        if not set(words[first + 1 : begin]) <= prepositions:
+            continue  # `look for the cup in the lab and the hall`
         are_places = len(names) > 1 and all(find(tree, [*name.lower().split(), END_OF_TEXT], 0) for name in names)
         stop = next(i for i in range(behind, len(words) - 1) if words[i] in STOPS)
         if words[stop + 1] not in STOPS and is_otherwise(text, vocabulary, stop + 1):

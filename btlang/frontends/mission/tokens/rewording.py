@@ -31,6 +31,7 @@ def reworded(text: Words, vocabulary: Lexicon) -> list[Diagnostic]:
     _list_days(text, vocabulary)
     _drop_again(text, vocabulary)
     _drop_back(text, vocabulary)
+    _say_words(text, vocabulary)
     _say_again(text, vocabulary)
     _count_again(text, vocabulary)
     _tell_again(text, vocabulary)
@@ -167,6 +168,23 @@ def _drop_back(text: Words, vocabulary: Lexicon) -> None:
             text.drop(at, at + 1)
 
 
+def _say_words(text: Words, vocabulary: Lexicon) -> None:
+    """Put what is said in quotes: `until Bob tells you to stop` as `until Bob says "stop"`."""
+    words, says = text.words, vocabulary.asking["says"]
+    if text.distinct.isdisjoint(vocabulary.telling_to) or not says:
+        return  # as nearly always
+    for at in reversed([at for at in range(1, len(words) - 3) if words[at] in vocabulary.telling_to]):
+        found = find(vocabulary.telling_to, words, at)
+        _, first, _ = text.earlier(at)
+        asks = any(word in vocabulary.before_conditions for word in words[first:at])
+        if found is not None and asks:
+            last = next(i for i in range(found[1], len(words)) if words[i] in _ENDING or words[i] in vocabulary.joining)
+            said = " ".join(words[found[1] : last])
+            if said:
+                text.drop(at + 1, last)
+                text.replace(at, [says[0], f'"{said}'])
+
+
 def _say_again(text: Words, vocabulary: Lexicon) -> None:
     """Put what was said in quotes for `it` behind `say`: `Say "hi". Go to the lab and say it again`."""
     words, it, entry = text.words, vocabulary.asking["said_before"], vocabulary.entry("Say")
@@ -239,6 +257,8 @@ def _list_ranges(text: Words, vocabulary: Lexicon) -> None:
     for at in reversed(range(len(words) - 3)):
         if words[at + 2] not in joints or not words[at + 1].isdecimal():
             continue
+        if words[at + 3] == words[at] and words[at + 4].isdecimal():  # `aisle 1 to aisle 4`
+            text.drop(at + 3, at + 4)
         numbers = next((found for kind in WORLD if (found := heads.between(kind, words, at, words[at + 3]))), [])
         if numbers:
             listed = [word for number in numbers for word in (",", number)]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from functools import cached_property
 from itertools import dropwhile
 
 from btlang.frontends.mission.token import (
@@ -12,6 +13,7 @@ from btlang.frontends.mission.token import (
     STATEMENT_ENDS,
     Called,
     Listed,
+    Token,
     arguments_of,
     run_start,
     statement_start,
@@ -66,10 +68,35 @@ class ToldWords(SentenceReader):
             return 0 if is_told else at - (text.words[at - 1] == ",")
         context.latest = dict.fromkeys(context.types, "")  # `and bring him the cup`: who is asked isn't known yet
         for at in range(first + 1, last - 1):
+            if text.words[at] == "," and self._leaves_out_days(at + 1):
+                return at
             if text.words[at] in joints and self._begins_command(at + 1, context):
+                if self._is_done_to(first, at + 1):
+                    return at
                 goes_on = not texts.is_whole(text, first, at) if is_told else texts.may_be_joined(text, first, at)
                 return 0 if goes_on else at - (text.words[at - 1] == ",")
         return 0
+
+    def _is_done_to(self, first: int, at: int) -> bool:
+        """Whether a command is for the one of whom a clause is: `ask if he would like tea and take him to the lab`."""
+        words, pronouns, owners = self._text.words, self._context.pronouns, self._vocabulary.values.texts
+        is_person = PERSON in pronouns.get(words[first], ()) and PERSON in pronouns.get(words[at + 1], ())
+        behind = words[at + 2]
+        owns = owners.is_owned(self._text, at + 1) and behind[0].isalpha() and behind not in self._prepositions
+        return is_person and not owns
+
+    @cached_property
+    def _prepositions(self) -> frozenset[str]:
+        """The first words of what introduces roles."""
+        introducing = self._vocabulary.values.role_words.introducing.values()
+        return frozenset(phrase[0] for phrases in introducing for phrase in phrases)
+
+    def _leaves_out_days(self, at: int) -> bool:
+        """Whether words leave out days: `except on Sundays`."""
+        words, values = self._text.words, self._vocabulary.values
+        end = values.exception(self._text, at)
+        end += bool(end) and words[end] in self._vocabulary.firsts["on_days"]
+        return bool(end) and find(values.names_tree("days"), words, end) is not None
 
     def _begins_command(self, at: int, context: ReadingContext) -> bool:
         """Whether a command begins at a word, or a time at which it is done."""
@@ -93,7 +120,10 @@ class ToldWords(SentenceReader):
         tokens = self._tokens
         failed = next((at for at in reversed(range(len(tokens))) if tokens[at].kind in (*_LINE_ENDS, "or")), 0)
         is_plain = failed > 0 and (tokens[failed - 1].kind, tokens[failed].kind) == ("stop", "otherwise")
-        is_plain = is_plain and all(each.kind not in FORMS for each in tokens[statement_start(tokens, failed) : failed])
+        first = statement_start(tokens, failed)
+        if is_plain and [token.kind for token in tokens[first:failed]] == ["check", "condition", "stop"]:
+            return self._condition_said(tokens[first + 1], tokens[failed:], is_denied=True)
+        is_plain = is_plain and all(each.kind not in FORMS for each in tokens[first:failed])
         if tokens and (tokens[failed].value == FAILS or is_plain):  # `pick up the cup. Otherwise tell Bob`
             works = (at for at in reversed(range(failed)) if tokens[at].kind == WORKS)
             is_other = tokens[failed].kind == "otherwise" and not is_plain
@@ -112,26 +142,37 @@ class ToldWords(SentenceReader):
             return ""
         if is_other or not isinstance(asked[0].value, Called):
             return ""
-        text, pronouns = self._text, self._vocabulary.values.pronoun_words
-        types = {slot.name: slot.type for slot in asked[0].value.entry.slots}
-        named = [(types[name], value) for name, value in asked[0].value.arguments if types[name] in WORLD]
-        if asked[0].value.entry.id in ABOUT_ANSWERS:  # `if she says yes, tell Bob`: of who was asked
-            named = [(PERSON, person) for person in [self._context.latest.get(PERSON, "{")] if person[:1] != "{"]
-            if not named:
-                return self._replied(form)
+        if asked[0].value.entry.id in ABOUT_ANSWERS and self._context.latest.get(PERSON, "{")[:1] == "{":
+            return self._replied(form)
+        return self._condition_said(asked[0], tokens[form:])
+
+    def _condition_said(self, asked: Token, rest: Sequence[Token], is_denied: bool = False) -> str:
+        """What a condition says, with names for pronouns; what was so where the rest of its statement ends that."""
+        if not isinstance(asked.value, Called):
+            return ""
+        text, pronouns, vocabulary = self._text, self._vocabulary.values.pronoun_words, self._vocabulary
+        types = {slot.name: slot.type for slot in asked.value.entry.slots}
+        named = [(types[name], value) for name, value in asked.value.arguments if types[name] in WORLD]
+        if asked.value.entry.id in ABOUT_ANSWERS:  # `if she says yes, tell Bob`: of who was asked
+            named = [(PERSON, self._context.latest[PERSON])]
         words: list[str] = []
         things = [value for kind, value in named if kind in (OBJECT, DOOR)]
-        done = (token for token in tokens[form:] if token.kind == "command")
+        done = (token for token in rest if token.kind == "command")
         is_over = any(is_about(token, {thing}) for token in done for thing in things)
         happened = self._vocabulary.happened if is_over else {}
-        for at in words_of(text, asked[0]):
+        denied = vocabulary.negations if is_denied else {}
+        for at in words_of(text, asked):
             pronoun = find(pronouns, text.words, at)
             kinds = self._context.pronouns[pronoun[0]] if pronoun is not None else ()
             meant = [value for kind, value in named if kind in kinds] or [value for _, value in named[:1] if kinds]
+            if pronoun is not None and not named and pronoun[0] in vocabulary.values.ones:
+                pronoun = None  # `there are more than one`
             if pronoun is not None and PLACE not in kinds and (len(meant) != 1 or meant[0][:1] == "{"):
                 return ""
             is_there = PLACE in kinds  # `if she isn't there, tell me`
-            words.append(meant[0] if meant and not is_there else happened.get(text.words[at]) or self._written(at))
+            word = next((form for form in denied.get(text.words[at], ()) if " " not in form), text.words[at])
+            word = happened.get(word) or (self._written(at) if word == text.words[at] else word)
+            words.append(meant[0] if meant and not is_there else word)
         said, of_robot = " ".join(words), self._vocabulary.of_robot
         if of_robot:
             pattern = "|".join(map(re.escape, sorted(of_robot, key=len, reverse=True)))
