@@ -218,6 +218,7 @@ def take_away_what_is_missed(code: str, patch: pytest.MonkeyPatch) -> None:
         patch.setattr("btlang.vocabulary.listing.overview", _buggy)
     patch.setitem(sys.modules, "matplotlib", None)  # BT081
     patch.setitem(sys.modules, "mcp", None)  # BT082
+    patch.setitem(sys.modules, "pygls", None)
     if code == "BT085":
         patch.setitem(sys.modules, "msgpack", None)
     if code == "BT087":

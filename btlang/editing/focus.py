@@ -8,10 +8,17 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError
+from btlang.editing.words import RobotWords
+from btlang.frontends.mission.reader import read_mission
 from btlang.frontends.mission.tokens.lexer import Lexer
+from btlang.passes import run_passes
+from btlang.passes.compilation import Compilation
+from btlang.support.gc_pause import gc_paused
 from btlang.support.record import Record
+from btlang.text.source import Source
 
 _BEFORE, _BEHIND = 3, 1  # statements around those that changed, to which pronouns and `otherwise` refer
 _FIRST = re.compile(r"^([ \t]*)[^\s#]", re.MULTILINE)
@@ -46,6 +53,29 @@ def focus_on(text: str, start: int, end: int, decisive: Iterable[int]) -> Focus:
     parts.append(_blank(text[at:]))
     size = sum(stop - begin for begin, stop in ranges)
     return Focus("".join(parts), bounds[max(first, 0)], bounds[max(last, 0) + 1], size)
+
+
+def provisional_problems(source: Source, words: RobotWords) -> Sequence[Diagnostic]:
+    """Return what is wrong with a part of a text, without corrections, which take long to find. Raises MissionError for
+    words that can't be used.
+    """
+    with gc_paused:
+        vocabulary = words.vocabulary(source)
+        try:
+            read = read_mission(source, vocabulary)
+            compilation = Compilation(vocabulary, read.mission, needs_command=False, warnings=read.warnings)
+            return run_passes(compilation).warnings
+        except MissionError as error:
+            return error.diagnostics
+
+
+def without_statements(text: str, places: Iterable[int]) -> str:
+    """Blank the statements that have one of these characters."""
+    begins = _statement_starts(text)
+    bounds = [0, *begins[1:], len(text)]
+    blank = {max(bisect_right(begins, at) - 1, 0) for at in places}
+    parts = (text[bounds[number] : bounds[number + 1]] for number in range(len(bounds) - 1))
+    return "".join(_blank(part) if number in blank else part for number, part in enumerate(parts))
 
 
 def decisive_places(lexer: Lexer) -> list[int]:

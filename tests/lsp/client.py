@@ -1,0 +1,122 @@
+"""A client of `btc lsp` over standard input and output, which checks every message against the protocol's types."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import sys
+from collections.abc import AsyncIterator, Awaitable, Callable, Coroutine
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import Any
+
+from lsprotocol import types
+from pygls.lsp.client import LanguageClient
+from pygls.protocol import LanguageServerProtocol, default_converter
+
+ROOT = Path(__file__).parent.parent.parent
+PATIENCE = 60.0  # seconds, on a busy machine
+
+
+class CheckedProtocol(LanguageServerProtocol):
+    """Messages have to be what the protocol's types say: nothing is left over that these don't know."""
+
+    def structure_message(self, data: dict[str, Any]) -> Any:
+        """The message as an object of the protocol, which is the same message again."""
+        if "jsonrpc" not in data:
+            return data
+        message = super().structure_message(data)
+        again = json.loads(json.dumps(message, default=self._serialize_message))
+        wrong: list[Any] = self._server.wrong  # type: ignore[attr-defined]
+        if _without_none(again) != _without_none(data):
+            wrong.append((data, again))
+        return message
+
+
+def _without_none(part: Any) -> Any:
+    if isinstance(part, dict):
+        return {key: _without_none(value) for key, value in part.items() if value is not None}
+    return [_without_none(each) for each in part] if isinstance(part, list) else part
+
+
+class Client(LanguageClient):
+    """A client with the messages that the server publishes, by URI, and what it writes to its log."""
+
+    def __init__(self) -> None:
+        super().__init__("tests", "1", protocol_cls=CheckedProtocol, converter_factory=default_converter)
+        self.published: dict[str, list[types.PublishDiagnosticsParams]] = {}
+        self.log: list[str] = []
+        self.wrong: list[Any] = []
+        self._news = asyncio.Event()
+        self.feature(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS)(lambda params: self._publish(params))
+        self.feature(types.WINDOW_LOG_MESSAGE)(lambda params: self.log.append(params.message))
+        self.feature(types.WINDOW_SHOW_MESSAGE)(lambda params: self.log.append(params.message))
+
+    def _publish(self, params: types.PublishDiagnosticsParams) -> None:
+        self.published.setdefault(params.uri, []).append(params)
+        self._news.set()
+
+    def open(self, uri: str, text: str, language: str = "btlang") -> str:
+        """Opens a document."""
+        self.text_document_did_open(types.DidOpenTextDocumentParams(types.TextDocumentItem(uri, language, 1, text)))
+        return uri
+
+    def change(self, uri: str, version: int, *changes: tuple[tuple[int, int, int, int], str] | str) -> None:
+        """Changes ranges, or the whole text, one after the other."""
+        made: list[types.TextDocumentContentChangeEvent] = []
+        for change in changes:
+            if isinstance(change, str):
+                made.append(types.TextDocumentContentChangeWholeDocument(change))
+            else:
+                (line, column, end_line, end_column), text = change
+                place = types.Range(types.Position(line, column), types.Position(end_line, end_column))
+                made.append(types.TextDocumentContentChangePartial(place, text))
+        item = types.VersionedTextDocumentIdentifier(version, uri)
+        self.text_document_did_change(types.DidChangeTextDocumentParams(item, made))
+
+    async def messages(self, uri: str, version: int = 1, count: int = 1) -> list[types.Diagnostic]:
+        """The messages about a version of a document, the latest of so many that are published."""
+        async with asyncio.timeout(PATIENCE):
+            while True:
+                found = [each for each in self.published.get(uri, ()) if each.version == version]
+                if len(found) >= count:
+                    return list(found[-1].diagnostics)
+                self._news.clear()
+                await self._news.wait()
+
+    async def settled(self, uri: str) -> list[types.Diagnostic]:
+        """The messages about a document once all of it was read: the outline waits for that."""
+        await self.text_document_document_symbol_async(types.DocumentSymbolParams(types.TextDocumentIdentifier(uri)))
+        return list(self.published[uri][-1].diagnostics)
+
+    async def ask(self, ask: Callable[[Any], Awaitable[Any]], params: Any) -> Any:
+        """What a request is answered."""
+        async with asyncio.timeout(PATIENCE):
+            return await ask(params)
+
+
+@asynccontextmanager
+async def client(*options: str, encodings: list[str] | None = None) -> AsyncIterator[Client]:
+    """A client of a server of its own, which ends cleanly, wrote nothing to standard error, and sent what it may."""
+    made = Client()
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    await made.start_io(sys.executable, "-m", "btlang", "lsp", *options, env=environment)
+    general = types.GeneralClientCapabilities(position_encodings=encodings)
+    watching = types.WorkspaceClientCapabilities()
+    capabilities = types.ClientCapabilities(general=general, workspace=watching)
+    async with asyncio.timeout(PATIENCE):
+        made.started = await made.initialize_async(types.InitializeParams(capabilities=capabilities))  # type: ignore[attr-defined]
+    made.initialized(types.InitializedParams())
+    yield made
+    async with asyncio.timeout(PATIENCE):
+        await made.shutdown_async(None)
+        made.exit(None)
+        await made.stop()  # type: ignore[no-untyped-call]
+    assert made.wrong == []
+    assert made.log == []
+
+
+def run(test: Coroutine[Any, Any, None]) -> None:
+    """Runs a test."""
+    asyncio.run(test)
