@@ -6,6 +6,7 @@ from collections.abc import Awaitable, Callable
 from typing import Any
 
 from lsprotocol import types
+from pygls.exceptions import FeatureRequestError
 from pygls.lsp.server import LanguageServer
 
 from btlang.diagnostics.diagnostic import MissionError
@@ -26,8 +27,9 @@ class Server(LanguageServer):
     documents: OpenDocuments
 
     def report_server_error(self, error: Exception, source: type[Exception]) -> None:
-        """Write what goes wrong beside requests to the log of the client."""
-        self._write_log(str(error))
+        """Write what goes wrong beside requests, which are answered, to the log of the client."""
+        if source is not FeatureRequestError:
+            self._write_log(str(error))
 
     def shutdown(self) -> None:
         """End, with the process that reads documents."""

@@ -166,11 +166,11 @@ def _tests_beside(path: str) -> list[str]:
 
 def _analyse_tests(source: Source, _: Snapshot) -> dict[str, Any]:
     named = find_tests(source)
+    ends = [*(span.start for _, span in named[1:]), len(source.text)]
     tests = [{"name": name, "start": span.start, "end": span.end, "file": ""} for name, span in named]
-    starts = [span.start for _, span in named[1:]]
     parts = [
         {**test, "of": (test["start"], len(source.text[:end].rstrip())), "kind": "rule"}
-        for test, end in zip(tests, [*starts, len(source.text)], strict=True)
+        for test, end in zip(tests, ends, strict=False)  # of a file without tests, the end alone
     ]
     return {"tests": tests, "outline": parts}
 

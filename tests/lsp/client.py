@@ -6,7 +6,7 @@ import asyncio
 import json
 import os
 import sys
-from collections.abc import AsyncIterator, Awaitable, Callable, Coroutine
+from collections.abc import AsyncIterator, Awaitable, Callable, Coroutine, Iterator, Sequence
 from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
@@ -14,6 +14,8 @@ from typing import Any
 from lsprotocol import types
 from pygls.lsp.client import LanguageClient
 from pygls.protocol import LanguageServerProtocol, default_converter
+
+from tests.lsp.texts import changed, position_of, unit_of
 
 ROOT = Path(__file__).parent.parent.parent
 PATIENCE = 60.0  # seconds, on a busy machine
@@ -48,6 +50,7 @@ class Client(LanguageClient):
         self.published: dict[str, list[types.PublishDiagnosticsParams]] = {}
         self.log: list[str] = []
         self.wrong: list[Any] = []
+        self.started: Any = None
         self._news = asyncio.Event()
         self.feature(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS)(lambda params: self._publish(params))
         self.feature(types.WINDOW_LOG_MESSAGE)(lambda params: self.log.append(params.message))
@@ -75,7 +78,7 @@ class Client(LanguageClient):
         item = types.VersionedTextDocumentIdentifier(version, uri)
         self.text_document_did_change(types.DidChangeTextDocumentParams(item, made))
 
-    async def messages(self, uri: str, version: int = 1, count: int = 1) -> list[types.Diagnostic]:
+    async def messages(self, uri: str, version: int | None = 1, count: int = 1) -> list[types.Diagnostic]:
         """The messages about a version of a document, the latest of so many that are published."""
         async with asyncio.timeout(PATIENCE):
             while True:
@@ -95,6 +98,45 @@ class Client(LanguageClient):
         async with asyncio.timeout(PATIENCE):
             return await ask(params)
 
+    async def actions(self, uri: str, range: types.Range) -> list[types.CodeAction]:
+        """The corrections that are offered in a range."""
+        context = types.CodeActionContext([])
+        params = types.CodeActionParams(types.TextDocumentIdentifier(uri), range, context)
+        return list(await self.ask(self.text_document_code_action_async, params))
+
+    def position(self, text: str, at: int) -> tuple[int, int]:
+        """The position of a character."""
+        return position_of(text, at)
+
+    def apply(self, text: str, edit: types.WorkspaceEdit | None) -> str:
+        """The text with an edit of its document alone."""
+        assert edit is not None
+        assert edit.changes is not None
+        [edits] = edit.changes.values()
+        for each in sorted(edits, key=lambda each: (each.range.start.line, each.range.start.character), reverse=True):
+            text = changed(text, _numbers(each.range), each.new_text)
+        return text
+
+    def colours(self, text: str, data: Sequence[int]) -> Iterator[tuple[str, str]]:
+        """The words of a text with the types of their tokens."""
+        provider: Any = self.started.capabilities.semantic_tokens_provider
+        line = column = 0
+        for down, right, length, kind, _ in zip(*(iter(data),) * 5, strict=True):
+            line, column = line + down, right if down else column + right
+            words = text_at(text, types.Range(types.Position(line, column), types.Position(line, column + length)))
+            yield words, provider.legend.token_types[kind]
+
+
+def text_at(text: str, range: types.Range) -> str:
+    """The characters of a range."""
+    units = text.encode("utf-16-le")
+    start, end = unit_of(text, *_numbers(range)[:2]), unit_of(text, *_numbers(range)[2:])
+    return units[2 * start : 2 * end].decode("utf-16-le")
+
+
+def _numbers(range: types.Range) -> tuple[int, int, int, int]:
+    return range.start.line, range.start.character, range.end.line, range.end.character
+
 
 @asynccontextmanager
 async def client(*options: str, encodings: list[str] | None = None) -> AsyncIterator[Client]:
@@ -106,7 +148,7 @@ async def client(*options: str, encodings: list[str] | None = None) -> AsyncIter
     watching = types.WorkspaceClientCapabilities()
     capabilities = types.ClientCapabilities(general=general, workspace=watching)
     async with asyncio.timeout(PATIENCE):
-        made.started = await made.initialize_async(types.InitializeParams(capabilities=capabilities))  # type: ignore[attr-defined]
+        made.started = await made.initialize_async(types.InitializeParams(capabilities=capabilities))
     made.initialized(types.InitializedParams())
     yield made
     async with asyncio.timeout(PATIENCE):
