@@ -45,8 +45,9 @@ def _without_none(part: Any) -> Any:
 class Client(LanguageClient):
     """A client with the messages that the server publishes, by URI, and what it writes to its log."""
 
-    def __init__(self) -> None:
-        super().__init__("tests", "1", protocol_cls=CheckedProtocol, converter_factory=default_converter)
+    def __init__(self, is_checked: bool) -> None:
+        protocol = CheckedProtocol if is_checked else LanguageServerProtocol
+        super().__init__("tests", "1", protocol_cls=protocol, converter_factory=default_converter)
         self.published: dict[str, list[types.PublishDiagnosticsParams]] = {}
         self.log: list[str] = []
         self.wrong: list[Any] = []
@@ -139,14 +140,12 @@ def _numbers(range: types.Range) -> tuple[int, int, int, int]:
 
 
 @asynccontextmanager
-async def client(*options: str, encodings: list[str] | None = None) -> AsyncIterator[Client]:
+async def client(*options: str, is_checked: bool = True) -> AsyncIterator[Client]:
     """A client of a server of its own, which ends cleanly, wrote nothing to standard error, and sent what it may."""
-    made = Client()
+    made = Client(is_checked)
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     await made.start_io(sys.executable, "-m", "btlang", "lsp", *options, env=environment)
-    general = types.GeneralClientCapabilities(position_encodings=encodings)
-    watching = types.WorkspaceClientCapabilities()
-    capabilities = types.ClientCapabilities(general=general, workspace=watching)
+    capabilities = types.ClientCapabilities()
     async with asyncio.timeout(PATIENCE):
         made.started = await made.initialize_async(types.InitializeParams(capabilities=capabilities))
     made.initialized(types.InitializedParams())

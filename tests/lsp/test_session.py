@@ -28,8 +28,8 @@ go to Bob, then wave at him
 """
 PIECES = (
     "wave", " then ", "nod\n", "go to the lab", "go to the labb ", "\n", "\r\n", "\r", "    ", ",", '"', "(", ")", "é",
-    "😀", "\u2028", "\x0c", "# ", "patrol", "patrol means nod\n", "the attic is at (1, 1)\n", "if bumped, ", "otherwise:\n",
-    ":", "him", "twice", " and ", " or ", "\ufeff", "set count to 3\n", "{count}", "a",
+    "😀", "\u2028", "\x0c", "# ", "patrol", "patrol means nod\n", "the attic is at (1, 1)\n", "if bumped, ",
+    "otherwise:\n", ":", "him", "twice", " and ", " or ", "\ufeff", "set count to 3\n", "{count}", "a",
 )  # fmt: skip
 ROUND = 40  # edits between two comparisons
 
