@@ -7,7 +7,7 @@ so that what is offered here and what is accepted there cannot differ.
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
 
 from btlang.frontends.mission.completion.node_completion import node_options
@@ -83,6 +83,7 @@ class Completer:
         bracket = max((i for i, token in enumerate(self._lexer.tokens) if token.kind == "open"), default=0)
         self._tokens = self._lexer.tokens[:bracket]
         self._accepted: dict[tuple[int, str], bool] = {}
+        self._roles: dict[int, tuple[str, ...]] = {}
 
     def found(self) -> list[Completion]:
         """Sorted: phrases under way, then what may begin here; each once."""
@@ -170,7 +171,7 @@ class Completer:
 
     def _slots(self, slots: Iterable[tuple[str, int, TrieNode]], at: int, start: str) -> Iterator[Completion]:
         for kind, first, child in slots:
-            if any(self._may_stand(at, meaning.role) for meaning in meanings(child)):
+            if any(self._may_stand(at, role) for role in self._roles_behind(child)):
                 written = self._words.words[first : self._last]
                 for known in (self._context.known or {}).values() if not written and not start else ():
                     if not known.words:  # of any type
@@ -185,6 +186,13 @@ class Completer:
                     more = "" if END in child else " "
                     yield Completion(" ".join(way) + more, self._start, "name", "defined in this mission")
         yield from self._slots(names.slots, at, start)
+
+    def _roles_behind(self, node: TrieNode) -> Sequence[str]:
+        """The roles of the phrases through a node, each once: thousands have the same few."""
+        found = self._roles.get(id(node))
+        if found is None:
+            found = self._roles[id(node)] = tuple(dict.fromkeys(meaning.role for meaning in meanings(node)))
+        return found
 
     def _kind_of_name(self, meaning: Meaning) -> str:
         if meaning.role != "name" or meaning.entry is None:
