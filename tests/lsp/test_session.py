@@ -76,7 +76,7 @@ def test_a_session_of_edits_ends_as_a_fresh_text() -> None:
                     await editor.ask(editor.text_document_completion_async, asked)
                 if number % ROUND == ROUND - 1:
                     fresh = editor.open("file:///nowhere/fresh.txt", text)
-                    assert await shown(editor, uri) == await shown(editor, fresh), (number, text)
+                    assert await shown(editor, uri) == await shown(editor, fresh), (number, text, editor.log)
                     assert editor.published[uri][-1].version == number + 2
 
     run(check())
