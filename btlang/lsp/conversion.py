@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
+from itertools import islice
 from typing import Any
 
 from lsprotocol import types
@@ -40,6 +41,7 @@ _COMPLETIONS = {
     "value": types.CompletionItemKind.Value,
     "connective": types.CompletionItemKind.Keyword,
 }
+_MOST = 60  # completions; clients ask again at each key
 
 
 def diagnostics(document: Document) -> list[types.Diagnostic]:
@@ -124,7 +126,7 @@ def completion_list(document: Document, found: Iterable[dict[str, Any]], at: int
             filter_text=document.text[each["start"] : at] if each["spelling"] else each["text"],
             text_edit=types.TextEdit(document.positions.range(each["start"], at), each["text"]),
         )
-        for number, each in enumerate(found)
+        for number, each in enumerate(islice(found, _MOST))
     ]
     return types.CompletionList(is_incomplete=True, items=items)
 

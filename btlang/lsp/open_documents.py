@@ -24,7 +24,7 @@ from btlang.testing.statements import OPENERS
 
 T = TypeVar("T")
 
-_QUICK = 0.01  # seconds behind a key until what is around it is read: several changes may come at once
+_QUICK = 0.003  # seconds behind a key until what is around it is read: several changes may come at once
 _REST = 0.3  # seconds without a key until all of a text is read
 _PATIENCE = 20.0  # seconds for one text
 _MOST_QUICK = 6_000  # characters that are read at each key

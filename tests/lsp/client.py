@@ -61,6 +61,12 @@ class Client(LanguageClient):
         self.published.setdefault(params.uri, []).append(params)
         self._news.set()
 
+    @property
+    def process_id(self) -> int:
+        """That of the server."""
+        assert self._server is not None
+        return self._server.pid
+
     def open(self, uri: str, text: str, language: str = "btlang") -> str:
         """Opens a document."""
         self.text_document_did_open(types.DidOpenTextDocumentParams(types.TextDocumentItem(uri, language, 1, text)))

@@ -9,6 +9,7 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
+from itertools import chain
 
 from btlang.frontends.mission.completion.node_completion import node_options
 from btlang.frontends.mission.completion.value_completion import value_options
@@ -161,8 +162,8 @@ class Completer:
 
     def _phrase(self, words: str, node: TrieNode, at: int) -> Iterator[Completion]:
         ends = [node[END]] if END in node else []
-        slotted = [meaning for _, _, child in node.get(SLOTS, ()) for meaning in meanings(child)]
-        for meaning in (*ends, *slotted):
+        slotted = (meaning for _, _, child in node.get(SLOTS, ()) for meaning in meanings(child))
+        for meaning in chain(ends, slotted):
             if self._may_stand(at, meaning.role):
                 more = "" if ends and meaning is ends[0] and meaning.role not in (*SEPARATORS, ROLE) else " "
                 kind, about = self._about(meaning)
