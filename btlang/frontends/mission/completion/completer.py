@@ -6,7 +6,7 @@ so that what is offered here and what is accepted there cannot differ.
 
 from __future__ import annotations
 
-from bisect import bisect_left
+from bisect import bisect_left, bisect_right
 from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
 from itertools import chain
@@ -31,6 +31,7 @@ from btlang.vocabulary.trie import TrieNode
 from btlang.vocabulary.word_tree import END, SLOTS
 
 _MOST_TOKENS_BACK = 6  # a phrase that is being written may look like that many shorter ones
+_MOST_STATEMENTS_BACK = 12  # what may follow doesn't depend on more, and each try groups them again
 _LONG_ENOUGH = 3  # letters; a shorter word is no misspelling yet
 _MOST_CORRECTIONS = 3
 _ALIKE = {
@@ -83,6 +84,7 @@ class Completer:
         self._last = len(self._words.words) - 3  # the bracket; line end and text end follow
         bracket = max((i for i, token in enumerate(self._lexer.tokens) if token.kind == "open"), default=0)
         self._tokens = self._lexer.tokens[:bracket]
+        self._begins = list(_begins(self._tokens))
         self._accepted: dict[tuple[int, str], bool] = {}
         self._roles: dict[int, tuple[str, ...]] = {}
 
@@ -244,7 +246,8 @@ class Completer:
 
     def _failures(self, at: int, *kinds: str) -> list[int]:
         end = self._tokens[at].start if at < len(self._tokens) else self._start
-        before = self._tokens[:at]
+        begins = self._begins[: bisect_right(self._begins, at)]
+        before = self._tokens[begins[-_MOST_STATEMENTS_BACK] if len(begins) > _MOST_STATEMENTS_BACK else 0 : at]
         if kinds[0] in GOES_ON:
             go_on(before)
         tokens = [*before, *(Token(kind, end, end, "1") for kind in kinds)]
@@ -255,6 +258,15 @@ class Completer:
         if meaning.entry is not None:
             return ("condition" if meaning.entry.sort == "condition" else "command"), meaning.entry.help
         return "connective", self._vocabulary.about[meaning.role].help
+
+
+def _begins(tokens: Iterable[Token]) -> Iterator[int]:
+    """The tokens at which lines begin outside of blocks and brackets."""
+    depth = 0
+    for number, token in enumerate(tokens):
+        depth += (token.kind in ("indent", "open")) - (token.kind in ("dedent", "close"))
+        if token.kind == "newline" and depth == 0:
+            yield number + 1
 
 
 def _last_word(text: str) -> str:
