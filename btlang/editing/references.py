@@ -79,6 +79,14 @@ def references(read: TextReading) -> list[Reference]:
     return found
 
 
+def quoted_files(source: Source) -> Iterator[Reference]:
+    """Yield the texts in quotes that are paths of files, in any notation. A text without a file names none."""
+    for quoted in _QUOTED.finditer(source.text) if source.roots else ():
+        where, real = included_path(quoted[1], source)
+        if os.path.isfile(real):
+            yield Reference(quoted.start(1), quoted.end(1), Span(Source("", where), 0, 0))
+
+
 def _files(read: TextReading) -> Iterator[Reference]:
     """Yield the files that the text names: missions that it includes, its world, its robot and its keyword files."""
     source, lexer = read.source, read.lexer

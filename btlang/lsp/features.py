@@ -83,9 +83,8 @@ async def _complete(
 
 
 async def _hover(documents: OpenDocuments, document: Document, params: types.HoverParams) -> types.Hover | None:
-    text = document.text
-    found = await documents.do(document, hovered, document.positions.offset(params.position))
-    return None if found is None or document.text != text else conversion.hover(document, found)
+    found = await documents.ask(document, hovered, document.positions.offset(params.position))
+    return None if found is None else conversion.hover(document, found)
 
 
 async def _code_actions(_: OpenDocuments, document: Document, params: types.CodeActionParams) -> list[types.CodeAction]:
@@ -143,20 +142,20 @@ async def _refer(documents: OpenDocuments, document: Document, params: types.Ref
 async def _prepare_rename(
     documents: OpenDocuments, document: Document, params: types.PrepareRenameParams
 ) -> types.PrepareRenamePlaceholder:
-    found = await documents.do(document, renamed, document.positions.offset(params.position))
+    found = await documents.ask(document, renamed, document.positions.offset(params.position))
     return types.PrepareRenamePlaceholder(document.positions.range(found["start"], found["end"]), found["words"])
 
 
 async def _rename(documents: OpenDocuments, document: Document, params: types.RenameParams) -> types.WorkspaceEdit:
     at = document.positions.offset(params.position)
-    found = await documents.do(document, renamed, at, params.new_name)
+    found = await documents.ask(document, renamed, at, params.new_name)
     return conversion.workspace_edit(document, found["changes"])
 
 
 async def _format(documents: OpenDocuments, document: Document, _: Any) -> list[types.TextEdit] | None:
     """Return the changes of the layout; None where the text has mistakes, which its messages say."""
     try:
-        text = await documents.do(document, layout)
+        text = await documents.ask(document, layout)
     except MissionError:
         return None
     return conversion.formatting(document, text)

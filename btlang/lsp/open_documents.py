@@ -15,7 +15,7 @@ from btlang.editing.focus import Focus, focus_on, provisional_problems
 from btlang.editing.help import complete
 from btlang.editing.words import RobotWords
 from btlang.lsp.documents import MISSION, TABLES, TEST, Document
-from btlang.lsp.protocol import RequestFailed
+from btlang.lsp.protocol import ContentModified, RequestFailed
 from btlang.lsp.readers import NOTHING, analyse, diagnose
 from btlang.lsp.tables import complete_tables
 from btlang.support.gc_pause import gc_paused
@@ -110,6 +110,14 @@ class OpenDocuments:
                 _PATIENCE, work, document.snapshot(self.words(document), self._revision), *given
             )
 
+    async def ask(self, document: Document, work: Callable[..., T], *given: object) -> T:
+        """Return the same for a client. Raises ContentModified as well, if the text has changed meanwhile."""
+        text = document.text
+        found = await self.do(document, work, *given)
+        if document.text != text:
+            raise ContentModified
+        return found
+
     async def analysis(self, document: Document) -> dict[str, Any]:
         """Return what btlang.lsp.readers.analyse says of the present text, once typing rests."""
         while document.analysis is None:
@@ -130,7 +138,7 @@ class OpenDocuments:
         focus = self._focus(document, at, at)
         text = document.text if focus is None else focus.text
         if focus is None and len(text) > _MOST_QUICK:
-            return (await self.do(document, _complete, at))["completions"]  # type: ignore[no-any-return]
+            return (await self.ask(document, _complete, at))["completions"]  # type: ignore[no-any-return]
         with gc_paused:
             return complete(words.source(text), words, at, document.text)["completions"]  # type: ignore[no-any-return]
 

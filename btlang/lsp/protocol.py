@@ -23,6 +23,13 @@ class RequestFailed(JsonRpcException):
     MESSAGE = "The request failed"
 
 
+class ContentModified(JsonRpcException):
+    """The error of a request about a text that has changed meanwhile: its places would be wrong."""
+
+    CODE = types.LSPErrorCodes.ContentModified
+    MESSAGE = "The text has changed"
+
+
 def answering(handler: Callable[..., Awaitable[Any]]) -> Callable[..., Awaitable[Any]]:
     """Make errors of a handler answers in one line, without a traceback."""
 

@@ -16,7 +16,7 @@ from btlang.editing.document import messages, outline
 from btlang.editing.focus import decisive_places, without_statements
 from btlang.editing.help import hover, tokens
 from btlang.editing.reading import TextReading
-from btlang.editing.references import Reference, references
+from btlang.editing.references import Reference, quoted_files, references
 from btlang.editing.rename import rename
 from btlang.editing.structure import folds, reading_brackets, statement_tree
 from btlang.lsp.documents import MISSION, TABLES, TEST, TREE, Snapshot
@@ -74,6 +74,8 @@ def analyse(snapshot: Snapshot) -> dict[str, Any]:
     except MissionError:  # the messages say it
         found = {}
     whole = {**NOTHING, **found}
+    if snapshot.kind != MISSION:
+        whole["references"] = [*whole["references"], *quoted_files(source)]
     whole["folds"] = _folds(snapshot.text, whole["outline"])
     whole["references"] = [_reference(each, source) for each in whole["references"]]
     return whole

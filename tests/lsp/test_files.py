@@ -69,6 +69,9 @@ def test_tests(tmp_path: Path) -> None:
             assert [each.command.arguments for each in lenses] == [
                 (uri,), (uri, "it waves"), (uri, "it is broken"),
             ]  # fmt: skip
+            asked_file = types.DefinitionParams(document, types.Position(1, 8))
+            found = await editor.ask(editor.text_document_definition_async, asked_file)
+            assert found.uri == from_fs_path(str(tmp_path / "wave.txt"))
             editor.change(uri, 2, ((7, 0, 7, 0), "  fin"))
             asked = types.CompletionParams(document, types.Position(7, 5))
             found = await editor.ask(editor.text_document_completion_async, asked)
