@@ -11,6 +11,7 @@ from bisect import bisect_right
 from collections.abc import Iterable, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError
+from btlang.editing.partial import NO_ANTECEDENT
 from btlang.editing.words import RobotWords
 from btlang.frontends.mission.reader import read_mission
 from btlang.frontends.mission.tokens.lexer import Lexer
@@ -56,17 +57,18 @@ def focus_on(text: str, start: int, end: int, decisive: Iterable[int]) -> Focus:
 
 
 def provisional_problems(source: Source, words: RobotWords) -> Sequence[Diagnostic]:
-    """Return what is wrong with a part of a text, without corrections, which take long to find. Raises MissionError for
-    words that can't be used.
+    """Return what is wrong with a part of a text, without corrections, which take long to find, and without pronouns
+    that refer to nothing in this part. Raises MissionError for words that can't be used.
     """
     with gc_paused:
         vocabulary = words.vocabulary(source)
         try:
             read = read_mission(source, vocabulary)
             compilation = Compilation(vocabulary, read.mission, needs_command=False, warnings=read.warnings)
-            return run_passes(compilation).warnings
+            found: Sequence[Diagnostic] = run_passes(compilation).warnings
         except MissionError as error:
-            return error.diagnostics
+            found = error.diagnostics
+    return [problem for problem in found if problem.code != NO_ANTECEDENT]
 
 
 def without_statements(text: str, places: Iterable[int]) -> str:

@@ -23,15 +23,18 @@ def folds(text: str) -> list[tuple[int, int]]:
     """Return the first and the last line, from 0, of each block that is indented under a line, and of comments."""
     found: list[tuple[int, int]] = []
     open_blocks: list[tuple[int, int]] = []  # margin and line
-    last, comment = -1, -1
+    comments: list[int] = []  # lines in a row
+    last = -1
     for number, line in enumerate([*text.split("\n"), "."]):
         words = line.strip()
-        if words[:1] != "#" and 0 <= comment < last:
-            found.append((comment, last))
-        if not words:
-            comment = -1
+        if words[:1] == "#":  # in a block, wherever it begins
+            comments.append(number)
             continue
-        comment = (comment if comment >= 0 else number) if words[0] == "#" else -1
+        if len(comments) > 1:
+            found.append((comments[0], comments[-1]))
+        comments = []
+        if not words:
+            continue
         margin = len(line) - len(line.lstrip())
         while open_blocks and open_blocks[-1][0] >= margin:
             _, first = open_blocks.pop()
