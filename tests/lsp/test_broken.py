@@ -10,6 +10,7 @@ import json
 import os
 import subprocess
 import sys
+from pathlib import Path
 from typing import Any
 
 from lsprotocol import types
@@ -121,26 +122,26 @@ def test_any_text_and_any_place_has_an_answer() -> None:
     run(check())
 
 
-def test_a_program_that_prints_does_not_speak_to_the_client(tmp_path: Any) -> None:
-    """A mission names a keyword file whose module prints: reading doesn't run it."""
+def test_reading_runs_no_python(tmp_path: Path) -> None:
+    """That of a keyword file and of a component, which a mission, its tests and the robot file name."""
     (tmp_path / "loud.py").write_text("print('loud')\nopen('ran', 'w')\n", encoding="utf-8")
-    pack = '[[action]]\nphrase = "juggle"\nid = "Juggle"\ncall = "loud:act"\n'
-    (tmp_path / "loud.toml").write_text(pack, encoding="utf-8")
-    item = {
-        "uri": f"file://{tmp_path}/a.txt",
-        "languageId": "btlang",
-        "version": 1,
-        "text": 'words "loud.toml"\njuggle\n',
+    files = {
+        "loud.toml": '[[action]]\nphrase = "juggle"\nid = "Juggle"\ncall = "loud:act"\n',
+        "robot.toml": 'name = "r"\nradius = 0.2\n[[component]]\nname = "box"\nclass = "loud:Box"\n',
+        "a.txt": 'robot "robot.toml"\nwords "loud.toml"\njuggle\n',
+        "a.test.txt": 'test "it juggles":\n  run "a.txt"\n  finally the mission succeeds\n',
     }
-    asked = {"textDocument": {"uri": item["uri"]}}
-    answers, errors, code = session(
-        {"method": "textDocument/didOpen", "params": {"textDocument": item}},
-        {"id": 1, "method": "textDocument/documentSymbol", "params": asked},
-    )
-    assert code == 0
-    assert "loud" not in errors
-    assert not (tmp_path / "ran").exists()
-    assert "error" not in next(each for each in answers if each.get("id") == 900)
+    for name, text in files.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+
+    async def check() -> None:
+        async with client() as editor:
+            for name, text in files.items():
+                assert await editor.settled(editor.open(f"file://{tmp_path}/{name}", text, "")) == []
+
+    run(check())
+    assert not list(tmp_path.rglob("ran"))
+    assert not Path("ran").exists()
 
 
 def test_words_that_cannot_be_used_end_the_start() -> None:
