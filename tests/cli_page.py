@@ -14,7 +14,19 @@ PAGE = Path(__file__).parent.parent / "docs" / "cli.md"
 MARK = "<!-- Made by `python -m tests.generate` from here on. -->\n"
 SHARED = 3
 """Verbs that have an option with the same help, at least, for it to be described once for all of them."""
-_UNTESTED = ("repl", "diff", "edit", "watch", "serve", "mcp", "sim-ros", "ros-node", "ros-devices", "serve-actions")
+_UNTESTED = (
+    "repl",
+    "diff",
+    "edit",
+    "lsp",
+    "watch",
+    "serve",
+    "mcp",
+    "sim-ros",
+    "ros-node",
+    "ros-devices",
+    "serve-actions",
+)
 """Verbs whose examples wait for somebody, need ROS 2 or exit with 1: tests/test_readme.py runs all others."""
 _PAGES = {
     "run": ("page.md", "worlds.md", "recording.md", "robots.md", "ros.md"),
@@ -28,6 +40,7 @@ _PAGES = {
     "test": ("testing.md",),
     "diff": ("diff.md",),
     "edit": ("page.md",),
+    "lsp": ("editors.md",),
     "robot": ("tasks.md", "robots.md"),
     "task": ("tasks.md", "schedules.md"),
     "components": ("components.md",),

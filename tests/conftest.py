@@ -50,7 +50,7 @@ for number, usual in (
 
 OVER_DDS = ("tests/ros/", "tests/diagnostics/test_pages.py::test_examples[BT107]")
 """Tests of programs that find one another over DDS, each of which must be quick enough for the others."""
-_FOLDERS = ("components", "devices", "lies", "monitor", "server", "speech", "task", "terminal", "web")
+_FOLDERS = ("components", "devices", "lies", "lsp", "monitor", "server", "speech", "task", "terminal", "web")
 IN_REAL_TIME = (*OVER_DDS, *(f"tests/{folder}/" for folder in _FOLDERS))
 """Tests whose processes wait for one another, and for the clock: what only computes gives way to them."""
 _AT_ONCE = 2
@@ -218,6 +218,7 @@ def take_away_what_is_missed(code: str, patch: pytest.MonkeyPatch) -> None:
         patch.setattr("btlang.vocabulary.listing.overview", _buggy)
     patch.setitem(sys.modules, "matplotlib", None)  # BT081
     patch.setitem(sys.modules, "mcp", None)  # BT082
+    patch.setitem(sys.modules, "pygls", None)
     if code == "BT085":
         patch.setitem(sys.modules, "msgpack", None)
     if code == "BT087":

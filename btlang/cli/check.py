@@ -143,18 +143,10 @@ class _FileCheck:
             return error.diagnostics
 
     def _problems_together(self, sources: Sequence[Source]) -> Sequence[Diagnostic]:
-        from btlang.frontends.btcpp.files import XmlFiles
-        from btlang.frontends.btcpp.project import read_project
-        from btlang.projects.checking import NEWEST, project_problems
-        from btlang.projects.cpp_ports import CppSources
+        from btlang.projects.checking import check_trees
 
         options = self._options
-        version = options.btcpp or NEWEST
-        palettes, files = XmlFiles(), XmlFiles(sources, dialect=version[0] if options.btcpp else 3)
-        for path in options.models:
-            palettes.add(read_source(path, options.include_root))
-        for source in sources:
-            files.add(source)
+        models = [read_source(path, options.include_root) for path in options.models]
         vocabulary = world_vocabulary(options.keywords, options.world, options.language)
         folders = [path for path in options.file or () if os.path.isdir(path)]
-        return project_problems(read_project(files, palettes, options.main), vocabulary, CppSources(folders), version)
+        return check_trees(sources, vocabulary, models=models, main=options.main, folders=folders, btcpp=options.btcpp)

@@ -346,6 +346,12 @@ _TABLE = (
         examples=(("btc edit mission.txt", "opens the browser"),),
     ),
     Verb(
+        "lsp", WRITE, "let your editor help with missions, tests, worlds and trees, as a language server",
+        "btlang.lsp.server:serve",
+        WORDS, examples=(("btc lsp", "the command for your editor"),),
+        also=("language-server", "languageserver"),
+    ),
+    Verb(
         "robot", KEEP_UP, "bring a robot up for many tasks, and control it", "btlang.cli.robot:run_act",
         (
             NAME,

@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from btlang.api import Mission
-from btlang.diagnostics.diagnostic import Diagnostic, MissionError
+from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.diagnostics.formats import to_data
+from btlang.editing.reading import TextReading
 from btlang.editing.syntax import Syntax
 from btlang.editing.values import abilities, values_of
 from btlang.editing.words import RobotWords
-from btlang.frontends.table import frontend_of
-from btlang.passes.lint.tree_lints import UNDECLARED
 from btlang.printer.mission import printer_of
 from btlang.printer.phrase import is_written
 from btlang.support.gc_pause import gc_paused
@@ -21,42 +20,25 @@ from btlang.tree.ast import Phrase, Program
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from collections.abc import Sequence
     from typing import Any
 
     from btlang.passes.compilation import Origins
 
-_kept: list[_Read] = []
+_kept: list[TextReading] = []
 """What was read for its messages last: only the next document may use it, as files that it names may change later."""
 _LONGEST = 80  # characters of what has no name
-
-
-class _Read:
-    """A text that was read: its mission, None for one that doesn't compile, and what is wrong with it."""
-
-    def __init__(self, source: Source, words: RobotWords) -> None:
-        self.key, self.source, self.sort = _cache_key(source, words), source, frontend_of(source)
-        self.origins: Origins = {}
-        self.mission: Mission | None = None
-        self.problems: Sequence[Diagnostic] = ()
-        try:
-            self.mission = words.mission(source, self.origins)
-        except MissionError as error:
-            self.problems = error.diagnostics
-        else:
-            kept = (each for each in self.mission.warnings if each.code != UNDECLARED)
-            self.problems = (*kept, *_report_misnamed(self.mission))
-
-    def summary(self) -> dict[str, Any]:
-        ok = self.mission is not None
-        return {"ok": ok, "sort": self.sort, "messages": messages(self.problems, self.source)}
 
 
 def text_messages(source: Source, words: RobotWords) -> dict[str, Any]:
     """Return `ok`, `sort` and `messages` of a document. That of the same text is faster if it is the next one."""
     with gc_paused:
-        _kept[:] = [_Read(source, words)]
-        return _kept[0].summary()
+        _kept[:] = [TextReading(source, words)]
+        return _summary(_kept[0])
+
+
+def _summary(read: TextReading) -> dict[str, Any]:
+    ok = read.mission is not None
+    return {"ok": ok, "sort": read.sort, "messages": messages(read.problems, read.source)}
 
 
 def document(source: Source, words: RobotWords) -> dict[str, Any]:
@@ -74,28 +56,13 @@ def document(source: Source, words: RobotWords) -> dict[str, Any]:
     """
     with gc_paused:
         kept = _kept.pop() if _kept else None
-        read = kept if kept is not None and kept.key == _cache_key(source, words) else _Read(source, words)
+        read = kept if kept is not None and kept.is_of(source, words) else TextReading(source, words)
         mission = read.mission
         if mission is None:
-            return read.summary()
+            return _summary(read)
         nodes = _nodes(mission, read.source)
         kinds = [] if mission.syntax is None else _kinds(nodes, mission, mission.syntax, read.origins)
-        return {**read.summary(), "nodes": nodes, "kinds": kinds, "outline": outline(mission, read.source)}
-
-
-def _cache_key(source: Source, words: RobotWords) -> tuple[object, ...]:
-    """Return what decides how a text is read, but for the files that it names."""
-    world = words.world.text if isinstance(words.world, Source) else words.world
-    return source.text, source.name, tuple(words.keywords), world, words.language
-
-
-def _report_misnamed(mission: Mission) -> tuple[Diagnostic, ...]:
-    """Return what would keep a tree from running that names its nodes by their ids."""
-    try:
-        mission.check()
-    except MissionError as error:
-        return tuple(error.diagnostics)
-    return ()
+        return {**_summary(read), "nodes": nodes, "kinds": kinds, "outline": outline(mission, read.source)}
 
 
 def _nodes(mission: Mission, source: Source) -> list[dict[str, Any]]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import groupby
 
 from btlang.api import Mission
-from btlang.diagnostics.diagnostic import MissionError
+from btlang.editing.reading import TextReading
 from btlang.editing.words import RobotWords
 from btlang.frontends.mission.completion.completer import Completion, completions
 from btlang.frontends.mission.reader import lexed
@@ -34,32 +34,31 @@ _UNCOLOURED = ("unknown", "comma", "colon", "open", "close")
 _QUOTES = ('"', "'")
 
 
-def hover(source: Source, at: int, words: RobotWords) -> dict[str, Any]:
+def hover(source: Source, at: int, words: RobotWords, read: TextReading | None = None) -> dict[str, Any]:
     """Return `found`: what is at a character, None for nothing.
 
     `start` and `end` are its characters; `words` what was understood, in canonical English; `help` and `example` those
     of its phrase or joining word; `id` that of its node or role; `kind` "command", "condition", "name", "word", or
-    "node" in XML and JSON. Raises MissionError for words that can't be used.
+    "node" in XML and JSON. `read` is the text if it was read already. Raises MissionError for words that can't be used.
     """
-    try:
-        mission = words.mission(source)
-    except MissionError:
-        mission = None
-    if frontend_of(source) == "english":
-        return {"found": _in_english(source, at, words, mission)}
-    return {"found": None if mission is None else _in_tree(source, at, mission)}
+    read = read or TextReading(source, words)
+    if read.sort == "english":
+        return {"found": _in_english(read, at)}
+    return {"found": None if read.mission is None else _in_tree(source, at, read.mission)}
 
 
-def tokens(source: Source, words: RobotWords, at: int = 0, to: int | None = None) -> dict[str, Any]:
+def tokens(
+    source: Source, words: RobotWords, at: int = 0, to: int | None = None, lexer: Lexer | None = None
+) -> dict[str, Any]:
     """List the `tokens` between two characters, by default all: `start`, `end`, and the `kind` as which they're read.
 
     This is "command", "condition", "name" (of a definition), "word" (joins others), "text" or "number" (in any of
-    these), or "comment". What isn't understood has none, nor has XML and JSON. Raises MissionError for words that can't
-    be used.
+    these), or "comment". What isn't understood has none, nor has XML and JSON. `lexer` has read the text if that was
+    done already. Raises MissionError for words that can't be used.
     """
     if frontend_of(source) != "english":
         return {"tokens": []}
-    lexer = lexed(source, words.vocabulary(source))
+    lexer = lexer or lexed(source, words.vocabulary(source))
     kinds = [""] * len(source.text)
 
     def paint(start: int, end: int, kind: str) -> None:
@@ -96,8 +95,8 @@ def _in_tree(source: Source, at: int, mission: Mission) -> Found | None:
     return _find(span.start, span.end, mission.label(node), node.id, "node", entry or About())
 
 
-def _in_english(source: Source, at: int, words: RobotWords, mission: Mission | None) -> Found | None:
-    lexer = lexed(source, words.vocabulary(source))
+def _in_english(read: TextReading, at: int) -> Found | None:
+    source, mission, lexer = read.source, read.mission, read.lexer
     token = next((token for token in lexer.tokens if token.start <= at < token.end), None)
     if token is None:
         return None
@@ -172,23 +171,23 @@ def _english(part: ast.Ast, program: ast.Program | None, lexer: Lexer) -> str:
     return english(part, lexer.vocabulary, names=names)
 
 
-def complete(source: Source, words: RobotWords, at: int | None = None) -> dict[str, Any]:
+def complete(source: Source, words: RobotWords, at: int | None = None, whole: str = "") -> dict[str, Any]:
     """List completions at a character, by default the end; see `Completion`. None in XML and JSON.
 
     What the text says elsewhere comes first, most often first, then the values that a phrase waits for, and all others
-    as they fit. Behind a word that is written out are also those behind the blank that would follow. Raises
-    MissionError for words that can't be used.
+    as they fit. Behind a word that is written out are also those behind the blank that would follow. `whole` is the
+    text if that of `source` is a part of it. Raises MissionError for words that can't be used.
     """
     if frontend_of(source) != "english":
         return {"completions": []}
     vocabulary, before = words.vocabulary(source), source.text[:at]
     found = list(completions(before, vocabulary))
-    whole = next((each for each in found if each.text == f"{before[each.start :]} "), None)
-    if whole is not None:
+    written = next((each for each in found if each.text == f"{before[each.start :]} "), None)
+    if written is not None:
         behind = completions(f"{before} ", vocabulary)
-        further = [each.replace(text=whole.text + each.text, start=whole.start) for each in behind]
-        found = [*further, *(each for each in found if each is not whole)]
-    said = f" {' '.join(source.text.lower().split())} "
+        further = [each.replace(text=written.text + each.text, start=written.start) for each in behind]
+        found = [*further, *(each for each in found if each is not written)]
+    said = f" {' '.join((whole or source.text).lower().split())} "
     ranked = sorted(found, key=lambda each: (-_count(each, said), each.kind != "value"))
     once = {each.text: each.as_dict() for each in reversed(ranked)}
     return {"completions": [*reversed(once.values())][:_MOST]}

@@ -22,7 +22,8 @@ if TYPE_CHECKING:
     from typing import Any
 
 MOST_NAMES = 40
-_NO_ANTECEDENT = "BT038"
+NO_ANTECEDENT = "BT038"
+"""The code of the message about a pronoun that refers to nothing: maybe only because what it refers to is left out."""
 
 
 def partial_reading(text: str, vocabulary: Lexicon, compiled: Callable[[str], Mission]) -> dict[str, Any]:
@@ -71,7 +72,7 @@ def _find_depending(sentences: Sentences, refused: dict[int, list[Diagnostic]], 
     found: set[int] = set()
     for number in range(1, len(sentences)):
         own = {problem.code for problem in refused.get(number, ())}
-        if own <= {_NO_ANTECEDENT} and (number - 1 in refused or number - 1 in found):
+        if own <= {NO_ANTECEDENT} and (number - 1 in refused or number - 1 in found):
             text = split(Source(sentences.written(number)[1]), vocabulary.orthography)
             match = longest(vocabulary.trie, text, 0, vocabulary.context)
             goes_on = match is not None and match.meaning.role in (*GOES_ON, *ORDER)

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_left
-from collections.abc import Container, Iterable, Iterator
+from collections.abc import Container, Iterable
 from functools import partial
 
 from btlang.api import Mission
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.editing.changes import Change, apply_changes
+from btlang.editing.references import uses_of
 from btlang.editing.words import RobotWords
 from btlang.frontends.mission.reader import lexed
 from btlang.frontends.mission.tokens.lexer import Lexer
 from btlang.printer.exact import is_one_piece, quote
-from btlang.support.record import Record
 from btlang.text.source import Source, Span
 from btlang.tree import ast
 from btlang.tree.catalogue import SUBTREE
@@ -30,13 +30,6 @@ if TYPE_CHECKING:
 
 _LONGEST = 200  # characters of a name
 _WORD, _WORD_END = re.compile(r"\w*"), re.compile(r"\w*\Z")
-
-
-class _Use(Record):
-    """A use of a definition: by its words, or quoted in a node that is said by its id."""
-
-    span: Span
-    is_exact: bool
 
 
 def rename(source: Source, at: int, words: RobotWords, name: str | None = None) -> dict[str, Any]:
@@ -70,21 +63,10 @@ def _find_name(mission: Mission, source: Source, at: int) -> tuple[ast.Definitio
     """Return a definition of this file, and the characters that name it at a place."""
     program = mission.syntax
     for definition in program.definitions if program is not None else ():
-        for place in (definition.name_span, *(use.span for use in _uses(mission, definition.name))):
+        for place in (definition.name_span, *(use.span for use in uses_of(mission, definition.name))):
             if place.source is source and place.start <= at <= place.end:
                 return definition, place
     return None
-
-
-def _uses(mission: Mission, name: str) -> Iterator[_Use]:
-    """Yield the uses in the order of the bodies."""
-    assert mission.syntax is not None
-    for body in ast.bodies(mission.syntax):
-        for part in ast.parents_first(body):
-            if isinstance(part, ast.Name) and part.name == name:
-                yield _Use(part.span, False)
-            elif isinstance(part, ast.Exact) and part.id == SUBTREE and dict(part.ports).get("ID") == name:
-                yield _Use(part.span, True)
 
 
 def _check(name: str, definition: ast.Definition, articles: Container[str], refuse: partial[MissionError]) -> str:
@@ -110,7 +92,7 @@ def _changes(mission: Mission, source: Source, definition: ast.Definition, name:
     own = definition.name_span
     text = quote(name, vocabulary) if definition.is_quoted else _like(own.text, name)
     changes = {own.start: Change(own.start, own.end, text)}
-    for use in _uses(mission, definition.name):
+    for use in uses_of(mission, definition.name):
         if use.span.source is not source or use.span.start in changes:
             continue
         if use.is_exact:

@@ -39,6 +39,12 @@ class RobotWords:
         other.world = Source(text, one_line(name), roots=())
         return other
 
+    def for_file(self, path: str) -> RobotWords:
+        """Return these words for the texts of another file; "" for texts of none."""
+        other = RobotWords(self.keywords, language=self.language, file=path)
+        other.world = self.world
+        return other
+
     def source(self, text: str) -> Source:
         """Return a text that somebody writes; of no file, it can't include any."""
         return Source(text, self.file, may_load=True) if self.file else Source(text, "mission", roots=())

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from btlang.backends.checking import accept_anything, bind_placeholder, find_misnamed, tree_problems
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic, sort_diagnostics
 from btlang.engine.leaves.leaf import LeafBinding
+from btlang.frontends.btcpp.files import XmlFiles
 from btlang.frontends.btcpp.models import nav2_models
-from btlang.frontends.btcpp.project import XmlProject
+from btlang.frontends.btcpp.project import XmlProject, read_project
 from btlang.passes import PASSES
 from btlang.passes.compilation import Compilation
 from btlang.passes.lint.allow import not_allowed
@@ -42,7 +43,7 @@ from btlang.projects.unused import (
     unread_values,
     unused_trees,
 )
-from btlang.text.source import NOWHERE, Span
+from btlang.text.source import NOWHERE, Source, Span
 from btlang.text.spelling import misspelt
 from btlang.tree.catalogue import BEHAVIOR_TREE_CPP, CATALOGUE, SEQUENCE, SUBTREE
 from btlang.tree.node import Node, NodeModel, PortModel, Tree
@@ -89,6 +90,23 @@ def _follows(problem: Diagnostic, wrong: set[str]) -> bool:
 
 def _place(span: Span) -> tuple[str, int]:
     return span.source.name, span.start
+
+
+def check_trees(
+    sources: Sequence[Source], vocabulary: Lexicon, *, models: Iterable[Source] = (), main: str = "",
+    folders: Sequence[str] = (), btcpp: tuple[int, ...] | None = None,
+) -> list[Diagnostic]:  # fmt: skip
+    """Find what is wrong with files that are one project, as `project_problems` does.
+
+    `models` are files whose models count as well, `folders` those with C++ sources, and `btcpp` the version of
+    BehaviorTree.CPP, by default the newest.
+    """
+    palettes, files = XmlFiles(), XmlFiles(sources, dialect=btcpp[0] if btcpp else 3)
+    for source in models:
+        palettes.add(source)
+    for source in sources:
+        files.add(source)
+    return project_problems(read_project(files, palettes, main), vocabulary, CppSources(folders), btcpp or NEWEST)
 
 
 class _Check:

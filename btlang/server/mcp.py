@@ -41,7 +41,7 @@ understand, with its forms and names, and show the person the `reading` of every
 def serve(options: argparse.Namespace) -> int:
     """Serve until standard input ends. Raises MissionError, also where the package `mcp` is missing (BT082)."""
     if find_spec("mcp") is None:
-        raise MissionError([diagnostic("BT082", Span(Source("", "btc mcp"), 0, 0))])
+        raise MissionError([diagnostic("BT082", Span(Source("", "btc mcp"), 0, 0), verb="mcp", package="mcp")])
     from mcp.server import MCPServer
 
     tools = Tools(options.keywords, options.world, options.language)

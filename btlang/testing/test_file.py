@@ -78,6 +78,12 @@ def format_tests(source: Source) -> str:
     return format_layout(source, load_vocabulary().orthography)
 
 
+def find_tests(source: Source) -> list[tuple[str, Span]]:
+    """Return the names of the tests of a file, each with the line that begins it, also where tests can't be read."""
+    blocks = _blocks(split(source, load_vocabulary([WORDS]).orthography), [])
+    return [(block.name, block.span) for block in blocks]
+
+
 class _Block(Record):
     """A test: its name, the line that begins it, and the words of its other lines."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 
 from btlang.support.record import Record
 from btlang.text.words import Words
@@ -94,7 +95,7 @@ def values_on(kind: str, values: Values, written: Sequence[str], start: str) -> 
         found = _names_on(values.names_tree(kind), written, start, own)
         yield from sorted(found, key=lambda words: (" ".join((*written, words)) not in own, words))
         known = len(written)
-        for words in values.choices(kind) if known or start else ():
+        for words in _choices(values, kind) if known or start else ():
             if words[:known] == list(written) and len(words) > known and words[known].startswith(start):
                 yield " ".join(words[known:])
     elif value_type.kind == "text":
@@ -111,6 +112,11 @@ def values_on(kind: str, values: Values, written: Sequence[str], start: str) -> 
         yield from (unit.words[0] for unit in value_type.units if unit.words[0].startswith(start))
     elif value_type.kind == "time" and (written[0][0].isdecimal() or values.is_number(written)):
         yield from (half for half in values.halves_of_day if half.startswith(start))
+
+
+@lru_cache(maxsize=32)  # the same at each key
+def _choices(values: Values, kind: str) -> list[list[str]]:
+    return values.choices(kind)
 
 
 def _names_on(tree: WordTree, written: Sequence[str], start: str, names: Sequence[str]) -> Iterator[str]:

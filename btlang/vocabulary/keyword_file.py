@@ -45,6 +45,12 @@ _NOUN = {"type", "phrase", "slots", "how"}
 _HOW = ("nearest", "seen", "all")
 
 
+def keys_of(table: str) -> list[str]:
+    """List the keys of the tables of a name, "" for the top of a file."""
+    keys = {"": _TOP, "type": _TYPE, "noun": _NOUN, **{sort: _ENTRY | more for sort, more in _MORE.items()}}
+    return sorted(keys.get(table, ()))
+
+
 class KeywordFile(Record):
     """What a file declares. `language` holds the tables of a connective file, empty in a pack of phrases.
 

@@ -210,6 +210,12 @@ def test_completions_end_at_their_place() -> None:
     assert complete(Source(TREE), SHIPPED) == {"completions": []}
 
 
+def test_a_block_can_be_begun() -> None:
+    """Phrases may stand there whose roles have no help."""
+    found = complete(Source("wave\nin parallel:\n    "), RobotWords())["completions"]
+    assert "nod" in [each["text"] for each in found]
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("world", [None, BARN])
 def test_all_of_the_palette_can_be_put_in(world: str | None) -> None:

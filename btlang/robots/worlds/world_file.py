@@ -36,7 +36,8 @@ if TYPE_CHECKING:
     T = TypeVar("T")
 
 _MOST_CHECKS = 5_000_000  # of a place with a piece of wall, in some seconds
-_NAMED = ("places", "dock", "docks", "objects", "people", "zones", "doors", "crowds")
+NAMED = ("places", "dock", "docks", "objects", "people", "zones", "doors", "crowds")
+"""The keys of tables that have names."""
 _SORTS = {"dock": "places", "docks": "places", "objects": "things", "people": "things", "crowds": "things"}
 _FAULTS = ("blocked", "slip", "silent scanner", "weak hand", "dock")
 
@@ -194,7 +195,7 @@ def _fault(table: Table, places: tuple[str, ...], docks: tuple[str, ...]) -> Wor
 def _names_given_twice(rows: Rows) -> Iterator[Problem]:
     """Report names that are given twice. Several kinds may share one: a place and an area may both be "kitchen"."""
     seen: dict[tuple[str, str], str] = {}
-    for (section, *index), group in entries(rows, _NAMED):
+    for (section, *index), group in entries(rows, NAMED):
         for named in group:
             key = _SORTS.get(str(section), str(section)), named.name.lower()
             if key in seen:

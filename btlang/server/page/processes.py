@@ -4,12 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import json
-import multiprocessing
 import os
-import threading
 from collections.abc import Callable, Mapping
-from concurrent.futures import ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
 from functools import partial
 from weakref import WeakValueDictionary
 
@@ -29,6 +25,7 @@ from btlang.server.http.access import AccessError, text_in
 from btlang.server.page.shown_documents import ShownDocuments
 from btlang.support.gc_pause import gc_paused
 from btlang.support.record import Record
+from btlang.support.worker import Worker, WorkerEnded
 from btlang.testing.trial import results_of
 from btlang.text.source import Source, Utf16Units
 
@@ -237,23 +234,11 @@ def _write_answer(kind: str, text: str, words: RobotWords, arguments: Mapping[st
         return json.dumps(answer(kind, text, words, arguments), separators=(",", ":")).encode()
 
 
-def _end_with_server() -> None:
-    """End the process of a checker with its server, which it would otherwise outlive."""
-    threading.Thread(target=_wait_for_end, daemon=True).start()
-
-
-def _wait_for_end() -> None:
-    server = multiprocessing.parent_process()
-    if server is not None:
-        server.join()
-        os._exit(1)
-
-
 class Checker:
     """A process that checks missions, for one event loop. Texts take turns, one of each user at a time."""
 
     def __init__(self) -> None:
-        self._process: ProcessPoolExecutor | None = None
+        self._worker = Worker()
         self._turn = asyncio.Lock()
         self._own_turns: WeakValueDictionary[str, asyncio.Lock] = WeakValueDictionary()
         self._newest: dict[tuple[str, str, str], object] = {}
@@ -293,20 +278,11 @@ class Checker:
             return await self._done(show, *paths)
 
     async def _done(self, do: Callable[..., bytes], *given: object) -> bytes:
-        if self._process is None:
-            self._process = ProcessPoolExecutor(1, multiprocessing.get_context("spawn"), _end_with_server)
-        loop = asyncio.get_running_loop()
         try:
-            async with asyncio.timeout(_PATIENCE):
-                return await loop.run_in_executor(self._process, do, *given)
-        except (TimeoutError, BrokenProcessPool):
-            self.close()
+            return await self._worker.do(_PATIENCE, do, *given)
+        except WorkerEnded:
             raise AccessError(422, "This text takes too long to read.") from None
 
     def close(self) -> None:
         """End the process, whatever it does."""
-        ended, self._process = self._process, None
-        if ended is not None:
-            for process in tuple((ended._processes or {}).values()):
-                process.kill()
-            ended.shutdown(wait=False, cancel_futures=True)
+        self._worker.close()

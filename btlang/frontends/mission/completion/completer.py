@@ -6,9 +6,10 @@ so that what is offered here and what is accepted there cannot differ.
 
 from __future__ import annotations
 
-from bisect import bisect_left
-from collections.abc import Iterable, Iterator
+from bisect import bisect_left, bisect_right
+from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
+from itertools import chain
 
 from btlang.frontends.mission.completion.node_completion import node_options
 from btlang.frontends.mission.completion.value_completion import value_options
@@ -30,6 +31,7 @@ from btlang.vocabulary.trie import TrieNode
 from btlang.vocabulary.word_tree import END, SLOTS
 
 _MOST_TOKENS_BACK = 6  # a phrase that is being written may look like that many shorter ones
+_MOST_STATEMENTS_BACK = 12  # what may follow doesn't depend on more, and each try groups them again
 _LONG_ENOUGH = 3  # letters; a shorter word is no misspelling yet
 _MOST_CORRECTIONS = 3
 _ALIKE = {
@@ -82,6 +84,7 @@ class Completer:
         self._last = len(self._words.words) - 3  # the bracket; line end and text end follow
         bracket = max((i for i, token in enumerate(self._lexer.tokens) if token.kind == "open"), default=0)
         self._tokens = self._lexer.tokens[:bracket]
+        self._begins = list(_begins(self._tokens))
         self._accepted: dict[tuple[int, str], bool] = {}
 
     def found(self) -> list[Completion]:
@@ -141,6 +144,7 @@ class Completer:
         if self._is_broken(at):
             return
         first = self._last if at == len(tokens) else bisect_left(words.starts, tokens[at].start)  # a stop has none
+        roles = _roles_in_trie(self._vocabulary)
         under_way = begun(self._vocabulary.trie, words, first, self._last, self._context)
         names = begun(self._lexer.names.definitions.trie, words, first, self._last, self._context)
         yield from self._named(names, first, at, start)
@@ -150,8 +154,9 @@ class Completer:
                 continue
             for way, child in sorted(ways_on(node, start), key=_shortest_first):
                 yield from self._phrase(" ".join(way), child, at)
-            yield from self._slots(((kind, self._last, child) for _, kind, child in node.get(SLOTS, ())), at, start)
-        yield from self._slots(under_way.slots, at, start)
+            slots = ((kind, self._last, child) for _, kind, child in node.get(SLOTS, ()))
+            yield from self._slots(slots, at, start, roles)
+        yield from self._slots(under_way.slots, at, start, roles)
 
     def _openers(self, at: int) -> Iterator[Completion]:
         """The first way to say each thing: nothing is written yet, and all synonyms would be too many."""
@@ -160,17 +165,21 @@ class Completer:
 
     def _phrase(self, words: str, node: TrieNode, at: int) -> Iterator[Completion]:
         ends = [node[END]] if END in node else []
-        slotted = [meaning for _, _, child in node.get(SLOTS, ()) for meaning in meanings(child)]
-        for meaning in (*ends, *slotted):
-            if self._may_stand(at, meaning.role):
+        slotted = (meaning for _, _, child in node.get(SLOTS, ()) for meaning in meanings(child))
+        for meaning in chain(ends, slotted):
+            is_explained = meaning.entry is not None or meaning.role in self._vocabulary.about
+            if is_explained and self._may_stand(at, meaning.role):
                 more = "" if ends and meaning is ends[0] and meaning.role not in (*SEPARATORS, ROLE) else " "
                 kind, about = self._about(meaning)
                 yield Completion(words + more, self._start, kind, about)
                 return
 
-    def _slots(self, slots: Iterable[tuple[str, int, TrieNode]], at: int, start: str) -> Iterator[Completion]:
+    def _slots(
+        self, slots: Iterable[tuple[str, int, TrieNode]], at: int, start: str, roles: dict[int, Sequence[str]]
+    ) -> Iterator[Completion]:
+        """Values that a slot may have; `roles` are the roles behind nodes of the same trie."""
         for kind, first, child in slots:
-            if any(self._may_stand(at, meaning.role) for meaning in meanings(child)):
+            if any(self._may_stand(at, role) for role in _roles_behind(child, roles)):
                 written = self._words.words[first : self._last]
                 for known in (self._context.known or {}).values() if not written and not start else ():
                     if not known.words:  # of any type
@@ -184,7 +193,7 @@ class Completer:
                 if any(self._may_stand(at, self._kind_of_name(meaning)) for meaning in meanings(child)):
                     more = "" if END in child else " "
                     yield Completion(" ".join(way) + more, self._start, "name", "defined in this mission")
-        yield from self._slots(names.slots, at, start)
+        yield from self._slots(names.slots, at, start, {})
 
     def _kind_of_name(self, meaning: Meaning) -> str:
         if meaning.role != "name" or meaning.entry is None:
@@ -235,7 +244,8 @@ class Completer:
 
     def _failures(self, at: int, *kinds: str) -> list[int]:
         end = self._tokens[at].start if at < len(self._tokens) else self._start
-        before = self._tokens[:at]
+        begins = self._begins[: bisect_right(self._begins, at)]
+        before = self._tokens[begins[-_MOST_STATEMENTS_BACK] if len(begins) > _MOST_STATEMENTS_BACK else 0 : at]
         if kinds[0] in GOES_ON:
             go_on(before)
         tokens = [*before, *(Token(kind, end, end, "1") for kind in kinds)]
@@ -246,6 +256,29 @@ class Completer:
         if meaning.entry is not None:
             return ("condition" if meaning.entry.sort == "condition" else "command"), meaning.entry.help
         return "connective", self._vocabulary.about[meaning.role].help
+
+
+@lru_cache(maxsize=4)
+def _roles_in_trie(_vocabulary: Lexicon) -> dict[int, Sequence[str]]:
+    """What `_roles_behind` has found for the nodes of the trie of a vocabulary, by their identity."""
+    return {}
+
+
+def _roles_behind(node: TrieNode, known: dict[int, Sequence[str]]) -> Sequence[str]:
+    """The roles of the phrases through a node, each once: thousands have the same few."""
+    found = known.get(id(node))
+    if found is None:
+        found = known[id(node)] = tuple(dict.fromkeys(meaning.role for meaning in meanings(node)))
+    return found
+
+
+def _begins(tokens: Iterable[Token]) -> Iterator[int]:
+    """The tokens at which lines begin outside of blocks and brackets."""
+    depth = 0
+    for number, token in enumerate(tokens):
+        depth += (token.kind in ("indent", "open")) - (token.kind in ("dedent", "close"))
+        if token.kind == "newline" and depth == 0:
+            yield number + 1
 
 
 def _last_word(text: str) -> str:
