@@ -225,16 +225,17 @@ def noun_phrases(
     found = Nouns(adjectives, frozenset((*chain(*language["nouns"].values()), *language["ones"])))
     roles: Mapping[str, list[str]] = language["roles"]
     every = [(tuple(words.split()), ALL) for words in roles.get("all_names", ())]
+    several = [tuple(words.split()) for words in roles.get("all_of", ())]  # before a condition, too, which has no plural
     chosen = [(tuple(words.split()), how) for how in CHOICES for words in roles.get(how, ())]
     chosen += [(tuple(words.split()), str(number)) for words, number in language["ordinals"].items()]
     for kind in (kind for kind in kinds if kind not in _FORMS):
         ways = every + [way for way in chosen if _may_choose(kind, way[1])]
-        for words in language["nouns"].get(kind, (kind,)):
-            found.add_type(words, kind)
-            for before, how in ways:
-                found.add((*before, *words.split()), {}, kind, how)
         nouns = language["nouns"].get(kind, ())
         single = [words for words in nouns if plural(words, language["plural_endings"]) in nouns]
+        for words in nouns or (kind,):
+            found.add_type(words, kind)
+            for before, how in (way for way in ways if not (words in single and way[0] in several)):
+                found.add((*before, *words.split()), {}, kind, how)
         for words in nouns if single else ():
             if words not in single:  # `people`
                 found.add_plural(tuple(words.split()), {}, kind)
