@@ -225,7 +225,7 @@ def noun_phrases(
     found = Nouns(adjectives, frozenset((*chain(*language["nouns"].values()), *language["ones"])))
     roles: Mapping[str, list[str]] = language["roles"]
     every = [(tuple(words.split()), ALL) for words in roles.get("all_names", ())]
-    several = [tuple(words.split()) for words in roles.get("all_of", ())]  # before a condition, too, which has no plural
+    several = [tuple(words.split()) for words in roles.get("all_of", ())]  # before conditions, which have no plural
     chosen = [(tuple(words.split()), how) for how in CHOICES for words in roles.get(how, ())]
     chosen += [(tuple(words.split()), str(number)) for words, number in language["ordinals"].items()]
     for kind in (kind for kind in kinds if kind not in _FORMS):
