@@ -141,7 +141,7 @@ class AddressedTexts(Hearers):
         end = value.first + 1 if helps else texts.end_of_clause(text, value.first) or value.last
         end = (self._end_before_command(value.first, end, is_told=False) if is_thing else 0) or end
         end = next((at for at in range(value.first, end) if self._leaves_out_days(at + 1)), end)
-        heard = self._to_hearer(command, value.first, end, is_asked=True)
+        heard = self._to_hearer(command, value.first, end, is_asked=True, is_plea=not is_thing)
         clear = self._clear(heard, value.first, end)
         clear |= {place for place in range(value.first, end) if text.words[place - 1] in asking["coming"]}
         doubtful = (place for place in range(value.first, end) if texts.doubt(text, place, place + 1, clear))

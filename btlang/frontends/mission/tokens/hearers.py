@@ -21,10 +21,11 @@ _NEXT = "may be a part of it, or go on with the mission"
 class Hearers(ToldWords):
     """Who is meant by words for people in what is said to somebody."""
 
-    def _to_hearer(self, command: Token, first: int, last: int, is_asked: bool) -> Words:
+    def _to_hearer(self, command: Token, first: int, last: int, is_asked: bool, is_plea: bool = False) -> Words:
         """The text whose words are those for whoever a command speaks to; where that isn't clear, as they are.
 
-        `she` at the start is who is spoken to where nobody else was, and who is asked always.
+        `she` at the start is who is spoken to where nobody else was, and who is asked always; but who does something to
+        `him`, as in the plea `to help him`, is another one.
         """
         text, vocabulary = self._text, self._vocabulary
         if not vocabulary.persons or not isinstance(command.value, Called | Listed):
@@ -41,6 +42,9 @@ class Hearers(ToldWords):
             known_otherwise = {name for name, words in known if words and who not in words}
             others = {name for name, _ in known} - hearer - known_otherwise
             other = "".join(meant - hearer)
+            is_other = is_plea and not (is_subject or _owns(text, at, last, vocabulary)) and not other
+            if is_other and not any(vocabulary.values.texts.opens(text.words[i]) for i in range(first, at)):
+                continue
             if who not in named and len(meant) == 1 and other:
                 text = as_named(text, at, last, who, other, vocabulary) if "{" not in other else text
             elif is_asked and (is_subject or (len(spoken) == 1 and others.isdisjoint(here))):
