@@ -101,7 +101,7 @@ def _gather(node: ast.Ast, problems: list[Diagnostic]) -> ast.Ast:
             elif form:
                 made[asking] = _with_last(form, item)
                 continue
-            elif asking == len(made) - 1 and item.otherwise is not None:
+            elif asking == len(made) - 1 and (item.otherwise is not None or item.negated):  # `unless she says yes`
                 for at in range(asking - is_anew, asking + 1):  # silence is something else than what was asked for
                     made[at] = _without_failure(made[at])
         _reply(made, asking, item)

@@ -14,6 +14,7 @@ from btlang.frontends.mission.tokens.ended_rules import with_ends
 from btlang.frontends.mission.tokens.left_out import find_unplaced
 from btlang.frontends.mission.tokens.other_things import with_goals_there, with_other_things, with_things_there
 from btlang.frontends.mission.tokens.repeated_statements import (
+    with_conditions_then,
     with_questions_each_time,
     with_questions_once,
     with_repeats_apart,
@@ -102,6 +103,7 @@ class Lexer:
         self.problems += find_two_ifs(self.tokens, self.vocabulary, source)
         self.problems += find_ended_rounds(self.tokens, self.vocabulary, source)
         self.problems += with_exceptions(self.tokens, self.vocabulary, source)
+        with_conditions_then(self.tokens)
         with_rules_inside(self.tokens)
         self.problems += with_ends(self.tokens, self.vocabulary, partial(Span, source))
         self.conditions = condition_names(self.tokens, self.names.included_conditions())

@@ -156,6 +156,28 @@ def with_times_first(tokens: list[Token]) -> None:
             tokens[at:end] = [*tokens[at + 1 : end], tokens[at]]
 
 
+def with_conditions_then(tokens: list[Token]) -> None:
+    """Make `at 6 pm, A, but only if C` ask at that time."""
+    for at in reversed(range(2, len(tokens) - 1)):
+        if tokens[at].kind in _CONDITIONAL and tokens[at - 1].kind == "comma":
+            _ask_at_time(tokens, at)
+
+
+def _ask_at_time(tokens: list[Token], form: int) -> None:
+    first, last = statement_of(tokens, form)
+    end = run_end(tokens, form + 1, IN_CONDITIONS)
+    begin = first + 1 + (tokens[first + 1].kind == "comma")
+    body = tokens[begin : form - 1]
+    if (
+        tokens[first].kind in (*_TIMES, "every_day")
+        and end == last
+        and body
+        and all(token.kind in _PLAIN for token in body)
+    ):
+        comma = Token("comma", tokens[form].start, tokens[form].start)
+        tokens[first + 1 : end] = [comma, *tokens[form:end], comma, *body]
+
+
 def _elsewhere(commands: Sequence[Token], journey: Token) -> list[Token]:
     """The same commands in other places; nothing where they have no one place."""
     said = [token.value for token in commands if isinstance(token.value, Called | Listed)]

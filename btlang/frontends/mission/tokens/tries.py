@@ -127,7 +127,8 @@ class Tries(SentenceReader):
             if asks:
                 return self._ask_again(match, at)
             return self._after_repair(match, at) or self._try_that(match, at) or self._doubt_what(match, at)
-        first = _first_of_form(tokens, statement_start(tokens, last), last)
+        begin = statement_start(tokens, last)
+        first = _first_of_operand(tokens, last - 1) if asks else _first_of_form(tokens, begin, last)
         number, end, pace = self._attempts(match)
         if not number or (pause is not None and pace is not None):
             return 0
@@ -370,7 +371,9 @@ class Tries(SentenceReader):
 
 
 def _first_of_form(tokens: Sequence[Token], first: int, last: int) -> int:
-    """Where the commands of a statement begin: behind `if bumped,`."""
+    """Where the commands of a statement begin: behind `if bumped,`, `at 6 pm,`."""
+    if tokens[first].kind in ("at", "every_day"):
+        first += 1 + (tokens[first + 1].kind == "comma")
     begins = (i + 1 for i in range(first + 1, last) if tokens[i].kind == "comma" and tokens[i - 1].kind == "condition")
     return next(begins, first)
 
