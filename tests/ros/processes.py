@@ -34,7 +34,7 @@ STARTED: list[Process] = []
 
 def start(*command: str, **options: Any) -> Process:
     """A process in a group of its own, which ends with the test, or with the module where that shares it."""
-    process = popen(command, start_new_session=True, **options)
+    process = popen(command, start_new_session=True, for_ros=True, **options)
     STARTED.append(process)
     return process
 
