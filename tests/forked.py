@@ -105,8 +105,9 @@ def popen(
     start_new_session: bool = False,
     for_ros: bool = False,
 ) -> Process:
-    """A `subprocess.Popen`, or a ForkedProcess for a command of btlang that any folder has the modules of. With `for_ros`
-    that has imported rclpy, too.
+    """A `subprocess.Popen`, or a ForkedProcess for a command of btlang that any folder has the modules of.
+
+    With `for_ros` it is forked from a process that has imported rclpy.
     """
     words, environment = [*map(str, command)], dict(os.environ if env is None else env)
     paths = "", str(ROOT), os.environ.get("PYTHONPATH", "")

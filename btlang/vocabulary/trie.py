@@ -373,7 +373,14 @@ def collisions(root: TrieNode, values: Values, other: TrieNode | None = None) ->
             continue
         if left is right and SLOTS not in left:  # most are: only words lead on
             seen.add((id(left), id(left)))
-            pending += [(child, child) for word, child in left.items() if word not in NO_WORDS]
+            nodes = [left]
+            while nodes:
+                for word, child in nodes.pop().items():
+                    if word not in NO_WORDS:
+                        if SLOTS in child:
+                            pending.append((child, child))
+                        else:
+                            nodes.append(child)
             continue
         seen |= {(id(left), id(right)), (id(right), id(left))}
         if left is not right and END in left and END in right:
