@@ -25,7 +25,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from btlang.text.source import Source
-from tests import forked
+from tests import forked, made_once  # noqa: F401 (the folder of `made_once` is that of the first process)
 from tests.profiles import LONG
 
 settings.register_profile(
