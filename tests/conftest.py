@@ -24,8 +24,9 @@ from typing import IO
 import pytest
 from hypothesis import HealthCheck, settings
 
+from btlang.support import gc_pause
 from btlang.text.source import Source
-from tests import forked
+from tests import forked, made_once  # noqa: F401 (the folder of `made_once` is that of the first process)
 from tests.profiles import LONG
 
 settings.register_profile(
@@ -157,15 +158,19 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 def pytest_collection_finish() -> None:
-    """What was collected stays, and most tests leave few objects: looking for garbage takes an eighth of all time."""
-    gc.freeze()
+    """Most tests leave little garbage, and looking for it took a tenth of all time. What was collected isn't frozen:
+    else the search would also go through each vocabulary that is made.
+    """
+    gc_pause._LOOK_AFTER = 10_000_000
     gc.set_threshold(20_000, 20, 20)
     gc.enable()
 
 
 def pytest_sessionfinish() -> None:
-    """Nothing that tests have started goes on."""
+    """Nothing that tests have started goes on. What is garbage goes now; then pytest looks for more five times."""
     forked.end()
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.fixture(scope="session", autouse=True)

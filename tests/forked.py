@@ -18,15 +18,21 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from functools import cache
 from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from runpy import run_module
 from typing import IO, Any
 from warnings import simplefilter
 
 ROOT = Path(__file__).parent.parent
-_PRELOADED = (  # not rclpy: a process that was forked behind its import crashes as it ends
+_PRELOADED = (
     "btlang.cli.robots", "btlang.cli.run", "btlang.server.http.app", "btlang.task.layer", "numpy", "uvicorn",
 )  # fmt: skip
+_PRELOADED_FOR_ROS = (
+    *_PRELOADED, "btlang.ros.mission.node", "btlang.ros.robot.robot", "btlang.ros.serving.server",
+    "btlang.ros.simulator.simulator", "btlang.ros.words.binding", "rclpy.action", "rclpy.executors",
+)  # fmt: skip
+_MESSAGES = ("action_msgs", "geometry_msgs", "nav_msgs", "rcl_interfaces", "sensor_msgs", "std_msgs", "std_srvs")
 _MOST = 1 << 20  # bytes of a request
 
 
@@ -97,8 +103,12 @@ def popen(
     stderr: Any = None,
     text: bool = False,
     start_new_session: bool = False,
+    for_ros: bool = False,
 ) -> Process:
-    """A `subprocess.Popen`, or a ForkedProcess for a command of btlang that any folder has the modules of."""
+    """A `subprocess.Popen`, or a ForkedProcess for a command of btlang that any folder has the modules of.
+
+    With `for_ros` it is forked from a process that has imported rclpy.
+    """
     words, environment = [*map(str, command)], dict(os.environ if env is None else env)
     paths = "", str(ROOT), os.environ.get("PYTHONPATH", "")
     if stderr == subprocess.PIPE or not _can_be_forked(words) or environment.get("PYTHONPATH", "") not in paths:
@@ -115,7 +125,7 @@ def popen(
     }  # fmt: skip
     descriptors = [taken, printing, complaining, theirs.fileno()]
     try:
-        socket.send_fds(_server()[0], [json.dumps(request).encode()], descriptors)
+        socket.send_fds(_server(for_ros)[0], [json.dumps(request).encode()], descriptors)
         pid = int(ours.recv(16))
     finally:
         theirs.close()
@@ -143,23 +153,26 @@ def _descriptor(given: Any, flags: int, usual: int) -> int:
     return os.dup(usual if given is None else given if isinstance(given, int) else given.fileno())
 
 
+_servers: list[tuple[socket.socket, subprocess.Popen[bytes]]] = []
+
+
 @cache
-def _server() -> tuple[socket.socket, subprocess.Popen[bytes]]:
+def _server(for_ros: bool) -> tuple[socket.socket, subprocess.Popen[bytes]]:
     """The process from which others are forked, and the connection to it, with which it ends."""
     ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     ours.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _MOST)
     process = subprocess.Popen(
-        [sys.executable, "-m", "tests.forked", str(theirs.fileno())], cwd=ROOT, pass_fds=[theirs.fileno()],
-        stdin=subprocess.DEVNULL, start_new_session=True,
+        [sys.executable, "-m", "tests.forked", str(theirs.fileno()), *(["ros"] if for_ros else [])], cwd=ROOT,
+        pass_fds=[theirs.fileno()], stdin=subprocess.DEVNULL, start_new_session=True,
     )  # fmt: skip
     theirs.close()
+    _servers.append((ours, process))
     return ours, process
 
 
 def end() -> None:
-    """Ends the process from which others are forked, if there is one."""
-    if _server.cache_info().currsize:
-        connection, process = _server()
+    """Ends the processes from which others are forked."""
+    for connection, process in _servers:
         connection.close()
         process.wait()
 
@@ -230,11 +243,26 @@ def _become(request: dict[str, Any], streams: list[int]) -> list[str]:
     return [str(word) for word in request["words"]]
 
 
+def _load_messages() -> None:
+    """Loads what rclpy needs of each type of message and service, which it else does as a node first uses one."""
+    with suppress(ImportError):
+        for package in _MESSAGES:
+            for kind in ("msg", "srv"):
+                if find_spec(f"{package}.{kind}") is not None:
+                    module = import_module(f"{package}.{kind}")
+                    for found in [*vars(module).values()]:
+                        if isinstance(found, type):
+                            type(found).__import_type_support__()  # type: ignore[attr-defined]
+
+
 def _main() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C in a terminal is for the tests
-    for name in _PRELOADED:
+    for_ros = sys.argv[2:] == ["ros"]
+    for name in _PRELOADED_FOR_ROS if for_ros else _PRELOADED:
         with suppress(ImportError):
             import_module(name)
+    if for_ros:
+        _load_messages()
     from btlang.robots.mission_vocabulary import world_vocabulary
 
     world_vocabulary()

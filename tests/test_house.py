@@ -8,7 +8,7 @@ import re
 import subprocess
 import sys
 import tomllib
-from collections.abc import Container
+from collections.abc import Container, Iterator
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
@@ -23,14 +23,17 @@ from btlang.vocabulary.capabilities import CAPABILITIES
 ROOT = Path(__file__).parent.parent
 FOLDERS = ("btlang", "tests", "grammar", "keywords", "examples", "docs", ".ci")
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-FILES = sorted(
-    path
-    for folder in FOLDERS
-    for path in (ROOT / folder).rglob("*")
-    if path.is_file()
-    and not {"__pycache__", "samples", "dist", "node_modules"} & set(path.relative_to(ROOT).parts)
-    and path.suffix not in (".svg", ".png", ".gif", ".words")
-)
+LEFT_OUT = {"__pycache__", "samples", "dist", "node_modules"}
+
+
+def files(folder: Path) -> Iterator[Path]:
+    """Yields the files that the rules are about, in a folder and those below."""
+    for name, below, names in os.walk(folder):
+        below[:] = [inner for inner in below if inner not in LEFT_OUT]
+        yield from (Path(name, file) for file in names if not file.endswith((".svg", ".png", ".gif", ".words")))
+
+
+FILES = sorted(path for folder in FOLDERS for path in files(ROOT / folder))
 PAGES = [*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")]
 MODULES = [path for path in FILES if path.suffix == ".py"]
 BORROWED = {ROOT / path for path in PROJECT["tool"]["ruff"]["extend-exclude"]}

@@ -5,6 +5,7 @@ Most commands need few of the words that ship, and reading all of their phrases 
 
 from __future__ import annotations
 
+import copyreg
 from collections.abc import Callable, Collection, Iterator, Mapping
 from io import BytesIO
 
@@ -23,30 +24,43 @@ _PROTOCOL = 5
 _update = dict.update
 
 
-class _SharingPickler(Pickler):
-    """Writes objects of some classes as their numbers in a list, to which it adds them."""
+def _shared(number: int) -> object:
+    """Stand in a pickle for what returns a shared object by its number; see `_Reader`."""
+    raise NotImplementedError
 
-    def __init__(self, file: BytesIO, classes: tuple[type, ...], shared: list[object], numbers: dict[int, int]) -> None:
-        super().__init__(file, _PROTOCOL)
-        self._classes, self._shared, self._numbers = classes, shared, numbers
 
-    def persistent_id(self, thing: object) -> int | None:
-        if not isinstance(thing, self._classes):
-            return None
-        number = self._numbers.setdefault(id(thing), len(self._shared))
-        if number == len(self._shared):
-            self._shared.append(thing)
-        return number
+class _Reader(Unpickler):
+    """Reads a child, with the objects that all children share."""
+
+    def __init__(self, file: BytesIO, shared: list[object]) -> None:
+        super().__init__(file)
+        self._shared = shared
+
+    def find_class(self, module: str, name: str) -> Any:
+        if (module, name) == (__name__, _shared.__name__):
+            return self._shared.__getitem__
+        return super().find_class(module, name)
 
 
 def packed(tree: Mapping[str, Any], classes: tuple[type, ...]) -> tuple[dict[str, bytes], list[object]]:
     """Return the children of a tree as bytes, and the objects of these classes that they share."""
     shared: list[object] = []
     numbers: dict[int, int] = {}
+
+    def reduced(thing: object) -> tuple[Callable[[int], object], tuple[int]]:
+        number = numbers.setdefault(id(thing), len(shared))
+        if number == len(shared):
+            shared.append(thing)
+        return _shared, (number,)
+
+    # by class, where `persistent_id` would be called for each object
+    table = {**copyreg.dispatch_table, **dict.fromkeys(classes, reduced)}
     children = {}
     for key, child in tree.items():
         file = BytesIO()
-        _SharingPickler(file, classes, shared, numbers).dump(dict(child) if isinstance(child, LaterTree) else child)
+        writer = Pickler(file, _PROTOCOL)
+        writer.dispatch_table = table
+        writer.dump(dict(child) if isinstance(child, LaterTree) else child)
         children[key] = file.getvalue()
     return children, shared
 
@@ -60,10 +74,8 @@ def unpacked(children: Mapping[str, bytes], shared: list[object], now: Collectio
 
 
 def _read(data: bytes, shared: list[object]) -> Any:
-    reader = Unpickler(BytesIO(data))
-    reader.persistent_load = shared.__getitem__  # type: ignore[method-assign]
     with gc_paused:
-        return reader.load()
+        return _Reader(BytesIO(data), shared).load()
 
 
 def _reading(name: str) -> Callable[..., Any]:

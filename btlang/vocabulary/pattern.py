@@ -43,7 +43,7 @@ class PatternError(ValueError):
 _PIECE = r"(?P<slot>\{[^{}]*\})|(?P<open>\[)|(?P<close>\])|(?P<text>(?:\\.|\([^()]*\)|[^\s\[\]{}\\()])+)|(?P<bad>\S)"
 
 
-@lru_cache(maxsize=4096)  # asked for at each load several times, and for each leaf that is named
+@lru_cache(maxsize=16_384)  # more than all phrases of a language: each load asks for them in turn, several times
 def forms(pattern: str, articles: frozenset[str] = frozenset()) -> tuple[Form, ...]:
     """Every way to say the pattern, without articles, longest first. Raises PatternError."""
     ways: list[list[Form]] = [[()]]  # a stack: the innermost open `[` is the last

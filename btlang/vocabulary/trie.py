@@ -19,7 +19,7 @@ from btlang.vocabulary.references import choice_of, is_related
 from btlang.vocabulary.value_type import KINDS, OBJECT, PLACE, TEXT, WORLD, ZONE, ValueType
 from btlang.vocabulary.values import Values
 from btlang.vocabulary.verbs import fill, is_no_way
-from btlang.vocabulary.word_tree import END, NO_WORDS, SLOTS, VERBS
+from btlang.vocabulary.word_tree import END, NO_WORDS, SLOTS, VERBS, first_with_slots
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -373,7 +373,7 @@ def collisions(root: TrieNode, values: Values, other: TrieNode | None = None) ->
             continue
         if left is right and SLOTS not in left:  # most are: only words lead on
             seen.add((id(left), id(left)))
-            pending += [(child, child) for word, child in left.items() if word not in NO_WORDS]
+            pending += [(node, node) for node in first_with_slots(left)]
             continue
         seen |= {(id(left), id(right)), (id(right), id(left))}
         if left is not right and END in left and END in right:

@@ -46,6 +46,16 @@ def find(tree: WordTree, words: Sequence[str], at: int) -> tuple[Any, int] | Non
             found = node[END], at
 
 
+def first_with_slots(tree: WordTree) -> list[WordTree]:
+    """The nodes with slots to which words alone lead, from the tree on."""
+    found, nodes = [], [tree]
+    for node in nodes:
+        below = [child for word, child in node.items() if word not in NO_WORDS]
+        found += [child for child in below if SLOTS in child]
+        nodes += [child for child in below if SLOTS not in child]
+    return found
+
+
 def words_of(*trees: WordTree) -> set[str]:
     """Every word of some trees, those behind slots among them."""
     words: set[str] = set()

@@ -95,10 +95,10 @@ def test_worlds_that_are_too_much(name: str) -> None:
 @pytest.mark.parametrize("name", ROBOTS)
 def test_robots_that_are_too_much(name: str) -> None:
     text, told = ROBOTS[name]
-    began = time.monotonic()
+    began = time.process_time()
     with pytest.raises(MissionError) as caught:
         read_body(Source(text, "robot"), ("simulated",))
-    assert time.monotonic() - began < 10.0
+    assert time.process_time() - began < 10.0
     [problem] = caught.value.diagnostics
     assert (problem.code, problem.span.source.name) == ("BT071", "robot")
     assert told in problem.message

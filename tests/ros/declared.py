@@ -121,7 +121,8 @@ class Robot:
         """A mission with the words of a keyword file."""
         from btlang.ros.words.binding import bind_ros
 
-        self._file.write_text(words, encoding="utf-8")
+        if not self._file.exists() or self._file.read_text(encoding="utf-8") != words:
+            self._file.write_text(words, encoding="utf-8")  # a file that was written is read anew: half a second
         tree = btlang.parse_tree(mission, keywords=[str(self._file)])
 
         def own(entry: Any, vocabulary: Any) -> Any:

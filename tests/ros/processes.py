@@ -33,8 +33,12 @@ STARTED: list[Process] = []
 
 
 def start(*command: str, **options: Any) -> Process:
-    """A process in a group of its own, which ends with the test, or with the module where that shares it."""
-    process = popen(command, start_new_session=True, **options)
+    """A process in a group of its own, which ends with the test, or with the module where that shares it.
+
+    Robots are forked with rclpy. What runs missions is not: such a fork crashes as it ends where threads go on.
+    """
+    is_robot = "sim-ros" in command or any(word.startswith("tests.ros.") for word in command)
+    process = popen(command, start_new_session=True, for_ros=is_robot, **options)
     STARTED.append(process)
     return process
 

@@ -10,6 +10,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Awaitable, Callable
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,8 @@ from btlang.diagnostics.files import MOST_BYTES
 from btlang.server.mcp import Tools
 from btlang.vocabulary.decorators import action
 
-mcp = pytest.importorskip("mcp")
+if find_spec("mcp") is None:  # importing it takes half a second, in each process that reads these tests
+    pytest.skip("mcp is not installed", allow_module_level=True)
 
 ROOT = Path(__file__).parent.parent.parent
 Ask = Callable[..., Awaitable[dict[str, Any]]]
@@ -27,6 +29,8 @@ Ask = Callable[..., Awaitable[dict[str, Any]]]
 
 def served(script: Callable[[Ask, Any], Awaitable[None]], *options: str) -> None:
     """Runs a script with a client of a real `btc mcp`."""
+
+    import mcp
 
     async def run() -> None:
         environment = {**os.environ, "PYTHONPATH": str(ROOT)}

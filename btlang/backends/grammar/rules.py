@@ -61,9 +61,17 @@ NOTHING = Alternatives(())
 """What can't be said with the loaded words."""
 
 
+def is_nothing(part: Part) -> bool:
+    """Whether a part is NOTHING, which is asked of each part that is made."""
+    return type(part) is Alternatives and not part.parts
+
+
 def choice(parts: Iterable[Part]) -> Part:
     """Return one of the parts that can be said, each once."""
-    found = tuple(dict.fromkeys(part for part in parts if part != NOTHING))
+    said = (part for part in parts if not is_nothing(part))
+    found = tuple(
+        {part.text if type(part) is Text else part: part for part in said}.values()
+    )  # a text has a quick hash
     return found[0] if len(found) == 1 else Alternatives(found)
 
 
@@ -73,7 +81,7 @@ def joined(parts: Iterable[Part]) -> Part:
     for part in parts:
         if isinstance(part, Text) and made and isinstance(made[-1], Text):
             made[-1] = Text(made[-1].text + part.text)
-        elif part == NOTHING:
+        elif is_nothing(part):
             return NOTHING
         elif not isinstance(part, Joined) or part.parts:
             made.append(part)
@@ -82,7 +90,7 @@ def joined(parts: Iterable[Part]) -> Part:
 
 def repeat(part: Part, mark: str) -> Part:
     """Repeat the part as often as the mark says. A part that can't be said can be said no times."""
-    if part == NOTHING:
+    if is_nothing(part):
         return NOTHING if mark == "+" else Joined(())
     return Repeated(part, mark)
 
@@ -136,12 +144,13 @@ def _pieces(format_rules: str) -> Iterator[tuple[str, str]]:
 
 def prune(rules: Rules) -> Rules:
     """Return the rules that can make something and that the first one uses, without the others and what needs them."""
-    rules = dict(rules)
-    while True:
-        empty = {name for name, part in rules.items() if part == NOTHING}
-        if not empty:
-            break
-        rules = {name: _without(part, empty) for name, part in rules.items() if name not in empty}
+    uses = {name: set(find_rule_names(part)) for name, part in rules.items()}
+    while empty := {name for name, part in rules.items() if is_nothing(part)}:
+        rules = {
+            name: part if uses[name].isdisjoint(empty) else _without(part, empty)
+            for name, part in rules.items()
+            if name not in empty
+        }
     used: dict[str, None] = {}
     pending = [next(iter(rules))]
     while pending:
