@@ -22,8 +22,8 @@ from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import Known
+from btlang.vocabulary.references import key_of
 from btlang.vocabulary.shipped import DEFAULT_WORLD, ENGLISH
-from btlang.vocabulary.values import key_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

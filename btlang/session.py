@@ -34,8 +34,8 @@ from btlang.run.snapshot import Snapshot
 from btlang.run.statuses import Status
 from btlang.text.formatting import RED
 from btlang.text.source import NOWHERE, Source
+from btlang.vocabulary.references import key_of
 from btlang.vocabulary.shipped import DEFAULT_WORLD
-from btlang.vocabulary.values import key_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -51,7 +51,8 @@ class Orthography(Record):
     `spellings` are words that are read as another one: contractions (Spanish `al` as `a`), and words that are written
     without their accents, where no other word is written so. `contracted` are words with an apostrophe that may be
     written as two (`don t`, `do n't`, `you 've`), by the second and the first of these. `expanded` are words that are
-    read as two: `it's` as `it` and `is`. `titles` are articles that a full stop may belong to: `Mr. Miller`.
+    read as two: `it's` as `it` and `is`. A full stop may belong to `titles`, as in `Mr. Miller`; they are articles too,
+    but for those in which names differ.
     """
 
     articles: frozenset[str] = frozenset()
@@ -95,6 +96,20 @@ class Orthography(Record):
             for at, written in enumerate(text.split())
             if (word := self.word(written)) not in self.articles or (at > 0 and is_letter(written))
         ]
+
+    def bare(self, name: str) -> str:
+        """Return a name as it is written, without articles, which do not matter; the `A` of `shelf A` is none."""
+        said = enumerate(name.split())
+        return " ".join(word for at, word in said if word.lower() not in self.articles or (at and is_letter(word)))
+
+    def told_apart(self, names: Iterable[str]) -> Orthography:
+        """Return the same orthography, in which titles that tell names apart are words: `Mr Li` and `Mrs Li`."""
+        alike: dict[tuple[str, ...], set[tuple[str, ...]]] = {}
+        for name in names:
+            words = tuple(self.word(word.rstrip(".")) for word in name.split())
+            alike.setdefault(tuple(word for word in words if word not in self.titles), set()).add(words)
+        apart = {word for said in alike.values() if len(said) > 1 for words in said for word in words} & self.titles
+        return self.replace(articles=self.articles - apart) if apart else self
 
 
 def without_accents(word: str) -> str:
@@ -293,11 +308,11 @@ def split(source: Source, orthography: Orthography) -> Words:
                 starts.append(start)
                 ends.append(middle)
                 word, start = expanded[word][1], middle
+            titled = end if word in titles else titled
             if word in articles and _is_article(
                 match[kind], text, start, end, len(words) > first and words[-1] != END_OF_STATEMENT
             ):
                 result.articles[len(words)] = (start, end)
-                titled = end if word in titles else -1
                 continue
         elif kind == _LINE:
             below = _indent(word[1:])

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 import re
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.text.source import Source, Span
 from btlang.text.spelling import nearest
-from btlang.text.words import Orthography, is_letter, split
+from btlang.text.words import Orthography, split
 from btlang.vocabulary.cache import recent
 from btlang.vocabulary.entry import COMPARISONS, About, Entry, Meaning, Role, SlotSpec
 from btlang.vocabulary.language_tables import (
@@ -91,12 +92,11 @@ class Lexicon:
                     entry.replace(phrases=(), quantity=(), verbs=(), example="") for entry in known
                 ]
         titles = frozenset(language["titles"])
-        self.articles = titles.union(language["articles"])
         contractions = {word: tuple(read.split()) for word, read in language["contractions"].items()}
         spellings = {word: read[0] for word, read in contractions.items() if len(read) == 1}
         expanded = {word: read for word, read in contractions.items() if len(read) > 1}
         self.orthography = Orthography(
-            self.articles, language["decimal_comma"], spellings, expanded=expanded, titles=titles
+            titles.union(language["articles"]), language["decimal_comma"], spellings, expanded=expanded, titles=titles
         )
         self.asking: Mapping[str, Sequence[str]] = {
             **dict.fromkeys(ASKING, ()), **{name: tuple(ways(said)) for name, said in language["asking"].items()}
@@ -113,7 +113,7 @@ class Lexicon:
         for file in files:
             for kind, words, name in file.names:
                 if self.types[kind].kind == "names":
-                    self.values.add_name(kind, self._bare(words), name)
+                    self.values.add_name(kind, self.orthography.bare(words), name)
         nouns = chain(*(language["nouns"].get(kind, (kind,)) for kind in (PLACE, ZONE)))
         self._heads = sorted({*self.values.ones, *nouns})
         self._shapes: list[str] = language["shapes"]
@@ -262,6 +262,11 @@ class Lexicon:
         self.__dict__.update(state, trie=unpacked(children, shared, NO_WORDS))
 
     @property
+    def articles(self) -> frozenset[str]:
+        """Words that say nothing: articles, and titles but for those that tell names apart."""
+        return self.orthography.articles
+
+    @property
     def types(self) -> Mapping[str, ValueType]:
         """Slot types by name."""
         return self.values.types
@@ -309,16 +314,22 @@ class Lexicon:
         """
 
         def made() -> Lexicon:
-            pairs = {kind: [(self._bare(name), name) for name in listed] for kind, listed in names.items()}
+            orthography = self.orthography
+            for listed in names.values():
+                orthography = orthography.told_apart(listed)
+            pairs = {kind: [(orthography.bare(name), name) for name in listed] for kind, listed in names.items()}
+            for kind, listed in names.items() if orthography.articles != self.articles else ():
+                untitled = Counter(map(self.orthography.bare, listed))  # `Weber` is still Dr Weber where nobody else is
+                pairs[kind] += [(short, name) for name in listed if untitled[short := self.orthography.bare(name)] == 1]
             home = next((name for name, parts in (features or {}).get(PLACE, ()) if HOME in parts), "")
             if home:
                 pairs[PLACE] = [*pairs[PLACE], *((words, home) for words in self.asking["home"])]
             colors, others = self._colors(pairs), self._others(pairs)
             further = {kind: [*own, *colors.get(kind, ()), *others[kind]] for kind, own in pairs.items()}
             pairs = with_plurals(further, self._endings)
-            values = self.values.with_names(pairs, features)
+            values = self.values.with_names(pairs, features, orthography.articles)
             words = (word for pair in chain(*pairs.values()) for word in pair[0].lower().split())
-            written = self.orthography.with_words(word for word in words if not word.isascii())
+            written = orthography.with_words(word for word in words if not word.isascii())
             return self.replaced(values=values, context=ReadingContext(values), orthography=written)
 
         known = (*((kind, tuple(listed)) for kind, listed in names.items()), *(features or {}).items())
@@ -352,11 +363,6 @@ class Lexicon:
             ]
             for kind, pairs in named.items()
         }
-
-    def _bare(self, words: str) -> str:
-        """Articles do not matter in names either; the `A` of `shelf A` is none."""
-        said = enumerate(words.split())
-        return " ".join(word for at, word in said if word.lower() not in self.articles or (at and is_letter(word)))
 
     def with_places(self, names: tuple[str, ...]) -> Lexicon:
         """The same words with further places, as a mission names them."""

@@ -10,9 +10,9 @@ from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.entry import MANNER
 from btlang.vocabulary.match import SlotValue
 from btlang.vocabulary.nouns import Description
-from btlang.vocabulary.references import ALL, LATEST, NAMES, SELF, Choice, Parts, choice_of, is_one, is_related
+from btlang.vocabulary.references import ALL, LATEST, NAMES, SELF, Choice, Parts, choice_of, is_one, is_related, key_of
 from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE, WORLD, ZONE, format_number
-from btlang.vocabulary.values import Values, key_of
+from btlang.vocabulary.values import Values
 from btlang.vocabulary.word_tree import find
 
 

@@ -6,7 +6,7 @@ In a text `{{` and `}}` are the characters themselves.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Container, Iterator, Mapping
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 
 from btlang.support.record import Record
 from btlang.vocabulary.entry import POINT
@@ -171,3 +171,12 @@ def point_ports(text: str) -> tuple[tuple[str, str], ...]:
     if text[:1] != "(":
         return ()
     return tuple(zip(POINT, re.findall(r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?", text), strict=False))
+
+
+def key_of(words: Iterable[str]) -> str:
+    """The key on the blackboard of a name of several words.
+
+    `name` is another one in XML: as the port of a SubTree it would be the name of that node.
+    """
+    key = re.sub(r"\W", "_", "_".join(words))
+    return key if key != "name" else "name_"

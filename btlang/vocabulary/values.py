@@ -5,7 +5,6 @@ A value becomes the text of a port, in the unit whose factor is 1: `half a meter
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from marshal import dumps, loads  # a copy of a trie, at a tenth of the time that importing `copy` takes
 
@@ -39,7 +38,8 @@ class Values(Measures):
 
     def __init__(self, types: Mapping[str, ValueType], language: Mapping[str, Any], nouns: Iterable[Noun] = ()) -> None:
         super().__init__(types, language)
-        self._orthography = Orthography(frozenset((*language["articles"], *language["titles"])))
+        titles = frozenset(language["titles"])
+        self._orthography = Orthography(titles.union(language["articles"]), titles=titles)
         joining = (phrase for role in ("and", "or", "nor") for phrase in language["roles"].get(role, ()))
         self.joiners = frozenset((",", *(phrase.split()[0] for phrase in joining)))
         """The first words of what stands between the values of a list."""
@@ -88,10 +88,16 @@ class Values(Measures):
         self.shared_heads = SharedHeads(self.names_tree, self.joiners, self._plural_endings, self._belonging)
         self._described = NounReader(self.phrases, self.names_tree, self.likenesses)
 
-    def with_names(self, names: Mapping[str, Iterable[tuple[str, str]]], features: Features | None = None) -> Values:
-        """The same with further names of types, each with its words, and what those of a world are like."""
+    def with_names(
+        self, names: Mapping[str, Iterable[tuple[str, str]]], features: Features | None, articles: frozenset[str]
+    ) -> Values:
+        """The same with further names of types, each with its words, and what those of a world are like.
+
+        `articles` are the words that say nothing in names.
+        """
         made = Values.__new__(Values)  # what `copy` does, which takes long to import
         made.__dict__.update(self.__dict__)
+        made._orthography = self._orthography.replace(articles=articles)
         made._listed = {**self._listed, **{kind: dict(self._listed.get(kind, ())) for kind in names}}
         changed = {*names, *(OF[kind] for kind in names if kind in OF)} & self._names.keys()
         made._names = {**self._names, **{kind: loads(dumps(self._names[kind])) for kind in changed}}
@@ -389,12 +395,3 @@ class Values(Measures):
         words = [*self._orthography.words(word[1:]), "\n"]
         found = find(self._names[kind], words, 0) if len(words) > 1 else None
         return (found[0], at + 1) if found and found[1] == len(words) - 1 else None
-
-
-def key_of(words: Iterable[str]) -> str:
-    """The key on the blackboard of a name of several words.
-
-    `name` is another one in XML: as the port of a SubTree it would be the name of that node.
-    """
-    key = re.sub(r"\W", "_", "_".join(words))
-    return key if key != "name" else "name_"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 import btlang
@@ -62,3 +64,31 @@ def test_one_of_several_doors_must_be_named(world: str) -> None:
         with pytest.raises(btlang.MissionError) as refused:
             btlang.parse_tree(said, world=world)
         assert refused.value.diagnostics[0].code == "BT013"
+
+
+FAMILY = """
+start = { x = 1, y = 1 }
+people = [
+  { name = "Mr Keller", x = 6, y = 7 }, { name = "Mrs Keller", x = 7, y = 7 }, { name = "Dr Weber", x = 3, y = 3 },
+]
+"""
+
+
+@pytest.mark.parametrize("text", [FAMILY, FAMILY.replace("Mr ", "Mr. ").replace("Mrs ", "Mrs. ")])
+def test_titles_tell_people_apart(text: str, tmp_path: Path) -> None:
+    world = str(tmp_path / "family.toml")
+    Path(world).write_text(text, encoding="utf-8")
+    said = "greet Weber, then greet Mrs. Keller, greet Mr Keller and greet Dr Weber"
+    trees = [btlang.parse_tree(said, world=world, parser=parser) for parser in PARSERS]
+    met = [dict(node.ports)["person"].replace(".", "") for node in trees[0].tree.walk() if node.ports]
+    assert met == ["Dr Weber", "Mrs Keller", "Mr Keller", "Dr Weber"]
+    assert trees[0].tree == trees[1].tree
+    for form in ("xml", "json", "english"):
+        assert btlang.parse_tree(str(trees[0].to(form)), world=world).tree == trees[0].tree
+
+
+def test_a_family_name_alone_is_refused_where_titles_tell_people_apart(tmp_path: Path) -> None:
+    world = str(tmp_path / "family.toml")
+    Path(world).write_text(FAMILY, encoding="utf-8")
+    with pytest.raises(btlang.MissionError, match="Similar: Mr Keller, Mrs Keller"):
+        btlang.parse_tree("greet Keller", world=world)

@@ -20,9 +20,9 @@ from btlang.vocabulary.language_tables import CONNECTIVES, QUESTIONS
 from btlang.vocabulary.lexicon import DEFINING, NODE_ROLES, Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.pattern import Part, Slot, name_form
+from btlang.vocabulary.references import key_of
 from btlang.vocabulary.trie import TrieNode, add, longest
 from btlang.vocabulary.value_type import PERSON, TEXT
-from btlang.vocabulary.values import key_of
 from btlang.vocabulary.word_tree import END, SLOTS, find
 
 # A line that starts with one of these compares; it defines nothing.

@@ -11,10 +11,9 @@ from btlang.vocabulary.language_tables import NOT_ALONE
 from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
 from btlang.vocabulary.nouns import Description
 from btlang.vocabulary.pattern import forms
-from btlang.vocabulary.references import RELATIONS
+from btlang.vocabulary.references import RELATIONS, key_of
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import PLACE, WORLD
-from btlang.vocabulary.values import key_of
 
 SEPARATORS = {
     "set": "set_to", "increase": "by", "decrease": "by", "add": "add_to", "subtract": "subtract_from",

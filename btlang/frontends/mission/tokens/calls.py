@@ -14,10 +14,9 @@ from btlang.text.source import Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
 from btlang.vocabulary.entry import MANNER, Entry
 from btlang.vocabulary.match import Match, SlotValue
-from btlang.vocabulary.references import ALL, COUNT, NAMES, Choice, choice_of, keys_in, point_ports, renamed
+from btlang.vocabulary.references import ALL, COUNT, NAMES, Choice, choice_of, key_of, keys_in, point_ports, renamed
 from btlang.vocabulary.trie import TrieNode, longest
 from btlang.vocabulary.value_type import PLACE
-from btlang.vocabulary.values import key_of
 
 NEGATED = frozenset(("negated", "negated_twice"))
 """The roles of conditions that say `not` themselves."""

@@ -25,10 +25,9 @@ from btlang.tree.answers import EXAMPLE
 from btlang.tree.sums import COUNTING
 from btlang.vocabulary.entry import COUNT, SAY, Entry, Meaning
 from btlang.vocabulary.match import Match
-from btlang.vocabulary.references import free_key
+from btlang.vocabulary.references import free_key, key_of
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import PERSON, TEXT
-from btlang.vocabulary.values import key_of
 from btlang.vocabulary.word_tree import find
 
 _ANSWER = "Answer"
