@@ -15,7 +15,8 @@ from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE
 from btlang.vocabulary.word_tree import find
 
 _ASKED = ("condition", "negated")
-COMES, _COMES_BACK, _DURATION = "WaitForPerson", "ComeBack", "duration"
+COMES, _ANYBODY_COMES, _COMES_BACK, _DURATION = "WaitForPerson", "WaitForSomeone", "ComeBack", "duration"
+_ANY = "seen"  # how one of those in view is chosen
 _TAKES, _FROM = "Take", ("off", "at", "inside", "on")
 _LOOPED = frozenset(("command", "name", "wait", "every", "count", "repeat", "open", "close", "comma", "and", "then"))
 
@@ -230,9 +231,22 @@ class JourneyWords(SentenceReader):
         values = [
             SlotValue(slot.name, slot.type, said[slot.type], at, found[1]) for slot in entry.slots if slot.type in said
         ]
-        self._partial.append(Match(Meaning("command", entry), found[1], tuple(values)), at)
+        match = self.for_anybody(Match(Meaning("command", entry), found[1], tuple(values)))
+        self._partial.append(match, at)
+        if match.meaning.entry is not entry:
+            self._calls.note(match)
         tokens[-1].start = wait.start
         return found[1]
+
+    def for_anybody(self, match: Match) -> Match:
+        """`wait for somebody`: until anybody comes; who it is shows only then."""
+        entry = self._vocabulary.entry(_ANYBODY_COMES)
+        if match.meaning.entry is None or match.meaning.entry.id != COMES or entry is None:
+            return match  # as nearly always
+        who = next((choice_of(value.text) for value in match.values if value.type == PERSON and not value.more), None)
+        if who is None or who.how != _ANY or who.parts:
+            return match
+        return Match(Meaning("command", entry), match.last, tuple(v for v in match.values if v.type != PERSON))
 
     def wait_for_event(self, match: Match, at: int) -> int:
         """`wait for Bob to come to the lab`, `wait for the door to open`: until he comes to the lab, until it opens."""

@@ -20,6 +20,7 @@ from btlang.vocabulary.references import ALL, NAMES, SELF, Choice, choice_of, fr
 from btlang.vocabulary.value_type import DOOR, KINDS, OBJECT, PERSON, PLACE, TEXT, WORLD, ZONE
 from btlang.vocabulary.word_tree import find
 
+_MEETS = "SomeoneNear"  # the condition that holds once a command for nobody in particular is done
 ODD = ("", "{", "(")
 """How texts begin that are no plain values: of unknown names, references, choices and points."""
 
@@ -59,7 +60,8 @@ class Mentions:
         """`wait until someone comes, then greet them`, `if someone is in the lab, greet them`: the nearest one."""
         somebody = self._vocabulary.negative_subjects.keys()
         names_none = all(slot.type != PERSON for slot in entry.slots)
-        if names_none and entry.phrases and not somebody.isdisjoint(entry.phrases[0].split()):
+        is_somebody = entry.phrases and not somebody.isdisjoint(entry.phrases[0].split())
+        if names_none and (is_somebody or _MEETS in entry.achieves):
             places = [value for value in match.values if value.type == PLACE and not value.more]
             self.note_nearest(tuple(("at", value.text) for value in places if value.text[:1] not in ODD))
 

@@ -11,6 +11,7 @@ from btlang.frontends.mission.tokens.parted import part_each
 from btlang.text.time_of_day import WEEKDAYS, WEEKEND, WORKDAYS
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import OBJECT, PERSON, PLACE, TEXT, WORLD, ZONE
 from btlang.vocabulary.word_tree import find
 
@@ -29,6 +30,7 @@ def reworded(text: Words, vocabulary: Lexicon) -> list[Diagnostic]:
     say_each(text, vocabulary)
     part_each(text, vocabulary)
     _list_days(text, vocabulary)
+    _say_as_soon_as(text, vocabulary)
     _drop_again(text, vocabulary)
     _drop_back(text, vocabulary)
     _say_words(text, vocabulary)
@@ -142,6 +144,19 @@ def _list_days(text: Words, vocabulary: Lexicon) -> None:
             text.replace(at, [*every, *listed[1:-2], vocabulary.word("and"), listed[-1]])
 
 
+def _say_as_soon_as(text: Words, vocabulary: Lexicon) -> None:
+    """Say `as soon as` for a `once` whose condition would make it another word: `once more than 2 guests are here`."""
+    words, again = text.words, vocabulary.roles["again"]
+    once = {phrase for phrase in vocabulary.roles["once"] if any(way.startswith(f"{phrase} ") for way in again)}
+    if text.distinct.isdisjoint(once):
+        return  # as nearly always
+    for at in reversed([at for at, word in enumerate(words) if word in once]):
+        whole, behind = (longest(vocabulary.trie, text, i, vocabulary.context) for i in (at, at + 1))
+        is_again = whole is not None and whole.meaning.role == "again"
+        if is_again and behind is not None and behind.meaning.role == "condition":
+            text.replace(at, vocabulary.word("as_soon_as").split())
+
+
 def _drop_again(text: Words, vocabulary: Lexicon) -> None:
     """Take out `again` between times before what is done: `at 9 am and again at 3 pm, wave`."""
     words, again, joints = text.words, {*vocabulary.roles["again"]}, {",", *vocabulary.roles["and"]}
@@ -179,10 +194,11 @@ def _say_words(text: Words, vocabulary: Lexicon) -> None:
         asks = any(word in vocabulary.before_conditions for word in words[first:at])
         if found is not None and asks:
             last = next(i for i in range(found[1], len(words)) if words[i] in _ENDING or words[i] in vocabulary.joining)
-            said = " ".join(words[found[1] : last])
+            said = " ".join(words[found[1] : last]).strip('"')
             if said:
+                is_speaker = words[at - 1] in vocabulary.asking["speaking"]
                 text.drop(at + 1, last)
-                text.replace(at, [says[0], f'"{said}'])
+                text.replace(at, [says[-1] if is_speaker else says[0], f'"{said}'])
 
 
 def _say_again(text: Words, vocabulary: Lexicon) -> None:

@@ -363,7 +363,7 @@ class WordReader:
             role = self._outcomes.going_on(role, self._text.span(at, match.last))
         if end := self._read_otherwise(match, role, at):
             return end
-        match = self._places.looking_there(match) if match.values else match
+        match = self._order.for_anybody(self._places.looking_there(match)) if match.values else match
         if role in _CONDITIONS:
             if (end := self._condition(match, at)) > match.last:
                 return end
