@@ -260,3 +260,10 @@ def begins_condition(tokens: Sequence[Token], at: int) -> bool:
     while at < len(tokens) and (tokens[at].kind == "open" or tokens[at].kind in CORRELATIVES):
         at += 1
     return at < len(tokens) and (tokens[at].kind in ("condition", "not") or tokens[at].kind in QUANTIFIERS)
+
+
+def closed_until(tokens: Sequence[Token]) -> str:
+    """Return until when a statement closes a zone: 11:00 for `from 10 am to 11 am, avoid the lab`; "" for others."""
+    condition = tokens[1].value if len(tokens) > 1 and tokens[0].kind == "while" else None
+    closes = isinstance(condition, Called) and any(keeps_out(token) for token in tokens)
+    return dict(condition.arguments).get("at_most", "") if isinstance(condition, Called) and closes else ""

@@ -12,6 +12,7 @@ from btlang.frontends.mission.token import (
     Called,
     Listed,
     Token,
+    closed_until,
     drives,
     go_on,
     run_start,
@@ -37,8 +38,7 @@ from btlang.vocabulary.value_type import PLACE
 from btlang.vocabulary.word_tree import find
 
 _JOINTS = JOINTS | STATEMENT_ENDS
-_UNANSWERED = "if_unanswered"
-_STOP = "Stop"
+_UNANSWERED, _STOP = "if_unanswered", "Stop"
 _DONE, _ASKED = ("command", "name"), ("condition", "not")
 _ENDS = (END_OF_STATEMENT, END_OF_TEXT, ";", ")")
 _CHOICES = frozenset(("if", "unless", "otherwise", WORKS))
@@ -370,22 +370,22 @@ class GoingOn(SentenceReader):
         return True
 
     def doubt_rule(self, role: str, at: int, last: int) -> None:
-        """BT151 for what may be a part of the rule before it: `whenever bumped, wave. Then dock`."""
-        end = run_start(self._tokens, len(self._tokens), STATEMENT_ENDS)
-        words, text = self._text.span(at, last), self._text
+        """BT151 for what may be a part of the rule before it, or wait for it: `whenever bumped, wave. Then dock`."""
+        end, text = run_start(self._tokens, len(self._tokens), STATEMENT_ENDS), self._text
+        words, (first, kinds) = text.span(at, last), self._statement(end)
+        until = closed_until(self._tokens[first:end])
         is_new_line = "\n" in text.source.text[self._tokens[end - 1].end : words.start] if end else True
-        if not end or (is_new_line and role == "then"):
+        if not end or (is_new_line and role == "then" and not until):
             return
-        first, kinds = self._statement(end)
-        if any(token.role == ON_WAY or token.kind == "while_doing" for token in self._tokens[first:end]):
-            return  # a rule for the time of a journey
-        if kinds.isdisjoint(RULES) or (role == "otherwise" and "if" in kinds):
+        is_on_way = any(token.role == ON_WAY or token.kind == "while_doing" for token in self._tokens[first:end])
+        is_rule = until or not (kinds.isdisjoint(RULES) or is_on_way)
+        if not is_rule or (role == "otherwise" and "if" in kinds):
             return
         last += text.words[last] == ","
         rest = self._end_of_statement(last)
         said = text.span(last, rest).text if rest > last else "..."
-        word = self._vocabulary.word(FAILS if role == "otherwise" else role)
-        one = f"... {word} {said}" if role == "then" else f"{word}, {said}"
+        joint = self._vocabulary.word(FAILS if role == "otherwise" else "at" if until else role)
+        one = f"{joint} {until}, {said}" if until else f"{joint}, {said}" if role != "then" else f"... {joint} {said}"
         self._calls.problems.append(diagnostic("BT151", words, words=words.text, one=one, other=said))
 
 

@@ -11,6 +11,7 @@ from btlang.frontends.mission.tokens.parted import part_each
 from btlang.text.time_of_day import WEEKDAYS, WEEKEND, WORKDAYS
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.pattern import ways
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import OBJECT, PERSON, PLACE, TEXT, WORLD, ZONE
 from btlang.vocabulary.word_tree import find
@@ -38,6 +39,7 @@ def reworded(text: Words, vocabulary: Lexicon) -> list[Diagnostic]:
     _count_again(text, vocabulary)
     _tell_again(text, vocabulary)
     _wait_to_try(text, vocabulary)
+    _wait_once(text, vocabulary)
     _drop_commas(text, vocabulary)
     _list_ranges(text, vocabulary)
     return [*_drop_untold_sizes(text, vocabulary), *_drop_untold_contents(text, vocabulary)]
@@ -254,6 +256,24 @@ def _wait_to_try(text: Words, vocabulary: Lexicon) -> None:
             said = words[at + 1 : lasts[1]]
             text.drop(at, lasts[1])
             text.replace(first, [wait, *said, vocabulary.word("and"), words[first]])
+
+
+def _wait_once(text: Words, vocabulary: Lexicon) -> None:
+    """Leave out what is said again: `wait until 10 am and until Bob is here` as `wait until 10 am and Bob is here`."""
+    words, joints = text.words, vocabulary.joining
+    untils = [phrase.split() for phrase in ways(vocabulary.roles["until"])]
+    if text.distinct.isdisjoint(phrase[-1] for phrase in untils):
+        return  # as nearly always
+    waits = [phrase.split() for phrase in ways(vocabulary.roles["wait_until"])]
+    for at in reversed([at for at in range(2, len(words) - 1) if words[at - 1] in joints]):
+        again = max((phrase for phrase in untils if words[at : at + len(phrase)] == phrase), key=len, default=None)
+        _, first, _ = text.earlier(at)
+        begins = (
+            end for end in range(at - 1, first, -1) for wait in waits if words[max(end - len(wait), 0) : end] == wait
+        )
+        begin = next(begins, 0) if again is not None else 0
+        if again is not None and begin and joints.isdisjoint(words[begin : at - 1]):
+            text.drop(at, at + len(again))
 
 
 def _drop_commas(text: Words, vocabulary: Lexicon) -> None:
