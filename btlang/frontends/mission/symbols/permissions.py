@@ -18,12 +18,12 @@ class Permissions:
     def __init__(self, text: Words, vocabulary: Lexicon) -> None:
         self.ends: dict[int, int] = {}
         self.problems: list[Diagnostic] = []
+        firsts = vocabulary.firsts
+        if text.distinct.isdisjoint(firsts["may"] | firsts["or_stay"]):
+            return
         self._allowing = tree_of((phrase, True) for phrase in vocabulary.roles["may"])
         self._staying = tree_of((phrase, True) for phrase in vocabulary.roles["or_stay"])
-        if text.distinct.isdisjoint((*self._allowing, *self._staying)):
-            return
         self._trie, self._context = vocabulary.trie, vocabulary.context.with_references()
-        firsts = vocabulary.firsts
         self._asking = firsts["if"] | firsts["once"] | firsts["arrival_at"]
         self._joining = firsts["then"] | firsts["and"]
         self._fronts = self._asking | self._joining

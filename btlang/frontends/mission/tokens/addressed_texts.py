@@ -33,7 +33,7 @@ class AddressedTexts(Hearers):
     @cached_property
     def _addressing(self) -> frozenset[str]:
         """The verbs behind which a person is told or asked something; none in a text without times or polite words."""
-        between = {phrase.split()[0] for phrase in self._vocabulary.roles["at"]}
+        between = self._vocabulary.firsts["at"]
         if self._text.distinct.isdisjoint(between.union(self._vocabulary.asking["politely"])):
             return frozenset()
         entries = (self._vocabulary.entry(id) for id in (TELL, ASK))

@@ -174,9 +174,9 @@ class ClockWords(SentenceReader):
     @cached_property
     def _hour_words(self) -> frozenset[str]:
         """The words with which hours begin, or that leave out days."""
-        said = (phrase for role in ("but", "except", "until_time") for phrase in self._vocabulary.roles[role])
-        asking = self._vocabulary.asking
-        return frozenset((*asking["hours"], *asking["by_then"], *(phrase.split()[0] for phrase in said)))
+        asking, firsts = self._vocabulary.asking, self._vocabulary.firsts
+        said = (*asking["hours"], *asking["by_then"])
+        return frozenset(said).union(firsts["but"], firsts["except"], firsts["until_time"])
 
     def hours(self, at: int) -> int:
         """`never enter the hall after 6 pm`, `... between 10 pm and 6 am`: while it is then."""

@@ -370,7 +370,7 @@ class Outcomes(Limits):
     def found(self, match: Match, at: int) -> None:
         """`look for the key. When you find it, A, if not B`: with the `if not` it is `if that works`."""
         tokens, words = self._tokens, self._text.words
-        as_soon_as = (phrase.split()[0] for phrase in self._vocabulary.roles["as_soon_as"])
+        as_soon_as = self._vocabulary.firsts["as_soon_as"]
         once = {*self._vocabulary.asked_once, *self._vocabulary.roles["once"], *as_soon_as}
         if words[at] not in once and words[at + 1] not in once:
             return

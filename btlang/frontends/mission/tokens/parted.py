@@ -32,11 +32,11 @@ def part_each(text: Words, vocabulary: Lexicon) -> None:
 def _part_sets(text: Words, vocabulary: Lexicon) -> None:
     """Say of each of several sets what is said of all: `pick up every cup and every book and take them to the hall`."""
     words, values, joints = text.words, vocabulary.values, {",", *vocabulary.roles["and"]}
+    if text.distinct.isdisjoint(values.plural_pronouns):
+        return  # as nearly always
     names = values.names_tree(OBJECT)
     starts = values.choice_starts | values.group_starts | names.keys() | values.names_tree(PERSON).keys()
     it = pronouns_for(values.pronouns, OBJECT)[0]
-    if text.distinct.isdisjoint(values.plural_pronouns) or text.distinct.isdisjoint(starts):
-        return  # as nearly always
     at = -1
     while at < len(words) - 1:
         at += 1
@@ -100,10 +100,12 @@ def _sets_at(text: Words, vocabulary: Lexicon, at: int, joints: Container[str]) 
 def _part_stops(text: Words, vocabulary: Lexicon) -> None:
     """Ask in each place of a journey: `go to the lab and the hall. If nobody is there, wave, otherwise nod`."""
     words, values, form = text.words, vocabulary.values, vocabulary.word("if")
+    if form not in text.distinct:
+        return  # as often
     patrol = vocabulary.entry("Patrol")
     patrols = (*(patrol.phrases if patrol is not None else ()), *vocabulary.roles["check"])
     verbs = vocabulary.journey_verbs.union(phrase.split()[0] for phrase in patrols)
-    if form not in text.distinct or text.distinct.isdisjoint(verbs):
+    if text.distinct.isdisjoint(verbs):
         return  # as often
     prepositions = {word for phrases in values.role_words.introducing.values() for phrase in phrases for word in phrase}
     joints, tree = {END_OF_STATEMENT, ",", *vocabulary.roles["and"]}, values.names_tree(PLACE)

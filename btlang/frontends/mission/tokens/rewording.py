@@ -149,9 +149,9 @@ def _list_days(text: Words, vocabulary: Lexicon) -> None:
 def _say_as_soon_as(text: Words, vocabulary: Lexicon) -> None:
     """Say `as soon as` for a `once` whose condition would make it another word: `once more than 2 guests are here`."""
     words, again = text.words, vocabulary.roles["again"]
-    once = {phrase for phrase in vocabulary.roles["once"] if any(way.startswith(f"{phrase} ") for way in again)}
-    if text.distinct.isdisjoint(once):
+    if text.distinct.isdisjoint(vocabulary.firsts["again"]):
         return  # as nearly always
+    once = {phrase for phrase in vocabulary.roles["once"] if any(way.startswith(f"{phrase} ") for way in again)}
     for at in reversed([at for at, word in enumerate(words) if word in once]):
         whole, behind = (longest(vocabulary.trie, text, i, vocabulary.context) for i in (at, at + 1))
         is_again = whole is not None and whole.meaning.role == "again"
@@ -221,7 +221,7 @@ def _say_again(text: Words, vocabulary: Lexicon) -> None:
 
 def _count_again(text: Words, vocabulary: Lexicon) -> None:
     """Leave out what is counted again: `count them again`."""
-    words, again = text.words, {phrase.split()[0] for phrase in vocabulary.roles["again"]}
+    words, again = text.words, vocabulary.firsts["again"]
     if text.distinct.isdisjoint(again):
         return  # as nearly always
     entries = (vocabulary.entry(id) for id in COUNTED)
@@ -236,7 +236,7 @@ def _tell_again(text: Words, vocabulary: Lexicon) -> None:
     words, asking = text.words, vocabulary.asking
     if text.distinct.isdisjoint(asking["reminding"]):
         return  # as nearly always
-    again = {phrase.split()[0] for phrase in vocabulary.roles["again"]}
+    again = vocabulary.firsts["again"]
     for at in (at for at in range(len(words) - 2) if words[at] in asking["reminding"]):
         person = find(vocabulary.values.names_tree(PERSON), words, at + 1)
         if words[at + 2 if person is None else person[1]] in again:
@@ -261,9 +261,9 @@ def _wait_to_try(text: Words, vocabulary: Lexicon) -> None:
 def _wait_once(text: Words, vocabulary: Lexicon) -> None:
     """Leave out what is said again: `wait until 10 am and until Bob is here` as `wait until 10 am and Bob is here`."""
     words, joints = text.words, vocabulary.joining
+    if text.distinct.isdisjoint(vocabulary.firsts["until"]):
+        return  # as often
     untils = [phrase.split() for phrase in ways(vocabulary.roles["until"])]
-    if text.distinct.isdisjoint(phrase[-1] for phrase in untils):
-        return  # as nearly always
     waits = [phrase.split() for phrase in ways(vocabulary.roles["wait_until"])]
     for at in reversed([at for at in range(2, len(words) - 1) if words[at - 1] in joints]):
         again = max((phrase for phrase in untils if words[at : at + len(phrase)] == phrase), key=len, default=None)

@@ -98,7 +98,7 @@ def with_exceptions(tokens: list[Token], vocabulary: Lexicon, source: Source) ->
     """Make `A every hour, but not if C` ask each time, and `whenever C, A, but not while D` a rule for both together:
     where D ends and C still holds, A is done then. `A, but not while D` alone can be read in two ways (BT151).
     """
-    leaving_out = {phrase.split()[0] for role in ("but", "except") for phrase in vocabulary.roles[role]}
+    leaving_out = vocabulary.firsts["but"] | vocabulary.firsts["except"]
     while_words = {word for phrase in vocabulary.roles["while"] for word in phrase.split()}
     for at in reversed([at for at, token in enumerate(tokens) if token.kind == "unless" and at > 0]):
         said = source.text[tokens[at].start : tokens[at].end].lower().split()

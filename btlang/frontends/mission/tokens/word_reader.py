@@ -101,8 +101,7 @@ class WordReader:
         self._unknown = UnknownWords(
             text, vocabulary, context, names.definitions, self._partial, tokens, problems, self._verb_forms
         )
-        behind = ("called", "with", "giving")
-        self._details = {phrase.split()[0] for role in behind for phrase in vocabulary.roles[role]}
+        self._details = {*vocabulary.firsts["called"], *vocabulary.firsts["with"], *vocabulary.firsts["giving"]}
         self._details |= node_details(vocabulary).keys()
         self._asking = {*vocabulary.asking["asking_be"], *vocabulary.asking["asking_do"]}
         self._joint = vocabulary.word("and")
