@@ -240,11 +240,11 @@ class JourneyWords(SentenceReader):
 
     def for_anybody(self, match: Match) -> Match:
         """`wait for somebody`: until anybody comes; who it is shows only then."""
-        entry = self._vocabulary.entry(_ANYBODY_COMES)
-        if match.meaning.entry is None or match.meaning.entry.id != COMES or entry is None:
+        if match.meaning.entry is None or match.meaning.entry.id != COMES:
             return match  # as nearly always
+        entry = self._vocabulary.entry(_ANYBODY_COMES)
         who = next((choice_of(value.text) for value in match.values if value.type == PERSON and not value.more), None)
-        if who is None or who.how != _ANY or who.parts:
+        if entry is None or who is None or who.how != _ANY or who.parts:
             return match
         return Match(Meaning("command", entry), match.last, tuple(v for v in match.values if v.type != PERSON))
 
