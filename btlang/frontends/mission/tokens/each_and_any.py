@@ -22,7 +22,8 @@ _ENDING = frozenset((*STOPS, ",", ";", ")"))
 
 
 def say_each(text: Words, vocabulary: Lexicon) -> None:
-    """Change such words of a text; none in a language without words for `any of them`."""
+    """Change such words of a text; only the first in a language without words for `any of them`."""
+    _say_for_each(text, vocabulary)
     if not vocabulary.asking["any_of_them"]:
         return
     _say_each_if_so(text, vocabulary)
@@ -31,6 +32,19 @@ def say_each(text: Words, vocabulary: Lexicon) -> None:
     _say_kind(text, vocabulary)
     _say_there_is(text, vocabulary)
     _list_any(text, vocabulary)
+
+
+def _say_for_each(text: Words, vocabulary: Lexicon) -> None:
+    """Say that a list in front is gone through: `for the lab and the hall: wave` as `for each place among ...`."""
+    words, fronts, each = text.words, vocabulary.firsts["each"], vocabulary.word("each").split()
+    if ":" not in text.distinct or text.distinct.isdisjoint(fronts):
+        return  # as nearly always
+    for at in reversed([at for at, word in enumerate(words) if word in fronts and text.earlier(at)[1] == at]):
+        last = next(i for i in range(at, len(words)) if words[i] in STOPS or words[i] == ":")
+        begin, names = listed_before(text, vocabulary, last, at + 1)
+        kind = next((kind for kind in WORLD if set(names) <= set(vocabulary.values.listed(kind))), "")
+        if words[last] == ":" and begin == at + 1 and len(names) > 1 and kind:
+            text.replace(at, [*each, kind, vocabulary.roles["each_in"][-1]])
 
 
 def _say_each_if_so(text: Words, vocabulary: Lexicon) -> None:
