@@ -276,6 +276,11 @@ class Lexicon:
         found = self.entries.get(node_id)
         return found[0] if found else None
 
+    def opening_words(self, *ids: str) -> frozenset[str]:
+        """The first words of the phrases of the (first) entries of nodes."""
+        entries = (entry for node_id in ids if (entry := self.entry(node_id)) is not None)
+        return frozenset(phrase.split()[0] for entry in entries for phrase in entry.phrases)
+
     def extended(self, entries: Sequence[Entry]) -> Lexicon | None:
         """These words and those of further entries, made in a tenth of the time, as both share what doesn't change.
 

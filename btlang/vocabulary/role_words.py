@@ -16,6 +16,7 @@ class RoleWords(Record):
     """The words of a language around verbs."""
 
     introducing: Mapping[str, tuple[tuple[str, ...], ...]]
+    prepositions: frozenset[str]  # the first words of all of these
     synonyms: Mapping[str, tuple[str, ...]]
     particles: frozenset[str]
     fillers: frozenset[str]
@@ -46,12 +47,13 @@ def role_words(language: Mapping[str, Any], describing: frozenset[str]) -> RoleW
 
     introducing = {role: split_all(phrases) for role, phrases in language["prepositions"].items()}
     relations = map(split_all, language["relations"].values())
-    going_on = {phrase[0] for phrases in introducing.values() for phrase in phrases}
-    going_on |= {*language["particles"], *language["fillers"], *describing}
+    prepositions = frozenset(phrase[0] for phrases in introducing.values() for phrase in phrases)
+    going_on = {*prepositions, *language["particles"], *language["fillers"], *describing}
     firsts = {role: {phrase.split()[0] for phrase in phrases} for role, phrases in language["roles"].items()}
     going_on |= firsts.get("except", set()) - firsts.get("but", set())
     return RoleWords(
         introducing,
+        prepositions,
         {verb: tuple(verbs) for verb, verbs in language["synonyms"].items()},
         frozenset(language["particles"]),
         frozenset(language["fillers"]),

@@ -265,5 +265,6 @@ def begins_condition(tokens: Sequence[Token], at: int) -> bool:
 def closed_until(tokens: Sequence[Token]) -> str:
     """Return until when a statement closes a zone: 11:00 for `from 10 am to 11 am, avoid the lab`; "" for others."""
     condition = tokens[1].value if len(tokens) > 1 and tokens[0].kind == "while" else None
-    closes = isinstance(condition, Called) and any(keeps_out(token) for token in tokens)
-    return dict(condition.arguments).get("at_most", "") if isinstance(condition, Called) and closes else ""
+    if not isinstance(condition, Called) or not any(map(keeps_out, tokens)):
+        return ""
+    return dict(condition.arguments).get("at_most", "")

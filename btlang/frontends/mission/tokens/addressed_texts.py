@@ -36,9 +36,7 @@ class AddressedTexts(Hearers):
         between = self._vocabulary.firsts["at"]
         if self._text.distinct.isdisjoint(between.union(self._vocabulary.asking["politely"])):
             return frozenset()
-        entries = (self._vocabulary.entry(id) for id in (TELL, ASK))
-        verbs = (phrase.split()[0] for entry in entries if entry is not None for phrase in entry.phrases)
-        return frozenset((*verbs, *self._vocabulary.asking["reminding"]))
+        return self._vocabulary.opening_words(TELL, ASK).union(self._vocabulary.asking["reminding"])
 
     def with_time(self, match: Match | None, at: int) -> Match | None:
         """The phrase at a word; `remind Bob at 3 pm to rest` is `at 3 pm, remind Bob to rest`.

@@ -4,7 +4,7 @@ are open`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.antecedents import pronouns_for
@@ -18,7 +18,7 @@ from btlang.vocabulary.word_tree import find
 _MOST_ADJECTIVES, _MOST_BEFORE_TEXT = 3, 5
 _GOING_ON = frozenset(("otherwise", "if_works", "if_fails", "if_one_fails", "in_any_case"))
 STOPS = (END_OF_STATEMENT, END_OF_TEXT)
-_ENDING = frozenset((*STOPS, ",", ";", ")"))
+ENDING = frozenset((*STOPS, ",", ";", ")"))
 
 
 def say_each(text: Words, vocabulary: Lexicon) -> None:
@@ -95,11 +95,10 @@ def _put_each(text: Words, vocabulary: Lexicon, rows: Iterable[Sequence[str]], s
 
 def speaks_freely(words: Sequence[str], vocabulary: Lexicon) -> bool:
     """Whether words say something without quotes, which can't stand in several places: `tell Bob that tea is ready`."""
-    entries = [vocabulary.entry(id) for id in ("TellPerson", "Ask", "Say")]
-    speech = {phrase.split()[0] for entry in entries if entry is not None for phrase in entry.phrases}
+    speech = vocabulary.opening_words("TellPerson", "Ask", "Say")
     for at in [at for at, word in enumerate(words) if word in speech or word in vocabulary.asking["informing"]]:
         behind = words[at + 1 : at + 1 + _MOST_BEFORE_TEXT]
-        end = next((i for i, word in enumerate(behind) if word in _ENDING or word in vocabulary.joining), len(behind))
+        end = next((i for i, word in enumerate(behind) if word in ENDING or word in vocabulary.joining), len(behind))
         informs = end < len(behind) or len(behind) < _MOST_BEFORE_TEXT
         is_named = end > 0 and find(vocabulary.values.names_tree(PERSON), [*behind[:end], END_OF_TEXT], 0) is not None
         if not (any(word[0] == '"' for word in behind) or (informs and is_named)):
@@ -110,7 +109,7 @@ def speaks_freely(words: Sequence[str], vocabulary: Lexicon) -> bool:
 def end_of_condition(text: Words, vocabulary: Lexicon, at: int) -> int:
     """Where a condition ends that goes on at a word."""
     words = text.words
-    return next(i for i in range(at, len(words)) if words[i] in _ENDING or words[i] in vocabulary.joining)
+    return next(i for i in range(at, len(words)) if words[i] in ENDING or words[i] in vocabulary.joining)
 
 
 def _say_every_if_so(text: Words, vocabulary: Lexicon) -> None:
@@ -140,12 +139,11 @@ def listed_before(text: Words, vocabulary: Lexicon, at: int, first: int) -> tupl
     for begin in range(first, at):
         names, i = list[str](), begin
         while i < at:
-            ways = [find(vocabulary.values.names_tree(kind), words, i) for kind in WORLD]
-            found = max((way for way in ways if way is not None), key=lambda way: way[1], default=None)
-            if found is None:
+            end, name, _ = max(_names_at(text, vocabulary, i), key=lambda way: way[0], default=(i, "", ""))
+            if end == i:
                 break
-            names.append(found[0])
-            i = found[1]
+            names.append(name)
+            i = end
             while i < at and words[i] in joints:
                 i += 1
         if i == at and names and words[at - 1] not in joints:
@@ -166,7 +164,7 @@ def _say_if_so(text: Words, vocabulary: Lexicon) -> None:
         if found is None or not values.phrases.is_type(DOOR, text, at - 1):
             continue
         state = found[1] + (words[found[1]] in asking["still"])
-        if words[state] in states and (words[state + 1][0] in _ENDING or words[state + 1] in vocabulary.joining):
+        if words[state] in states and (words[state + 1][0] in ENDING or words[state + 1] in vocabulary.joining):
             text.drop(at + 1, state)
             text.replace(at, [vocabulary.word("if"), it, asking["asking_be"][0]])
 
@@ -293,10 +291,16 @@ def _named(text: Words, vocabulary: Lexicon, first: int, last: int) -> dict[str,
     """The names between two words, by type."""
     found: dict[str, list[str]] = {}
     while first < last:
-        ways = ((find(vocabulary.values.names_tree(kind), text.words, first), kind) for kind in WORLD)
-        names = [(name[1], name[0], kind) for name, kind in ways if name is not None]
-        end, name, kind = max(names, default=(first + 1, "", ""))
+        end, name, kind = max(_names_at(text, vocabulary, first), default=(first + 1, "", ""))
         if name and name not in found.setdefault(kind, []):
             found[kind].append(name)
         first = end
     return found
+
+
+def _names_at(text: Words, vocabulary: Lexicon, at: int) -> Iterator[tuple[int, str, str]]:
+    """Where the longest name of each type ends that begins at a word, the name, and the type."""
+    for kind in WORLD:
+        found = find(vocabulary.values.names_tree(kind), text.words, at)
+        if found is not None:
+            yield found[1], found[0], kind

@@ -196,9 +196,8 @@ def _owns(text: Words, at: int, last: int, vocabulary: Lexicon) -> bool:
     if text.words[at] not in vocabulary.values.adjectives.other_owners:
         return False
     behind = text.words[at + 1] if at + 1 < last else ","
-    phrases = vocabulary.values.role_words.introducing.values()
-    before_nouns = {words[0] for said in phrases for words in said}
-    return behind[0].isalnum() and at + 1 not in text.articles and behind not in vocabulary.joining | before_nouns
+    is_noun = behind[0].isalnum() and behind not in vocabulary.values.role_words.prepositions
+    return is_noun and at + 1 not in text.articles and behind not in vocabulary.joining
 
 
 def _with_you(verb: str, vocabulary: Lexicon) -> str:

@@ -102,9 +102,8 @@ def _part_stops(text: Words, vocabulary: Lexicon) -> None:
     words, values, form = text.words, vocabulary.values, vocabulary.word("if")
     if form not in text.distinct:
         return  # as often
-    patrol = vocabulary.entry("Patrol")
-    patrols = (*(patrol.phrases if patrol is not None else ()), *vocabulary.roles["check"])
-    verbs = vocabulary.journey_verbs.union(phrase.split()[0] for phrase in patrols)
+    checking = (phrase.split()[0] for phrase in vocabulary.roles["check"])
+    verbs = vocabulary.journey_verbs.union(vocabulary.opening_words("Patrol"), checking)
     if text.distinct.isdisjoint(verbs):
         return  # as often
     prepositions = {word for phrases in values.role_words.introducing.values() for phrase in phrases for word in phrase}

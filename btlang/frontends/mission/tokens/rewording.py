@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.tokens.counted_things import COUNTED
-from btlang.frontends.mission.tokens.each_and_any import say_each
+from btlang.frontends.mission.tokens.each_and_any import ENDING, STOPS, end_of_condition, say_each
 from btlang.frontends.mission.tokens.parted import part_each
 from btlang.text.time_of_day import WEEKDAYS, WEEKEND, WORKDAYS
-from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
+from btlang.text.words import Words
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.pattern import ways
 from btlang.vocabulary.trie import longest
@@ -19,7 +19,6 @@ from btlang.vocabulary.word_tree import find
 _MOST_ADJECTIVES = 3
 _GROUPS = {"weekdays": [WEEKDAYS[day] for day in WORKDAYS], "weekends": [WEEKDAYS[day] for day in WEEKEND]}
 _LONGEST_TRY = 6  # words
-_ENDING = frozenset((END_OF_STATEMENT, END_OF_TEXT, ",", ";", ")"))
 
 
 def reworded(text: Words, vocabulary: Lexicon) -> list[Diagnostic]:
@@ -52,13 +51,13 @@ def _drop_words_of_turns(text: Words, vocabulary: Lexicon) -> None:
     """
     words, either = text.words, vocabulary.roles["either"]
     last = [] if text.distinct.isdisjoint(either) else [at for at in range(1, len(words) - 1) if words[at] in either]
-    for at in (at for at in reversed(last) if words[at + 1][0] in _ENDING):
+    for at in (at for at in reversed(last) if words[at + 1][0] in ENDING):
         text.drop(at, at + 1)
     if text.distinct.isdisjoint(vocabulary.in_turn):
         return  # as nearly always
     for at in reversed([at for at, word in enumerate(words) if word in vocabulary.in_turn]):
         found = find(vocabulary.in_turn, words, at)
-        begins = at == 0 or words[at - 1] in (END_OF_STATEMENT, END_OF_TEXT, ":")
+        begins = at == 0 or words[at - 1] in (*STOPS, ":")
         if found is not None and (not begins or words[found[1]] == ","):
             first = at - (words[at - 1] == "," and not begins)
             is_inserted = words[found[1]] == "," and words[found[1] + 1] not in vocabulary.joining
@@ -88,7 +87,7 @@ def _drop_left(text: Words, vocabulary: Lexicon) -> None:
     words, remaining, values = text.words, vocabulary.asking["remaining"], vocabulary.values
     if not remaining or remaining[0] not in text.distinct:
         return  # as nearly always
-    prepositions = {phrase[0] for phrases in values.role_words.introducing.values() for phrase in phrases}
+    prepositions = values.role_words.prepositions
     be, things = vocabulary.asking["asking_be"], (OBJECT, "kind", "kinds")
     for at in reversed([at for at in range(1, len(words) - 1) if words[at] == remaining[0]]):
         ends, before = not words[at + 1][0].isalpha(), words[at - 1]
@@ -110,7 +109,7 @@ def _say_there(text: Words, vocabulary: Lexicon) -> None:
     words, there = text.words, vocabulary.asking["remaining"][-1:]
     for at in reversed([at for at in range(len(words) - 1) if words[at] in vocabulary.entering]):
         found = find(vocabulary.entering, words, at)
-        if found is not None and (words[found[1]][0] in _ENDING or words[found[1]] in vocabulary.joining):
+        if found is not None and (words[found[1]][0] in ENDING or words[found[1]] in vocabulary.joining):
             text.replace(found[1] - 1, [words[found[1] - 1], *there])
 
 
@@ -119,7 +118,7 @@ def _list_days(text: Words, vocabulary: Lexicon) -> None:
     words, values, tree = text.words, vocabulary.values, vocabulary.values.names_tree("days")
     if text.distinct.isdisjoint(tree):
         return  # as nearly always
-    on, joints = {phrase.split()[0] for phrase in vocabulary.roles["on_days"]}, {",", *vocabulary.roles["and"]}
+    on, joints = vocabulary.firsts["on_days"], {",", *vocabulary.roles["and"]}
     times = {phrase.split()[0] for phrase in vocabulary.roles["at"]}
     for at in reversed([at for at in range(2, len(words) - 1) if words[at] in on and words[at - 1] in joints]):
         is_listed = find(tree, words, at - 2 - (words[at - 2] == ",")) is not None
@@ -129,7 +128,7 @@ def _list_days(text: Words, vocabulary: Lexicon) -> None:
         found = find(vocabulary.any_day, words, at)
         first = found[1] if found is not None else at
         if words[first] in times:  # `every day at 9 am except on Sundays`
-            until = next(i for i in range(first, len(words)) if words[i] in _ENDING)
+            until = next(i for i in range(first, len(words)) if words[i] in ENDING)
             first = next((i for i in range(first, until) if values.exception(text, i)), first)
         end = values.exception(text, first) if found is not None else 0
         left_out, last = set[str](), 0
@@ -195,7 +194,7 @@ def _say_words(text: Words, vocabulary: Lexicon) -> None:
         _, first, _ = text.earlier(at)
         asks = any(word in vocabulary.before_conditions for word in words[first:at])
         if found is not None and asks:
-            last = next(i for i in range(found[1], len(words)) if words[i] in _ENDING or words[i] in vocabulary.joining)
+            last = end_of_condition(text, vocabulary, found[1])
             said = " ".join(words[found[1] : last]).strip('"')
             if said:
                 is_speaker = words[at - 1] in vocabulary.asking["speaking"]
@@ -205,13 +204,13 @@ def _say_words(text: Words, vocabulary: Lexicon) -> None:
 
 def _say_again(text: Words, vocabulary: Lexicon) -> None:
     """Put what was said in quotes for `it` behind `say`: `Say "hi". Go to the lab and say it again`."""
-    words, it, entry = text.words, vocabulary.asking["said_before"], vocabulary.entry("Say")
-    if text.distinct.isdisjoint(it) or entry is None:
+    words, it = text.words, vocabulary.asking["said_before"]
+    if text.distinct.isdisjoint(it):
         return  # as often
-    verbs = {phrase.split()[0] for phrase in entry.phrases}
+    verbs = vocabulary.opening_words("Say")
     again = (phrase.split()[0] for phrase in (*vocabulary.roles["again"], *vocabulary.counts))
     to = (phrase[0] for phrase in vocabulary.values.role_words.introducing.get("recipient", ()))
-    behind = {*_ENDING, *vocabulary.joining, *again, *to}
+    behind = {*ENDING, *vocabulary.joining, *again, *to}
     for at in [at for at in range(1, len(words) - 1) if words[at] in it and words[at - 1] in verbs]:
         said = next((word for word in reversed(words[:at]) if word[0] == '"'), "")
         is_often = vocabulary.values.is_number(words[at + 1 : at + 2])
@@ -224,8 +223,7 @@ def _count_again(text: Words, vocabulary: Lexicon) -> None:
     words, again = text.words, vocabulary.firsts["again"]
     if text.distinct.isdisjoint(again):
         return  # as nearly always
-    entries = (vocabulary.entry(id) for id in COUNTED)
-    verbs = {phrase.split()[0] for entry in entries if entry is not None for phrase in entry.phrases}
+    verbs = vocabulary.opening_words(*COUNTED)
     for at in reversed([at for at in range(1, len(words) - 1) if words[at - 1] in verbs and words[at + 1] in again]):
         if words[at] in vocabulary.values.pronoun_words:
             text.drop(at, at + 1)
@@ -252,7 +250,7 @@ def _wait_to_try(text: Words, vocabulary: Lexicon) -> None:
         fronts = (first for first in range(max(at - _LONGEST_TRY, 0), at))
         first = next((i for i in fronts if (found := find(vocabulary.try_again, words, i)) and found[1] == at), None)
         lasts = vocabulary.values.read("duration", text, at + 1)
-        if first is not None and lasts is not None and words[lasts[1]][0] in _ENDING:
+        if first is not None and lasts is not None and words[lasts[1]][0] in ENDING:
             said = words[at + 1 : lasts[1]]
             text.drop(at, lasts[1])
             text.replace(first, [wait, *said, vocabulary.word("and"), words[first]])
@@ -266,14 +264,11 @@ def _wait_once(text: Words, vocabulary: Lexicon) -> None:
     untils = [phrase.split() for phrase in ways(vocabulary.roles["until"])]
     waits = [phrase.split() for phrase in ways(vocabulary.roles["wait_until"])]
     for at in reversed([at for at in range(2, len(words) - 1) if words[at - 1] in joints]):
-        again = max((phrase for phrase in untils if words[at : at + len(phrase)] == phrase), key=len, default=None)
-        _, first, _ = text.earlier(at)
-        begins = (
-            end for end in range(at - 1, first, -1) for wait in waits if words[max(end - len(wait), 0) : end] == wait
-        )
-        begin = next(begins, 0) if again is not None else 0
-        if again is not None and begin and joints.isdisjoint(words[begin : at - 1]):
-            text.drop(at, at + len(again))
+        again = max((len(phrase) for phrase in untils if words[at : at + len(phrase)] == phrase), default=0)
+        ends = range(at - 1, text.earlier(at)[1], -1) if again else ()
+        begin = next((end for end in ends if any(words[max(end - len(wait), 0) : end] == wait for wait in waits)), 0)
+        if begin and joints.isdisjoint(words[begin : at - 1]):
+            text.drop(at, at + again)
 
 
 def _drop_commas(text: Words, vocabulary: Lexicon) -> None:
@@ -310,7 +305,7 @@ def _drop_untold_sizes(text: Words, vocabulary: Lexicon) -> Iterator[Diagnostic]
     found = [(at, find(sizes, text.words, at)) for at in range(len(text.words)) if text.words[at] in sizes]
     ends = [(at, size[1]) for at, size in found if size is not None and find(places, text.words, at) is None]
     named = {text.words[end] for at, end in ends if text.earlier(at)[1] == at}  # `the large kitchen is at (3, 4)`
-    before = {phrase[0] for phrases in vocabulary.values.role_words.introducing.values() for phrase in phrases}
+    before = vocabulary.values.role_words.prepositions
     entries = [entry for same in vocabulary.entries.values() for entry in same]
     types = [(entry, {slot.type for slot in entry.slots}) for entry in entries]
     goes = [entry for entry, own in types if own & {PLACE, ZONE} and TEXT not in own]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from functools import cached_property
 from itertools import dropwhile
 
 from btlang.frontends.mission.token import (
@@ -81,15 +80,9 @@ class ToldWords(SentenceReader):
         """Whether a command is for the one of whom a clause is: `ask if he would like tea and take him to the lab`."""
         words, pronouns, owners = self._text.words, self._context.pronouns, self._vocabulary.values.texts
         is_person = PERSON in pronouns.get(words[first], ()) and PERSON in pronouns.get(words[at + 1], ())
-        behind = words[at + 2]
-        owns = owners.is_owned(self._text, at + 1) and behind[0].isalpha() and behind not in self._prepositions
+        behind, prepositions = words[at + 2], self._vocabulary.values.role_words.prepositions
+        owns = owners.is_owned(self._text, at + 1) and behind[0].isalpha() and behind not in prepositions
         return is_person and not owns
-
-    @cached_property
-    def _prepositions(self) -> frozenset[str]:
-        """The first words of what introduces roles."""
-        introducing = self._vocabulary.values.role_words.introducing.values()
-        return frozenset(phrase[0] for phrases in introducing for phrase in phrases)
 
     def _leaves_out_days(self, at: int) -> bool:
         """Whether words leave out days: `except on Sundays`."""
@@ -177,7 +170,7 @@ class ToldWords(SentenceReader):
         if of_robot:
             pattern = "|".join(map(re.escape, sorted(of_robot, key=len, reverse=True)))
             said = re.sub(rf"\b(?:{pattern})\b", lambda match: of_robot[match[0].lower()], said, flags=re.IGNORECASE)
-        return said[:1].upper() + said[1:]
+        return _sentence(said)
 
     def _failed(self, form: int) -> str:
         """`pick up the cup. If you can't find it, tell Bob`: that the command before some token has failed.
@@ -200,14 +193,12 @@ class ToldWords(SentenceReader):
         if not said:
             return ""
         said = f"{self._vocabulary.asking['search'][0]} {said}" if searches(tried) and front else said
-        said = f"{front} {said[:1].lower()}{said[1:]}" if front else said
-        return f"{said[:1].upper()}{said[1:]}".replace(" ,", ",")
+        return _sentence(said, front)
 
     def _own_words(self, form: int) -> str:
         """`wait until Bob comes, then A. If he hasn't come, tell Alice`: what isn't so, as it is said."""
         person = self._context.latest.get(PERSON, "")
-        said = self._with_names(self._asked_words(form), [(PERSON, person)] if person else [])
-        return f"{said[:1].upper()}{said[1:]}"
+        return _sentence(self._with_names(self._asked_words(form), [(PERSON, person)] if person else []))
 
     def _asked_words(self, form: int) -> list[int]:
         """The words of a form behind `if`, where they are about somebody: `he hasn't come`."""
@@ -236,8 +227,7 @@ class ToldWords(SentenceReader):
             return ""
         front, words = self._vocabulary.asking["working"][0], list(words_of(self._text, done))
         said = self._with_names([at for at in words if self._text.words[at][0] not in '",'], _names_in(done.value))
-        said = f"{front[:1].upper()}{front[1:]} {said[:1].lower()}{said[1:]}" if said else ""
-        return said.replace(" ,", ",")
+        return _sentence(said, front)
 
     def _found(self, end: int) -> str:
         """`look for the cup. If you find it, tell Bob`: that what the command before some token looks for was found."""
@@ -249,7 +239,7 @@ class ToldWords(SentenceReader):
             return ""
         front = self._vocabulary.asking["found"][0]
         sought = " ".join(map(self._written, self._sought(words)))
-        return f"{front[:1].upper()}{front[1:]} {sought}".replace(" ,", ",")
+        return _sentence(f"{front} {sought}").replace(" ,", ",")
 
     def _sought(self, words: Sequence[int]) -> Sequence[int]:
         """The words for what a search is for, and where."""
@@ -276,6 +266,12 @@ class ToldWords(SentenceReader):
         text = self._text
         whole = text.source.text[text.begin(at) : text.ends[at]]
         return whole if whole.lower().endswith(text.words[at]) else text.words[at]
+
+
+def _sentence(said: str, front: str = "") -> str:
+    """Words as a sentence, behind those in front of them; "" for none."""
+    whole = f"{front} {said[:1].lower()}{said[1:]}" if front and said else said
+    return f"{whole[:1].upper()}{whole[1:]}"
 
 
 def _names_in(said: Called | Listed) -> list[tuple[str, str]]:
