@@ -7,12 +7,15 @@ from collections.abc import Iterator, Sequence
 from itertools import chain
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.text.source import Span
+from btlang.frontends.mission.token import Called, Token
+from btlang.text.source import Source, Span
 from btlang.text.words import Words
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import SlotValue
 
 _TIME, _DAYS = "time_of_day", "days"
+DAYTIME, MIDNIGHT = "TimeOfDay", "00:00"
+"""The condition that the time of day is within bounds, and where a day begins."""
 _USUAL = "6:30 pm, or 18:30"
 _BESIDE_MARK = re.compile(r"(?<=\d)\s*[:.]\s*(?=\d)")
 _HALF_WITH_DOTS = re.compile(r"\s*([ap])\.\s?m\b", re.IGNORECASE)
@@ -92,6 +95,17 @@ def without_hour(text: Words, at: int, end: int, vocabulary: Lexicon) -> Diagnos
     if place is None or values.time_of_day(text, place) is not None:
         return None  # `good morning Alice` is something to say
     return _problem(text.span(place, place + 1), "says no hour", _USUAL)
+
+
+def find_midnights(tokens: Sequence[Token], source: Source) -> Iterator[Diagnostic]:
+    """BT160 for a bound at midnight alone: every time of a day is after it, and none before."""
+    for token in tokens:
+        said = token.value if token.kind == "condition" else None
+        if isinstance(said, Called) and said.entry.id == DAYTIME and [time for _, time in said.arguments] == [MIDNIGHT]:
+            span = Span(source, token.start, token.end)
+            is_late = said.arguments[0][0] in ("below", "at_most")
+            problem = f"says no span of a day, as {'none' if is_late else 'all'} of it is so"
+            yield _problem(span, problem, f"between {'10 pm and midnight' if is_late else 'midnight and 6 am'}")
 
 
 def _problem(span: Span, problem: str, example: str, fix: tuple[Span, str] | None = None) -> Diagnostic:

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from bisect import bisect_left
+from collections.abc import Container
 from functools import cached_property
 
 from btlang.diagnostics.diagnostic import diagnostic
-from btlang.frontends.mission.explanations.times import assumed_between
+from btlang.frontends.mission.explanations.times import DAYTIME, assumed_between
 from btlang.frontends.mission.token import (
     BEFORE_CONDITIONS,
     IN_CONDITIONS,
     JOINTS,
     KEEP_OUT,
+    RULES,
     Called,
     OnDays,
     Token,
@@ -30,7 +32,7 @@ from btlang.vocabulary.match import Match, SlotValue
 _TIME = "time_of_day"
 _WEEKDAYS = frozenset(map(str.lower, WEEKDAYS))
 _SIMPLE = frozenset(("command", "name", "wait", "nothing", *JOINTS))
-_TODAY, _DAYTIME = "TodayIs", "TimeOfDay"
+_TODAY = "TodayIs"
 _DAYS, _LATEST = "days", "12:00"
 _BEFORE_HOURS = frozenset(("if", "unless", "while", "whenever", "as_soon_as", "not"))
 
@@ -84,7 +86,7 @@ class ClockWords(SentenceReader):
 
     def until_both(self, match: Match, at: int) -> int:
         """`wait until 4 pm and nobody is in the lab`: until it is later than that, and the other is so, too."""
-        text, entry = self._text, self._vocabulary.entry(_DAYTIME)
+        text, entry = self._text, self._vocabulary.entry(DAYTIME)
         joins = text.words[match.last] in self._vocabulary.roles["and"] and not match.values[0].more
         behind = self._phrase(match.last + 1) if joins else None
         if entry is None or behind is None or behind.meaning.role not in ("condition", "negated"):
@@ -239,7 +241,7 @@ class ClockWords(SentenceReader):
 
     def _between(self, match: Match, at: int) -> int:
         """`every 15 minutes between 10 pm and 6 am, A`: each time, if it is then."""
-        tokens, words, entry = self._tokens, self._text.words, self._vocabulary.entry(_DAYTIME)
+        tokens, words, entry = self._tokens, self._text.words, self._vocabulary.entry(DAYTIME)
         if entry is not None and words[at] in self._vocabulary.roles["after"]:
             return self._after(match, at, entry)
         joins = words[match.last] in self._vocabulary.asking["between_joint"]
@@ -257,21 +259,38 @@ class ClockWords(SentenceReader):
         first = statement_start(tokens, len(tokens))
         if len(tokens) > first and tokens[-1].kind not in BEGINS:
             return self._within_hours(match, asked, last) if self._is_end(last[1]) else 0
-        forbids = self._forbids(last[1])
-        if not (forbids or self._begins_there(last[1])):
+        is_from = words[at] in self._vocabulary.roles["start_at"]
+        holds = self._forbids(last[1]) or (not is_from and self._watches(last[1]))
+        if not (holds or self._begins_there(last[1])):
             return 0
-        if forbids:  # `from 8 pm to 10 pm, stay out of the lab`
+        if holds:  # `from 8 pm to 10 pm, stay out of the lab`, `between ..., whenever Bob is near, wave`
             tokens += [Token("while", start, start), asked, Token("comma", end, end)]
             return self._behind_comma(last[1])
         is_kept_up = words[self._behind_comma(last[1])] in self._vocabulary.asking["kept_up"]
-        lasts = words[at] in self._vocabulary.roles["start_at"] or is_kept_up or self._is_repeated(last[1])
-        if not lasts or (tokens and tokens[-1].kind not in BEGINS):
+        lasts = is_from or is_kept_up or self._is_repeated(last[1])
+        if tokens and tokens[-1].kind not in BEGINS:
             return 0
+        if not lasts:
+            return self._doubt_span(match, at, last[1])
         tokens += [  # `from 7 am to 10 am, A`, `between 7 am and 10 am, A every 5 min`: also begun within that time
             Token("wait_until", start, start), asked, Token("then", end, end), Token("until_time", start, end, last[0]),
             Token("comma", end, end),
         ]  # fmt: skip
         return self._behind_comma(last[1])
+
+    def _doubt_span(self, match: Match, at: int, end: int) -> int:
+        """BT151 for `between 1 pm and 2 pm, wave`: once, or again and again."""
+        text, start, done = self._text, match.values[0], self._behind_comma(end)
+        whole = text.span(at, self._end_of_statement(done))
+        rest = text.source.text[text.starts[done] : whole.end]
+        first, last = text.span(start.first, start.last).text, text.span(match.last + 1, end).text
+        one, other = (self._vocabulary.word(role) for role in ("at", "start_at"))
+        joints, roles = self._vocabulary.asking["between_joint"], self._vocabulary.roles
+        until = next(joint for joint in joints if joint not in roles["and"])
+        either = {"one": f"{one} {first}, {rest}", "other": f"{other} {first} {until} {last}, {rest}"}
+        self._calls.problems.append(diagnostic("BT151", whole, words=whole.text, **either))
+        self._tokens.append(Token("at", text.starts[at], text.ends[end - 1], start.text))
+        return done
 
     def _after(self, match: Match, at: int, entry: Entry) -> int:
         """`after 8 pm, A`: at once if it is later, else then."""
@@ -332,9 +351,15 @@ class ClockWords(SentenceReader):
 
     def _is_repeated(self, at: int) -> bool:
         """Whether the rest of the statement is done again and again: `wave every 5 minutes`."""
-        end = self._end_of_statement(at)
-        found = (self._phrase(i) for i in range(at, end))
-        return any(match is not None and match.meaning.role == "every" for match in found)
+        return self._has_role(at, ("every",))
+
+    def _watches(self, at: int) -> bool:
+        """Whether the rest of the statement is a standing rule: `whenever Bob is near, wave`."""
+        return self._has_role(at, RULES)
+
+    def _has_role(self, at: int, roles: Container[str]) -> bool:
+        found = (self._phrase(i) for i in range(at, self._end_of_statement(at)))
+        return any(match is not None and match.meaning.role in roles for match in found)
 
     def _until(self) -> None:
         """`A at 7 am until 10 am` is until then from the first time on, not from now on."""

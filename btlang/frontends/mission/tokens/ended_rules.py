@@ -126,10 +126,12 @@ def _end_whole_rules(tokens: list[Token], vocabulary: Lexicon, span: Callable[[i
 
 
 def _front(tokens: list[Token]) -> None:
-    """Put what is forbidden in front: `while Bob is in the hall, avoid it`."""
+    """Put what is forbidden in front: `while Bob is in the hall, avoid it`, `until 6 pm, avoid the hall`."""
     for at, token in enumerate(tokens):
-        if token.kind == "while" and _begins(tokens, at) and begins_condition(tokens, at + 1):
-            last, behind = _condition_end(tokens, at + 1)
+        is_time = token.kind == "until_time"
+        asks = token.kind in ("while", "until") and begins_condition(tokens, at + 1)
+        if (is_time or asks) and _begins(tokens, at):
+            last, behind = _condition_end(tokens, at + 1) if asks else (at + 1, run_end(tokens, at + 1, JOINTS))
             if behind > last and _is_alone(tokens, behind):
                 tokens[at : behind + 1] = [tokens[behind], *tokens[at:last]]
 

@@ -9,6 +9,7 @@ from btlang.frontends.mission.token import (
     LINES,
     RULES,
     STATEMENT_ENDS,
+    WAITING,
     Called,
     Listed,
     Token,
@@ -375,14 +376,13 @@ class GoingOn(SentenceReader):
         words, (first, kinds) = text.span(at, last), self._statement(end)
         until = closed_until(self._tokens[first:end])
         is_new_line = "\n" in text.source.text[self._tokens[end - 1].end : words.start] if end else True
-        if not end or (is_new_line and role == "then" and not until):
+        frame = next((each.kind for each in self._tokens[first:end] if each.kind in (*WAITING, *RULES)), "")
+        if not end or (role == "then" and not until and (is_new_line or frame in WAITING)):
             return
         is_on_way = any(token.role == ON_WAY or token.kind == "while_doing" for token in self._tokens[first:end])
-        is_rule = until or not (kinds.isdisjoint(RULES) or is_on_way)
-        if not is_rule or (role == "otherwise" and "if" in kinds):
+        if (not until and (kinds.isdisjoint(RULES) or is_on_way)) or (role == "otherwise" and "if" in kinds):
             return
-        last += text.words[last] == ","
-        rest = self._end_of_statement(last)
+        rest = self._end_of_statement(last := last + (text.words[last] == ","))
         said = text.span(last, rest).text if rest > last else "..."
         joint = self._vocabulary.word(FAILS if role == "otherwise" else "at" if until else role)
         one = f"{joint} {until}, {said}" if until else f"{joint}, {said}" if role != "then" else f"... {joint} {said}"

@@ -6,11 +6,13 @@ from collections.abc import Mapping
 from functools import partial
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.frontends.mission.explanations.times import find_midnights
 from btlang.frontends.mission.symbols.names import Load, Names
 from btlang.frontends.mission.token import Token
 from btlang.frontends.mission.tokens.condition_names import condition_names, settle
 from btlang.frontends.mission.tokens.counted_things import with_counted_things
 from btlang.frontends.mission.tokens.ended_rules import with_ends
+from btlang.frontends.mission.tokens.framed_rules import with_framed_rules
 from btlang.frontends.mission.tokens.left_out import find_unplaced
 from btlang.frontends.mission.tokens.other_things import with_goals_there, with_other_things, with_things_there
 from btlang.frontends.mission.tokens.repeated_statements import (
@@ -97,7 +99,9 @@ class Lexer:
         with_things_there(self.tokens)
         with_goals_there(self.tokens, vocabulary, source)
         self.problems += with_other_things(self.tokens, vocabulary, self.text)
+        self.problems += with_framed_rules(self.tokens, self.vocabulary, source)
         with_rules_behind(self.tokens)
+        self.problems += find_midnights(self.tokens, source)
         self.problems += find_counted_rules(self.tokens, source)
         with_checks_apart(self.tokens)
         self.problems += find_two_ifs(self.tokens, self.vocabulary, source)
