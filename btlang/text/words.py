@@ -26,7 +26,8 @@ _ITEM = r"(?:(?:[-*\u2022\u2013\u2014]|\d{1,3}[.)])(?=[ \t]))?"  # the mark of a
 _MARGIN = re.compile(rf"[ \t\r]*{_ITEM}")
 # Blanks in front of a word belong to its match, which halves the number of matches.
 _PIECE = re.compile(
-    rf"""[^\S\n]*(?:([a-zA-Z]++(?![\w/'{_MARKS_ABOVE}-])  # as below, in half the time
+    rf"""[^\S\n]*(?:([apAP]\.[ ]?[mM]\b(?:\.(?![ \t]*(?:[A-Z\n]|\Z)))?)  # `8 p.m.`, at whose end may be a stop
+                    |([a-zA-Z]++(?![\w/'{_MARKS_ABOVE}-])  # as below, in half the time
                     |(?<=[ \t])'[a-z]{{1,2}}(?![\w'-]|[^'\n]*')     # `you 've`
                     |[^\W\d_]+/[^\W\d_]+(?!\w)|[^\W\d](?:[\w{_MARKS_ABOVE}'-]*[\w{_MARKS_ABOVE}])?)  # word
     |(\d+:\d+|-?\d+(?:\.\d+)?(?:[eE][+-]?\d+(?!\w))?)                  # number
@@ -39,7 +40,7 @@ _PIECE = re.compile(
     |(.))                                                              # other""",
     re.VERBOSE,
 )
-_WORD, _NUMBER, _MARK, _LINE, _QUOTE, _STOP, _COMMENT, _OPEN, _OTHER = range(1, 10)
+_HALF, _WORD, _NUMBER, _MARK, _LINE, _QUOTE, _STOP, _COMMENT, _OPEN, _OTHER = range(1, 11)
 
 END_OF_STATEMENT = ";"
 END_OF_TEXT = "\n"  # also the word that ends each line
@@ -330,6 +331,8 @@ def split(source: Source, orthography: Orthography) -> Words:
             if start < end:
                 result.comments.append(Span(source, start, end))
             continue
+        elif kind == _HALF:
+            word = word[0].lower() + word.rstrip(".")[-1].lower()
         elif kind == _QUOTE:
             word = '"' + source.text[start + 1 : end - 1]
         elif kind == _OPEN:

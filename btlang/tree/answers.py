@@ -7,6 +7,7 @@ would be asked where nobody has answered.
 from __future__ import annotations
 
 from collections.abc import Container, Sequence
+from itertools import pairwise
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.text.source import Span
@@ -44,7 +45,9 @@ def with_answers(mission: ast.Program) -> tuple[ast.Program, list[Diagnostic]]:
     def body(root: ast.Ast) -> ast.Ast:
         if not asks(root):
             return root
-        return fold(root, ast.parts, lambda node, done: _gather(_ask_until(ast.with_parts(node, done)), problems))
+        return fold(
+            root, ast.parts, lambda node, done: _go_on(_gather(_ask_until(ast.with_parts(node, done)), problems))
+        )
 
     def program(part: ast.Program) -> ast.Program:
         return ast.with_bodies(part, body, program)
@@ -108,6 +111,18 @@ def _gather(node: ast.Ast, problems: list[Diagnostic]) -> ast.Ast:
         if _questions(item):
             asking = len(made) - 1
     return made[0] if len(made) == 1 else node.replace(items=tuple(made))
+
+
+def _go_on(node: ast.Ast) -> ast.Ast:
+    """Return a round in which who doesn't answer keeps nobody from being asked: `ask everyone "Tea?". If so, A`."""
+    body = node.body if isinstance(node, ast.ForEach) else None
+    if not isinstance(node, ast.ForEach) or not isinstance(body, ast.Chain) or body.operator == "fallback":
+        return node
+    items = list(body.items)
+    for at, (asked, reply) in enumerate(pairwise(body.items)):
+        if isinstance(asked, ast.Phrase) and asked.entry.id == ASK and _depends(reply):
+            items[at] = _without_failure(asked)
+    return node.replace(body=body.replace(items=tuple(items)))  # type: ignore[no-any-return]
 
 
 def _behind_silence(question: ast.Ast, item: ast.If) -> ast.Ast | None:

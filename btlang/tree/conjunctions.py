@@ -94,6 +94,12 @@ class Conjunctions:
         if operator == "and":
             operator = self._choose_meaning(chain, traits)
         made: ast.Ast = chain
+        first = items[0]
+        if operator == "sequence" and traits[-1].accompanies and len(items) == 2 and isinstance(first, ast.Chain):
+            *before, lasting = first.items
+            if first.operator == "sequence" and chain.operator == "and" and _is_within(lasting, items[1]):
+                both = ast.Chain("parallel", (lasting, items[1]), True, chain.span)
+                items = [*before, both]
         if operator != chain.operator or any(new is not old for new, old in zip(items, chain.items, strict=True)):
             made = _flatten(ast.Chain(operator, tuple(items), chain.bracketed, chain.span))
         endless = [each.endless for each in traits]
@@ -104,6 +110,8 @@ class Conjunctions:
         """Whether the parts run at the same time."""
         if any(each.endless for each in traits[:-1]):
             return "parallel"  # it lasts as long as what stands behind it
+        if traits[-1].accompanies and _is_within(*chain.items[-2:]):
+            return "parallel"
         if not all(each.accompanies for each in traits):
             if traits[-1].endless:
                 self._report_endless(chain)
@@ -206,6 +214,15 @@ def _is_endless(node: ast.Ast, commands: Sequence[Traits]) -> bool:
     if isinstance(node, ast.Exact):
         return never_ends(node.id, node.ports, [each.endless for each in commands])
     return False
+
+
+def _is_within(lasting: ast.Ast, later: ast.Ast) -> bool:
+    """Whether a part is done while another one lasts: `follow Alice for 3 min, and after 2 min, say "One more"`."""
+    while isinstance(lasting, ast.Constrained):
+        lasting = lasting.body
+    if not isinstance(lasting, ast.For | ast.UpTo | ast.Wait) or not isinstance(later, ast.Delay):
+        return False
+    return later.seconds[:1] != "{" != lasting.seconds[:1] and float(later.seconds) < float(lasting.seconds)
 
 
 def _flatten(chain: ast.Chain) -> ast.Ast:

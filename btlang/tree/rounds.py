@@ -13,7 +13,7 @@ from btlang.support.record import Record
 from btlang.text.source import Source
 from btlang.text.words import split
 from btlang.tree import ast
-from btlang.tree.answers import asks
+from btlang.tree.answers import ABOUT_ANSWERS, ASK, asks
 from btlang.tree.sums import COMPARED, COUNTING
 from btlang.tree.visit import fold
 from btlang.vocabulary.lexicon import Lexicon
@@ -280,9 +280,10 @@ def _goes_along(chain: ast.Chain, first: int, last: int, choice: Choice) -> int:
 
 
 def _goes_with(chain: ast.Chain, at: int) -> bool:
-    """Whether the part behind one leads nowhere, or depends on what is counted in that one."""
+    """Whether the part behind one leads nowhere, or depends on what is counted, or answered, in that one."""
     before, item = chain.items[at : at + 2]
-    if isinstance(item, ast.If) and asks(item.condition, (COMPARED,)) and asks(before, COUNTING):
+    depending = (((COMPARED,), COUNTING), (ABOUT_ANSWERS, (ASK,)))
+    if isinstance(item, ast.If) and any(asks(item.condition, ids) and asks(before, by) for ids, by in depending):
         return True
     return not _travels(item)
 

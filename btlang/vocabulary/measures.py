@@ -35,7 +35,7 @@ class Measures:
         self._multipliers: Mapping[str, float] = language["multipliers"]
         self._joiner = frozenset(language["unit_joiner"])
         self._one_each, self._every_second = frozenset(language["one_each"]), frozenset(language["every_second"])
-        self._further = frozenset(language["further"])
+        self.further = frozenset(language["further"])
         self.parts_of_day: dict[str, int] = language["parts_of_day"]
         self._past_words = [(language["clock"].get(name, ()), sign) for name, sign in (("past", 1), ("to", -1))]
         self._hour_words = frozenset(language["clock"].get("hour", ()))
@@ -102,7 +102,8 @@ class Measures:
             return None
         hour, minutes, end = clock
         is_told = self.half_of_day(text, end) is not None or (at > 1 and text.words[at - 2] in self.parts_of_day)
-        if is_told or self.quantity(text, at) is not None or self._shared_half(text, end, hour) is not None:
+        is_told = is_told or (minutes is None and self._shared_half(text, end, hour) is not None)
+        if is_told or self.quantity(text, at) is not None:
             return None
         minute = int(hour % 12) * 60 + (minutes or 0)
         behind = self._end_of_span(text, at, end)
@@ -118,8 +119,9 @@ class Measures:
         return time, end
 
     def _end_of_span(self, text: Words, at: int, end: int) -> tuple[str, Span] | None:
-        """The time behind an hour that begins a span, `from 8 to 10 pm`, and its place."""
-        if not at or text.words[at - 1] not in self._span_words or text.words[end] not in self._span_joints:
+        """The time behind one that begins a span, `from 8 to 10 pm`, or that is joined to it, `1:30 and 3 pm`."""
+        is_span = at > 0 and text.words[at - 1] in self._span_words and text.words[end] in self._span_joints
+        if not is_span and not (":" in text.words[at] and text.words[end] in self._joints):
             return None
         time = self.time_of_day(text, end + 1)
         return (time[0], text.span(end + 1, time[1])) if time is not None else None
@@ -191,12 +193,12 @@ class Measures:
 
         Of the types that have the unit it is the first of the `wanted` ones, or else the one that was declared first.
         """
-        if text.words[at] in self._further:
+        if text.words[at] in self.further:
             return self.quantity(text, at + 1, wanted)  # `another 2 m`
         number = self.number(text, at)
         if number is None:
             before = text.words[at - 1] if at else ""
-            if at not in text.articles and before not in self._one_each and before not in self._further:
+            if at not in text.articles and before not in self._one_each and before not in self.further:
                 return None
             number = 1.0, at  # "a minute", "every hour"
             if text.words[at] in self._every_second and at not in text.articles:

@@ -134,7 +134,7 @@ class Values(Measures):
         """
         if self._openers is None:
             numbers, firsts = self._number_starts, self.shared_heads.plural_firsts
-            quantities = numbers | self._joiner | self._units.keys() | self._every_second | self._further
+            quantities = numbers | self._joiner | self._units.keys() | self._every_second | self.further
             self._openers = {
                 kind: frozenset((*tree, *self.pronoun_words, *self.choice_starts, *self.group_starts, *firsts(kind)))
                 for kind, tree in self._names.items()

@@ -18,12 +18,11 @@ DAYTIME, MIDNIGHT = "TimeOfDay", "00:00"
 """The condition that the time of day is within bounds, and where a day begins."""
 _USUAL = "6:30 pm, or 18:30"
 _BESIDE_MARK = re.compile(r"(?<=\d)\s*[:.]\s*(?=\d)")
-_HALF_WITH_DOTS = re.compile(r"\s*([ap])\.\s?m\b", re.IGNORECASE)
 
 
 def explain_time(text: Words, at: int, wanted: bool, vocabulary: Lexicon) -> Diagnostic | None:
     """BT160 for words like a time of day where none is read; None for others. `wanted`: one must stand there."""
-    values, words, source = vocabulary.values, text.words, text.source
+    values, words = vocabulary.values, text.words
     time, number = values.time_of_day(text, at), values.number(text, at)
     if time is not None:
         if words[at].isalpha() and number is None:
@@ -48,10 +47,6 @@ def explain_time(text: Words, at: int, wanted: bool, vocabulary: Lexicon) -> Dia
     joined = _BESIDE_MARK.sub(":", whole.text)
     if vocabulary.value("time_of_day", joined) is not None:
         return _problem(whole, "isn't a time of day: it needs a ':' without blanks", joined, (whole, joined))
-    dotted = _HALF_WITH_DOTS.match(source.text, span.end)
-    if dotted is not None:
-        whole, joined = Span(source, span.start, dotted.end()), f"{span.text} {dotted[1].lower()}m"
-        return _problem(whole, "isn't a time of day: it has dots", joined)
     clock = values.clock(text, at)
     if clock is None or not 0 <= clock[0] < 24 or clock[0] % 1:
         return _problem(span, "isn't a time of day", _USUAL)

@@ -10,7 +10,7 @@ from btlang.frontends.mission.token import Called, Listed, Token, arguments_of, 
 from btlang.frontends.mission.tokens.hearers import Hearers, verbs_of
 from btlang.frontends.mission.tokens.silent_words import BEGINS
 from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of
-from btlang.text.words import Words
+from btlang.text.words import END_OF_TEXT, Words
 from btlang.tree.answers import ASK
 from btlang.vocabulary.entry import RECIPIENT, Entry
 from btlang.vocabulary.match import Match, SlotValue
@@ -257,14 +257,12 @@ class AddressedTexts(Hearers):
 
     def _note_asked(self, at: int, last: int) -> None:
         """Make `it` what a question is about: `ask Bob if he wants the cup. If so, bring it`; of several, none."""
-        is_one = not any(self._text.words[place] in self._vocabulary.roles["or"] for place in range(at, last))
-        for kind in (OBJECT, DOOR):
-            names = self._vocabulary.values.names_tree(kind)
-            found = [found[0] for place in range(at, last) if (found := find(names, self._text.words, place))]
-            if len(set(found)) == 1 and is_one:
-                self._context.latest[kind] = found[0]
-            elif found:
-                self._context.latest.pop(kind, None)
+        self._calls.note_asked([*self._text.words[at:last], END_OF_TEXT])
+        doors = self._vocabulary.values.names_tree(DOOR)
+        found = {found[0] for place in range(at, last) if (found := find(doors, self._text.words, place))}
+        self._context.latest.pop(DOOR, None) if found else None
+        if len(found) == 1:
+            self._context.latest[DOOR] = found.pop()
 
     def _say_too(self, entry: Entry, value: SlotValue, command: Token) -> int:
         """`ask Bob "Tea?". If he says no, ask Alice`, `tell Bob lunch is ready, then tell Alice too`: to somebody else.

@@ -287,8 +287,8 @@ class ClockWords(SentenceReader):
         one, other = (self._vocabulary.word(role) for role in ("at", "start_at"))
         joints, roles = self._vocabulary.asking["between_joint"], self._vocabulary.roles
         until = next(joint for joint in joints if joint not in roles["and"])
-        either = {"one": f"{one} {first}, {rest}", "other": f"{other} {first} {until} {last}, {rest}"}
-        self._calls.problems.append(diagnostic("BT151", whole, words=whole.text, **either))
+        one, other = f"{one} {first}, {rest}", f"{other} {first} {until} {last}, {rest}"
+        self._calls.problems.append(diagnostic("BT151", whole, words=whole.text, one=one, other=other))
         self._tokens.append(Token("at", text.starts[at], text.ends[end - 1], start.text))
         return done
 

@@ -23,6 +23,7 @@ from btlang.frontends.mission.token import (
     arguments_of,
     begins_condition,
     constraint_of,
+    drives,
     keeps_out,
     run_end,
     run_start,
@@ -47,7 +48,7 @@ _IN_THE_MISSION = "Write it as a sentence of the mission."
 _ENDS = frozenset(("newline", "semi", "stop", "dedent", "close"))
 _IN_CONDITIONS = frozenset(("condition", "not", "open", "either", "neither", "both"))
 _ENDING = frozenset((*WAITING, "up_to"))
-_AT = {"SeesPerson": "PersonIsAt", "SeesSomeone": "SomeoneIsAt", "SeesObject": "ObjectIsAt"}
+THERE = {"SeesPerson": "PersonIsAt", "SeesSomeone": "SomeoneIsAt", "SeesObject": "ObjectIsAt"}
 """What asks where somebody or something is, by what asks whether the robot sees it."""
 _WHILE = frozenset(("while", "if", "unless"))
 """Raw kinds behind which a condition says how long a zone stays closed."""
@@ -239,7 +240,7 @@ def _say_where(tokens: list[Token], at: int, vocabulary: Lexicon, span: Callable
         words = span(token.start, token.end).text
         if not isinstance(value, Called | Listed) or not says_there(words, vocabulary.values.pronouns):
             continue
-        place = vocabulary.entry(_AT.get(value.entry.id, ""))
+        place = vocabulary.entry(THERE.get(value.entry.id, ""))
         if place is not None:
             where = (_slot_of(place), zones[0])
             arguments = tuple((*each, where) for each in arguments_of(value))
@@ -249,6 +250,23 @@ def _say_where(tokens: list[Token], at: int, vocabulary: Lexicon, span: Callable
                 if denial.kind == "not" and asked.value == value:
                     asked.value = there_now
             token.value = there_now
+
+
+def say_there(asked: Token, tokens: list[Token], vocabulary: Lexicon, words: str) -> None:
+    """Make `someone is there` about the place of the condition before it, to which the robot hasn't gone since."""
+    value = asked.value
+    entry = vocabulary.entry(THERE.get(value.entry.id, "")) if isinstance(value, Called) else None
+    if entry is None or not isinstance(value, Called) or not says_there(words, vocabulary.values.pronouns):
+        return  # as nearly always
+    for token in reversed(tokens):
+        before = token.value
+        if drives(before) or isinstance(before, Listed):
+            return
+        if token.kind == "condition" and isinstance(before, Called) and before.entry.id in THERE.values():
+            place = dict(before.arguments).get(_slot_of(entry), "{")
+            if place[:1] != "{":
+                asked.value = Called(entry, (*value.arguments, (_slot_of(entry), place)))
+            return
 
 
 def journey_to(place: str, goes: Entry) -> Called:

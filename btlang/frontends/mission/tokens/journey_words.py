@@ -10,12 +10,13 @@ from btlang.frontends.mission.tokens.word_matches import match_of, relocated, re
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.language_tables import NOT_ALONE
 from btlang.vocabulary.match import Match, SlotValue
-from btlang.vocabulary.references import choice_of
+from btlang.vocabulary.references import Choice, choice_of, ordinal
 from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE
 from btlang.vocabulary.word_tree import find
 
 _ASKED = ("condition", "negated")
 COMES, _ANYBODY_COMES, _COMES_BACK, _DURATION = "WaitForPerson", "WaitForSomeone", "ComeBack", "duration"
+_SEES, _AT = "SeesPerson", "PersonIsAt"
 _ANY = "seen"  # how one of those in view is chosen
 _TAKES, _FROM = "Take", ("off", "at", "inside", "on")
 _LOOPED = frozenset(("command", "name", "wait", "every", "count", "repeat", "open", "close", "comma", "and", "then"))
@@ -216,7 +217,10 @@ class JourneyWords(SentenceReader):
         if waiting.meaning.role == "wait_for":
             self._tokens.append(Token("wait_for", self._text.starts[journey.last], self._text.ends[waiting.last - 1]))
             return waiting.last
-        self._partial.append(waiting, journey.last)
+        is_wait = waiting.meaning.entry is not None and waiting.meaning.entry.id == COMES
+        if is_wait and (end := self.wait_for_event(waiting, journey.last)):
+            return end
+        self._partial.append(self.for_anybody(waiting), journey.last)
         return waiting.last
 
     def _wait_for(self, at: int) -> int:
@@ -232,6 +236,8 @@ class JourneyWords(SentenceReader):
             SlotValue(slot.name, slot.type, said[slot.type], at, found[1]) for slot in entry.slots if slot.type in said
         ]
         match = self.for_anybody(Match(Meaning("command", entry), found[1], tuple(values)))
+        if self._wait_for_one(match, at):
+            return found[1]
         self._partial.append(match, at)
         if match.meaning.entry is not entry:
             self._calls.note(match)
@@ -239,17 +245,37 @@ class JourneyWords(SentenceReader):
         return found[1]
 
     def for_anybody(self, match: Match) -> Match:
-        """`wait for somebody`: until anybody comes; who it is shows only then."""
-        if match.meaning.entry is None or match.meaning.entry.id != COMES:
+        """`wait for somebody`, `wait for the first person`: until anybody comes; who it is shows only then.
+
+        `if a guest is in the lab` asks of the guests there, not where the nearest one is.
+        """
+        if match.meaning.entry is None or match.meaning.entry.id not in (COMES, _AT):
             return match  # as nearly always
-        entry = self._vocabulary.entry(_ANYBODY_COMES)
-        who = next((choice_of(value.text) for value in match.values if value.type == PERSON and not value.more), None)
-        if entry is None or who is None or who.how != _ANY or who.parts:
+        if match.meaning.entry.id == _AT:
+            return _of_those_there(match)
+        entry, who = self._vocabulary.entry(_ANYBODY_COMES), _whoever(match)
+        if entry is None or who is None or who.parts:
             return match
         return Match(Meaning("command", entry), match.last, tuple(v for v in match.values if v.type != PERSON))
 
+    def _wait_for_one(self, match: Match, at: int) -> bool:
+        """`wait for a guest`, `wait for the first guest`: until any of that kind is in view, who is the one then."""
+        entry, who = self._vocabulary.entry(_SEES), _whoever(match)
+        if entry is None or who is None or {name for name, _ in who.parts} != {"kind"}:
+            return False
+        start, end = self._text.starts[at], self._text.ends[match.last - 1]
+        durations = [value.text for value in match.values if value.type == _DURATION]
+        limit = next(iter(durations), None)
+        one = who.replace(how=_ANY).text
+        asked = Token("condition", start, end, Called(entry, ((entry.slots[0].name, one),)))
+        self._tokens += [Token("wait_up_to" if limit else "wait_until", start, start, limit), asked]
+        self._calls.note(_with_person(match, one))
+        return True
+
     def wait_for_event(self, match: Match, at: int) -> int:
         """`wait for Bob to come to the lab`, `wait for the door to open`: until he comes to the lab, until it opens."""
+        if match.meaning.entry is not None and self._wait_for_one(match, at):
+            return match.last
         text, vocabulary = self._text, self._vocabulary
         first = match.values[0].first if match.meaning.entry is not None and match.values else match.last
         ends = (i for i in range(first + 1, self._end_of_statement(first)) if text.words[i] in vocabulary.purpose)
@@ -272,6 +298,8 @@ class JourneyWords(SentenceReader):
         found = relocated(found, places) if found is not None else None
         if found is None or found.last <= max(behind, match.last):
             return 0
+        if (who := _whoever(found)) is not None:
+            found = _with_person(found, who.replace(how=_ANY).text)
         wait = self._calls.token(match, at)
         wait.end = text.ends[first - 1]
         if match.meaning.role != "wait_up_to":
@@ -293,3 +321,24 @@ class JourneyWords(SentenceReader):
             return 0
         self._partial.append(found, at)
         return found.last
+
+
+def _whoever(match: Match) -> Choice | None:
+    """The choice of anybody, or of the first one, with whom something is done; None for other people."""
+    who = next((choice_of(value.text) for value in match.values if value.type == PERSON and not value.more), None)
+    return who if who is not None and (who.how == _ANY or ordinal(who.how) == 1) else None
+
+
+def _of_those_there(match: Match) -> Match:
+    """The same condition, in which any person is one of those at its place."""
+    place = next((value.text for value in match.values if value.type == PLACE and not value.more), "{")
+    who = _whoever(match)
+    if who is None or who.how != _ANY or place[:1] == "{" or "at" in dict(who.parts):
+        return match
+    return _with_person(match, who.replace(parts=tuple(sorted((*who.parts, ("at", place))))).text)
+
+
+def _with_person(match: Match, person: str) -> Match:
+    """The same phrase about another person."""
+    values = tuple(value.replace(text=person) if value.type == PERSON else value for value in match.values)
+    return match.replace(values=values)  # type: ignore[no-any-return]

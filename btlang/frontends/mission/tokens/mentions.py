@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.token import Token
 from btlang.frontends.mission.tokens.counted_things import COUNTED
@@ -109,9 +111,11 @@ class Mentions:
             choice = choice_of(latest) if latest[:1] == "{" else None
             if choice is not None:
                 self._context.met[choice.key] = choice.how == ALL
+                if choice.how == ALL and match.meaning.role != "command":  # `if all doors are open, close them`
+                    self._context.listed[value.type] = latest
             self._context.latest[value.type] = f"{{{choice.key}}}" if choice is not None else latest
             if value.type == TEXT and entry is not None and entry.id == ASK and OBJECT not in self._context.latest:
-                self._note_asked(latest)
+                self.note_asked(split(Source(latest), self._vocabulary.orthography).words)
             if value.type in (PLACE, ZONE) and latest in self._vocabulary.values.listed(DOOR):
                 self._context.latest[DOOR] = latest  # `if somebody is at the front door, open it`
             if value.type == PLACE and latest in self._vocabulary.values.listed(ZONE):
@@ -119,17 +123,28 @@ class Mentions:
             if value.type == ZONE and latest in self._vocabulary.values.listed(PLACE):
                 self._context.latest[PLACE] = latest  # `never enter the lab while Bob is in it`
 
-    def _note_asked(self, question: str) -> None:
-        """`ask Bob "Do you need the book?". If not, bring it to me`: the one thing that a question names."""
-        words, values = split(Source(question), self._vocabulary.orthography).words, self._vocabulary.values
+    def note_asked(self, words: Sequence[str]) -> None:
+        """`ask Bob "Do you need the book?". If not, bring it to me`: the one thing that a question names, or its kind.
+
+        `words` end with one that is no word of a name.
+        """
+        values = self._vocabulary.values
         things, at = list[tuple[int, int, str]](), 0
         while at < len(words):
             found = [find(values.names_tree(kind), words, at) for kind in ("kind", KINDS, OBJECT)]
             ways = [(way[1], sort, way[0]) for sort, way in enumerate(found) if way is not None]
             things += [max(ways)] if ways else []
             at = max(ways)[0] if ways else at + 1
-        if len(things) == 1 and things[0][1] == 2:  # `the cup or the book` are two, also where one is a kind
-            self._context.latest[OBJECT] = things[0][2]
+        if len(things) != 1 or not set(words).isdisjoint(self._vocabulary.roles["or"]):
+            if things:
+                self._context.latest.pop(OBJECT, None)  # `the cup or the book`, also where one is a kind or unknown
+            return
+        _, sort, name = things[0]
+        if sort == 2:
+            self._context.latest[OBJECT] = name
+        elif OBJECT in values.likenesses.types_of(name):
+            key = self._context.keys.get(OBJECT, OBJECT)
+            self._context.latest[OBJECT] = Choice("nearest", OBJECT, key, (("kind", name),)).text
 
     def _same_themes(self, match: Match, value: SlotValue) -> tuple[str, ...]:
         """`fetch the cup from the lab and the book from the hall, and bring them`: the things of commands in a row."""

@@ -15,7 +15,7 @@ from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.value_type import OBJECT, WORLD
+from btlang.vocabulary.value_type import OBJECT, PERSON, WORLD
 from btlang.vocabulary.word_tree import find
 
 _BETWEEN = frozenset(("every", "comma", "and", "then"))
@@ -138,16 +138,26 @@ class PartialConditions(PartialCommands):
         return denied[1]
 
     def _add_elliptic(self, at: int) -> int:
-        """`if Alice isn't in the lab, A, and if Bob isn't, B`: the same is asked of somebody or something else."""
+        """`if Alice isn't in the lab, A, and if Bob isn't, B`: the same is asked of somebody or something else.
+
+        `check that Bob is in the lab. If he isn't, A`: of him.
+        """
         text, tokens, be = self._text, self._tokens, self._vocabulary.forms_of_be
+        kinds = self._context.pronouns.get(text.words[at], ())
         named = [find(self._vocabulary.values.names_tree(kind), text.words, at) for kind in WORLD]
-        verb = max((name[1] for name in named if name is not None), default=at)
+        verb = max((name[1] for name in named if name is not None), default=at + (PERSON in kinds))
         before = next((token for token in reversed(tokens[:-1]) if token.kind == "condition"), None)
         if verb == at or text.words[verb] not in be or before is None or tokens[-1].kind not in ("if", "unless"):
             return 0
         if text.words[verb + 1] not in (",", END_OF_STATEMENT, END_OF_TEXT):
             return 0
         said = list(words_of(text, before))
+        if PERSON in kinds and isinstance(before.value, Called):
+            if before.value.entry.given(PERSON, before.value.arguments) != [self._context.latest.get(PERSON)]:
+                return 0
+            tokens += [Token("not", text.starts[at], text.starts[at])] if be[text.words[verb]] else []
+            tokens.append(Token("condition", text.starts[at], text.ends[verb], before.value))
+            return verb + 1
         asked = next((place for place in said if text.words[place] in be), None)
         if asked is None or said[-1] == asked:
             return 0

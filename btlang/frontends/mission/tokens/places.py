@@ -20,6 +20,7 @@ from btlang.frontends.mission.token import (
     statement_start,
     with_arguments,
 )
+from btlang.frontends.mission.tokens.ended_rules import say_there
 from btlang.frontends.mission.tokens.repeated_statements import ELSEWHERE
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, leads_to
 from btlang.frontends.mission.tokens.silent_words import TRAVELS, begins
@@ -152,9 +153,11 @@ class Places(SentenceReader):
     def placed_before(self, asked: Token) -> None:
         """`if Bob is in the lab, wait until he leaves`: until he isn't in the lab, wherever the robot looks.
 
-        The same behind `avoid the lab while Bob is there`, in the next statement.
+        The same behind `avoid the lab while Bob is there`, in the next statement, and of `check that nobody is in the
+        lab. If someone is there, A`.
         """
         value, tokens = asked.value, self._tokens
+        say_there(asked, tokens, self._vocabulary, self._text.source.text[asked.start : asked.end])
         if not isinstance(value, Called) or value.entry.id != _SEES or tokens[-1:] == [] or tokens[-1].kind != "not":
             return
         here = run_start(tokens, statement_start(tokens, len(tokens)), STATEMENT_ENDS)

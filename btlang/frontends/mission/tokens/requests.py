@@ -6,14 +6,17 @@ import re
 from collections.abc import Mapping
 
 from btlang.diagnostics.diagnostic import diagnostic
-from btlang.frontends.mission.token import Called, Listed, Token, texts_of
+from btlang.frontends.mission.token import Called, Listed, Token, arguments_of, texts_of
 from btlang.frontends.mission.tokens.addressed_texts import TELL
+from btlang.frontends.mission.tokens.ended_rules import THERE
 from btlang.frontends.mission.tokens.hearers import person_of
 from btlang.frontends.mission.tokens.questions import Questions
 from btlang.text.source import Span
 from btlang.tree.answers import ASK
+from btlang.vocabulary.antecedents import pronouns_for, says_there
 from btlang.vocabulary.entry import SAY, Entry
 from btlang.vocabulary.match import Match
+from btlang.vocabulary.references import choice_of
 from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, TEXT
 from btlang.vocabulary.word_tree import find
 
@@ -220,7 +223,7 @@ class Requests(Questions):
         """See Answers; BT151 for `make sure the door is closed`, which could also mean to close it."""
         super().said(token, at)
         asked, check = token.value, self._tokens[-1] if self._tokens else None
-        if check is None or check.kind != "check" or not isinstance(asked, Called) or self._goes_on_if(at):
+        if check is None or check.kind != "check" or not isinstance(asked, Called | Listed) or self._goes_on_if(at):
             return
         source = self._text.source
         if " ".join(source.text[check.start : check.end].lower().split()) not in self._vocabulary.asking["making_sure"]:
@@ -228,7 +231,13 @@ class Requests(Questions):
         bringing = (
             entries[0] for entries in self._vocabulary.entries.values() if asked.entry.id in entries[0].achieves
         )
-        does = next((said for entry in bringing if (said := _said_with(entry, dict(asked.arguments)))), "")
+        things = dict(arguments_of(asked)[0])
+        if isinstance(asked, Listed) or any(choice_of(text) is not None for text in things.values()):
+            values = self._vocabulary.values
+            them = {slot.name: pronouns_for(values.pronouns, slot.type) for slot in asked.entry.slots}
+            plural = values.plural_pronouns.intersection
+            things = {name: next(iter(plural(them[name])), text) for name, text in things.items()}
+        does = next((said for entry in bringing if (said := _said_with(entry, things))), "")
         if does:
             words, span = source.text[token.start : token.end], Span(source, check.start, token.end)
             one, unless = (self._vocabulary.word(role) for role in ("check", "unless"))
@@ -254,8 +263,14 @@ class Requests(Questions):
             written = self._text.source.text[tokens[at].start : tokens[at].end].lower()
             following = self._phrase(end)
             asked = {value.text for value in following.values} if following is not None else set()
-            said = (token.value for token in tokens[at:] if isinstance(token.value, Called | Listed))
+            said = [token.value for token in tokens[at:] if isinstance(token.value, Called | Listed)]
             same = any(asked.intersection(texts_of(value)) for value in said)
+            if following is not None and following.meaning.entry is not None and not same:
+                seen = THERE.get(following.meaning.entry.id, "")
+                is_there = says_there(self._text.span(end, following.last).text, self._vocabulary.values.pronouns)
+                same = is_there and any(value.entry.id == seen for value in said)
+            elif following is None and PERSON in self._context.pronouns.get(self._text.words[end], ()):
+                same = self._text.words[end + 1] in self._vocabulary.forms_of_be  # `if he isn't`
             if " ".join(written.split()) in self._vocabulary.asking["finding_out"] or same:
                 tokens.insert(at, Token("try", tokens[at].start, tokens[at].start))
 

@@ -2,11 +2,24 @@
 
 from __future__ import annotations
 
-from btlang.frontends.mission.token import JOINTS, RULES, WAITING, Token, run_start, statement_start
+from collections.abc import Sequence
+
+from btlang.frontends.mission.token import (
+    JOINTS,
+    RULES,
+    STATEMENT_ENDS,
+    WAITING,
+    Called,
+    Token,
+    run_start,
+    statement_start,
+    texts_of,
+)
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.frontends.mission.tokens.settling import FAILS
 from btlang.frontends.mission.tokens.silent_words import BEGINS
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
+from btlang.vocabulary.references import ALL, choice_of
 from btlang.vocabulary.word_tree import find
 
 _DONE = frozenset(("command", "name", "wait", "wait_time", "condition", "close"))
@@ -41,6 +54,8 @@ class RuleWords(SentenceReader):
         if found is not None and self._is_end(found[1]) and any(token.kind in _DONE for token in tokens[first + 2 :]):
             while tokens[-1].kind in JOINTS:
                 tokens.pop()
+            if self._is_in_round(first, words[at : found[1]]):
+                return found[1]
             is_last = all(word in (END_OF_STATEMENT, END_OF_TEXT) for word in words[found[1] :])
             if not is_last or any(token.kind in ("command", "name") for token in tokens[:first]):
                 self._watch(tokens[first])
@@ -54,6 +69,19 @@ class RuleWords(SentenceReader):
         if joint is not None and joint.meaning.role in ("and", "then"):
             return joint.last
         return behind if behind > found[1] else 0
+
+    def _is_in_round(self, first: int, said: Sequence[str]) -> bool:
+        """`go to each room. If C, A, then carry on with the next`: each time, so that the statement goes on."""
+        tokens = self._tokens
+        before = run_start(tokens, first, STATEMENT_ENDS)
+        done = tokens[statement_start(tokens, before) : before]
+        choices = [choice_of(text) for each in done if isinstance(each.value, Called) for text in texts_of(each.value)]
+        is_round = any(choice is not None and choice.how == ALL for choice in choices)
+        if not is_round or self._vocabulary.values.further.isdisjoint(said):
+            return False
+        here = tokens[first].start
+        tokens[before:first] = [Token("comma", here, here), Token("and", here, here)]
+        return True
 
     def _go_on(self, first: int, at: int, end: int) -> int:
         """`otherwise carry on`, `if that fails, skip it and go on`: nothing is done in place of what comes then."""

@@ -69,12 +69,24 @@ class ToldWords(SentenceReader):
         for at in range(first + 1, last - 1):
             if text.words[at] == "," and self._leaves_out_days(at + 1):
                 return at
+            if not is_told and text.words[at] in (",", *joints) and self._asks_for_answer(at, context):
+                return at
             if text.words[at] in joints and self._begins_command(at + 1, context):
                 if self._is_done_to(first, at + 1):
                     return at
                 goes_on = not texts.is_whole(text, first, at) if is_told else texts.may_be_joined(text, first, at)
                 return 0 if goes_on else at - (text.words[at - 1] == ",")
         return 0
+
+    def _asks_for_answer(self, at: int, context: ReadingContext) -> bool:
+        """Whether a joint stands before what depends on the answer: `ask Bob if he is cold, and if he says yes, A`."""
+        words, form = self._text.words, at + 1
+        form += words[form] in self._vocabulary.roles["and"]
+        if words[form] not in self._vocabulary.firsts["if"]:
+            return False
+        asked = longest(self._vocabulary.trie, self._text, form + 1, context)
+        entry = asked.meaning.entry if asked is not None else None
+        return entry is not None and entry.id in ABOUT_ANSWERS
 
     def _is_done_to(self, first: int, at: int) -> bool:
         """Whether a command is for the one of whom a clause is: `ask if he would like tea and take him to the lab`."""

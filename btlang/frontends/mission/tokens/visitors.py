@@ -19,16 +19,17 @@ from btlang.frontends.mission.token import (
 from btlang.frontends.mission.tokens.ended_rules import GO, journey_to
 from btlang.frontends.mission.tokens.journey_words import COMES
 from btlang.frontends.mission.tokens.rules_inside import ON_WAY
-from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
+from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, is_question
 from btlang.frontends.mission.tokens.settling import STAYS
 from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of, words_of
 from btlang.text.source import Source
+from btlang.tree.answers import ANSWERED
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.references import ALL, choice_of, ordinal
-from btlang.vocabulary.value_type import PERSON, PLACE
+from btlang.vocabulary.value_type import PERSON, PLACE, TEXT
 
-_SEEN, _COMMANDS = "SeesSomeone", ("command", "name")
+_SEEN, _SAYS, _COMMANDS = "SeesSomeone", "SomebodySays", ("command", "name")
 _SIMPLE = frozenset(("command", "name", "wait", "wait_time", "for", "until_time", "count", *JOINTS))
 
 
@@ -63,6 +64,8 @@ class Visitors(SentenceReader):
         is_plain = all(token.kind in _SIMPLE for token in tokens[first:])
         if choice is None or (choice.parts and not kind) or ordinal(choice.how) or not is_plain:
             return 0  # `the first person who says yes` is somebody known by then
+        if self._of_those_asked(event, said, everyone, joint):
+            return last
         self._calls.note(event) if kind else self._calls.note_nearest()
         nearest = self._context.latest[PERSON]
         start, end = tokens[-1].start, self._text.ends[last - 1]
@@ -79,6 +82,28 @@ class Visitors(SentenceReader):
         else:
             tokens[first:] = [rule, condition, Token("comma", end, end), command]
         return last
+
+    def _of_those_asked(self, event: Match, said: Called, everyone: str, joint: int) -> bool:
+        """`ask everyone "Tea?" and bring a cup to everyone who says yes`: to each of those asked, who says so."""
+        tokens, entry = self._tokens, event.meaning.entry
+        end = run_start(tokens, joint, JOINTS | STATEMENT_ENDS)
+        asked, answered = tokens[end - 1] if end else None, self._vocabulary.entry(ANSWERED)
+        if entry is None or entry.id != _SAYS or answered is None:
+            return False
+        if asked is None or not is_question(asked) or not isinstance(asked.value, Called):
+            return False
+        people = choice_of(next(iter(asked.value.entry.given(PERSON, asked.value.arguments)), ""))
+        reply = next((value.text for value in event.values if value.type == TEXT), "")
+        if people is None or people.how != ALL or not reply:
+            return False
+        here, one = tokens[-1].start, f"{{{people.key}}}"
+        arguments = tuple((name, one if text == everyone else text) for name, text in said.arguments)
+        condition = Token("condition", here, here, Called(answered, ((answered.slots[0].name, reply),)))
+        form = [Token(kind, here, here) for kind in ("comma", "and", "if")]
+        command = Token("command", here, tokens[-1].end, said.replace(arguments=arguments))
+        tokens[end:] = [*form, condition, Token("comma", here, here), command]
+        self._context.latest[PERSON] = one
+        return True
 
     def _event(self, at: int, somebody: str) -> Match | None:
         """What somebody does who is spoken of: `who comes near`, `you meet`."""
