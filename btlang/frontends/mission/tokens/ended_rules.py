@@ -7,7 +7,7 @@ stays somewhere waits there until then, or so long: `stay in the kitchen until B
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
@@ -252,21 +252,30 @@ def _say_where(tokens: list[Token], at: int, vocabulary: Lexicon, span: Callable
             token.value = there_now
 
 
-def say_there(asked: Token, tokens: list[Token], vocabulary: Lexicon, words: str) -> None:
-    """Make `someone is there` about the place of the condition before it, to which the robot hasn't gone since."""
+def say_there(asked: Token, tokens: Sequence[Token], vocabulary: Lexicon, words: str, place: str = "") -> None:
+    """Make `someone is there` about a place where the robot isn't yet.
+
+    By default that of the condition before it, unless the robot has gone somewhere since.
+    """
     value = asked.value
     entry = vocabulary.entry(THERE.get(value.entry.id, "")) if isinstance(value, Called) else None
     if entry is None or not isinstance(value, Called) or not says_there(words, vocabulary.values.pronouns):
         return  # as nearly always
+    slot = _slot_of(entry)
+    place = place or _place_asked(tokens, slot)
+    if place[:1] not in ("", "{"):
+        asked.value = Called(entry, (*value.arguments, (slot, place)))
+
+
+def _place_asked(tokens: Sequence[Token], slot: str) -> str:
+    """The place of the last condition of some tokens, "" where none is about a place or the robot has left since."""
     for token in reversed(tokens):
         before = token.value
         if drives(before) or isinstance(before, Listed):
-            return
+            return ""
         if token.kind == "condition" and isinstance(before, Called) and before.entry.id in THERE.values():
-            place = dict(before.arguments).get(_slot_of(entry), "{")
-            if place[:1] != "{":
-                asked.value = Called(entry, (*value.arguments, (_slot_of(entry), place)))
-            return
+            return dict(before.arguments).get(slot, "")
+    return ""
 
 
 def journey_to(place: str, goes: Entry) -> Called:

@@ -22,6 +22,7 @@ from btlang.frontends.mission.tokens.repeated_statements import (
     with_repeats_apart,
     with_times_first,
 )
+from btlang.frontends.mission.tokens.replaced_commands import with_replacements
 from btlang.frontends.mission.tokens.rewording import reworded
 from btlang.frontends.mission.tokens.rules_behind import (
     find_counted_rules,
@@ -81,6 +82,7 @@ class Lexer:
         self._words = WordReader(self.text, self.names, self.context, self.tokens, self.problems, explain)
         self._lines()
         self.problems += with_repeats_apart(self.tokens, source)
+        self.problems += with_replacements(self.tokens, self.vocabulary, source)
         with_times_first(self.tokens)
         self.problems += with_questions_once(self.tokens, source)
         with_questions_each_time(self.tokens)

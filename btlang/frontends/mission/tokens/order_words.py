@@ -23,6 +23,7 @@ from btlang.frontends.mission.token import (
 )
 from btlang.frontends.mission.tokens.clock_words import ClockWords
 from btlang.frontends.mission.tokens.journey_words import JourneyWords
+from btlang.frontends.mission.tokens.replaced_commands import INSTEAD
 from btlang.frontends.mission.tokens.rule_words import RuleWords
 from btlang.frontends.mission.tokens.rules_inside import ON_WAY
 from btlang.frontends.mission.tokens.sentence_reader import leads_to
@@ -203,10 +204,8 @@ class OrderWords(ClockWords, JourneyWords, RuleWords):
             one, other = f"{said}, {self._vocabulary.word('then')} ...", said
             self._calls.problems.append(diagnostic("BT151", span, words=span.text, one=one, other=other))
             return match.last
-        if any(token.kind in ("otherwise", "or") for token in before):
-            return match.last
-        span, otherwise = self._text.span(at, match.last), self._vocabulary.word("otherwise")
-        self._calls.problems.append(diagnostic("BT166", span, words=span.text, otherwise=otherwise))
+        if before and not any(token.kind in ("otherwise", "or") for token in before):
+            self._tokens[-1].role = INSTEAD
         return match.last
 
     def _with_rest_of_tried(self) -> None:

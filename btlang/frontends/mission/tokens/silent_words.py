@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 
-from btlang.frontends.mission.token import JOINTS, LINES, STATEMENT_ENDS, Called, Token, constraint_of
+from btlang.frontends.mission.token import JOINTS, LINES, STATEMENT_ENDS, Called, Token, constraint_of, statement_start
 from btlang.frontends.mission.tokens.settling import STAYS, first_word
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.lexicon import Lexicon
@@ -102,8 +103,10 @@ def without_meaning(
             return at + 2  # `while you are waving`
     if before.kind in ("until", "before") and text.words[at] in vocabulary.subjects:
         return at + 1
-    if role == "ordinal" and match is not None and before.kind in ("command", "but"):
+    if role == "ordinal" and match is not None and before.kind in ("command", "but", "for"):
         start = next((token for token in reversed(tokens) if token.kind in BEGINS or token.kind == "but"), before)
+        pairs = pairwise(tokens[statement_start(tokens, len(tokens)) :])
+        start = next((but for but, form in pairs if (but.kind, form.kind) == ("but", "if")), start)
         start.value = "first" if start.kind == "but" else start.value
         follows = longest(vocabulary.trie, text, match.last, context)
         is_behind = len(tokens) > 2 and tokens[-2].kind in JOINTS and tokens[-3].kind in _OPERANDS

@@ -1,0 +1,176 @@
+"""Commands in whose place others are done: `A, but if C, B`, `A. If C, B instead`; `A, but if C, B first` does both."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.frontends.mission.token import (
+    IN_CONDITIONS,
+    JOINTS,
+    STATEMENT_ENDS,
+    Called,
+    Listed,
+    Token,
+    drives,
+    run_end,
+    run_start,
+    statement_of,
+    statement_start,
+    texts_of,
+)
+from btlang.frontends.mission.tokens.ended_rules import say_there
+from btlang.frontends.mission.tokens.rules_inside import asks_if_blocked
+from btlang.frontends.mission.tokens.settling import FAILS
+from btlang.text.source import Source, Span
+from btlang.tree.answers import ABOUT_ANSWERS
+from btlang.tree.sums import COMPARED
+from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.value_type import DOOR, PLACE, ZONE
+
+INSTEAD = "instead"
+"""The role of a command that is done in the place of one before it."""
+FIRST = "first"
+"""The value of a `but` behind which something is done before the rest."""
+_HEADS = ("every", "every_day", "at")
+_STATES = frozenset((PLACE, ZONE, DOOR, "days", "time_of_day"))
+"""The types of values of conditions that last."""
+_PLAIN = frozenset(("command", "wait", "for", "count", *JOINTS))
+
+
+def with_replacements(tokens: list[Token], vocabulary: Lexicon, source: Source) -> Iterator[Diagnostic]:
+    """Make such statements `unless C, A, otherwise B`, and `if C, B, then A`; C is asked before either.
+
+    BT166 for `A. If C, B instead` where it isn't clear what B replaces.
+    """
+    for at in reversed(range(1, len(tokens))):
+        if tokens[at].kind == "but" and tokens[at + 1 : at + 2] and _follows(tokens, at + 1):
+            yield from _turn(tokens, at, vocabulary, source)
+    for at in reversed(range(1, len(tokens))):
+        if tokens[at].role == INSTEAD and not _replace(tokens, at, vocabulary, source):
+            begin, last = tokens[at].end, tokens[at + 1].start if at + 1 < len(tokens) else len(source.text)
+            said = source.text[begin:last].strip(" ,")
+            begin = source.text.index(said, begin)
+            span = Span(source, begin, begin + len(said))
+            yield diagnostic("BT166", span, words=span.text, otherwise=vocabulary.word("otherwise"))
+
+
+def _follows(tokens: Sequence[Token], at: int) -> bool:
+    return tokens[at].kind in ("if", "unless") or tokens[at].value == FAILS
+
+
+def _turn(tokens: list[Token], but: int, vocabulary: Lexicon, source: Source) -> Iterator[Diagnostic]:
+    """`A, but if C, B`: B in the place of A; `A, but if that fails, B` says nothing with its `but`.
+
+    BT151 where C may become so while A is done: `go to the lab, but if you see Bob, wave`.
+    """
+    first, end = statement_of(tokens, but)
+    if tokens[but + 1].value == FAILS:
+        del tokens[but]
+        return
+    form = _form(tokens[but + 1 : end])
+    tokens[but].kind = "and"
+    if form is not None and (asks_if_blocked(tokens, but + 1) or _asks_of_outcome(form[0])):
+        return
+    tokens[but].kind = "but"
+    first = run_end(tokens, first, _HEADS)
+    first = run_end(tokens, first, ("comma",))
+    before = tokens[first : run_start(tokens, but, ("comma",))]
+    if form is None or not before or any(token.kind not in _PLAIN for token in before):
+        return
+    condition, done = form
+    if tokens[but].value == FIRST:
+        here = tokens[but].start
+        comma, close = Token("comma", here, here), Token("close", here, here)
+        front = [Token("open", here, here), tokens[but + 1], *condition, comma, *done, close, Token("then", here, here)]
+        tokens[first:end] = [*front, *before]
+        return
+    tokens[first:end] = _either(before, tokens[but + 1], condition, done, vocabulary, source)
+    if not _is_state(condition):
+        whole = Span(source, before[0].start, done[-1].end)
+        parts = ((before[0], before[-1]), (condition[0], condition[-1]), (done[0], done[-1]))
+        usual, asked, other = (source.text[start.start : last.end] for start, last in parts)
+        word = vocabulary.word
+        one = f"{word('unless')} {asked}, {usual}. {word('otherwise').capitalize()} {other}"
+        yield diagnostic(
+            "BT151", whole, words=whole.text, one=one, other=f"{word('whenever')} {asked}, {other}; {usual}"
+        )
+
+
+def _replace(tokens: list[Token], at: int, vocabulary: Lexicon, source: Source) -> bool:
+    """`A. If C, B instead`: B in the place of A, the last command before it."""
+    first, end = statement_of(tokens, at)
+    last = run_start(tokens, first, STATEMENT_ENDS)
+    form = _form(tokens[first:end]) if tokens[first].kind in ("if", "unless") else None
+    begin = statement_start(tokens, last)
+    if form is None or last <= 0 or any(token.kind not in _PLAIN for token in tokens[begin:last]):
+        return False
+    command, done = tokens[last - 1], last - 1
+    if not _is_state(form[0]):
+        return False
+    is_joined = begin < done and tokens[done - 1].kind == "and"
+    if command.kind != "command" or is_joined or not _are_alike(command, form[1][0]):
+        return False
+    tokens[done:end] = [
+        Token("open", command.start, command.start),
+        *_either([command], tokens[first], *form, vocabulary, source),
+        Token("close", tokens[end - 1].end, tokens[end - 1].end),
+    ]
+    return True
+
+
+def _form(said: Sequence[Token]) -> tuple[list[Token], list[Token]] | None:
+    """The condition of a form, and what is done; None for others."""
+    comma = run_end(said, 1, IN_CONDITIONS)
+    done = list(said[comma + 1 :])
+    is_form = comma > 1 and said[comma : comma + 1] and said[comma].kind == "comma" and done
+    return (list(said[1:comma]), done) if is_form and all(token.kind in _PLAIN for token in done) else None
+
+
+def _either(
+    before: Sequence[Token],
+    form: Token,
+    condition: Sequence[Token],
+    done: Sequence[Token],
+    vocabulary: Lexicon,
+    source: Source,
+) -> list[Token]:
+    """The tokens that do what stands before a form if its condition isn't so, else what is done there."""
+    here = before[0].start
+    kind = "unless" if form.kind == "if" else "if"
+    _say_where(before, condition, vocabulary, source)
+    comma, otherwise = Token("comma", here, here), Token("otherwise", form.start, form.end)
+    return [Token(kind, here, here), *condition, comma, *before, Token("stop", here, here), otherwise, *done]
+
+
+def _say_where(before: Sequence[Token], condition: Sequence[Token], vocabulary: Lexicon, source: Source) -> None:
+    """`take the cup to the lab, but if Bob isn't there, B` asks whether he is in the lab before the robot goes."""
+    goals = {
+        text
+        for token in before
+        if isinstance(token.value, Called)
+        for text in token.value.entry.given(PLACE, token.value.arguments)
+    }
+    for token in condition:
+        if token.kind == "condition" and len(goals) == 1:
+            say_there(token, [], vocabulary, source.text[token.start : token.end], goals.copy().pop())
+
+
+def _asks_of_outcome(condition: Sequence[Token]) -> bool:
+    """Whether a condition is about an answer, or what was counted: `ask Bob "Tea?", but if he says no, A`."""
+    said = [token.value for token in condition if isinstance(token.value, Called | Listed)]
+    return any(value.entry.id in ABOUT_ANSWERS or value.entry.id == COMPARED for value in said)
+
+
+def _is_state(condition: Sequence[Token]) -> bool:
+    """Whether a condition is about a place, a door or a time, and not about what the robot meets on its way."""
+    said = [token.value for token in condition if isinstance(token.value, Called | Listed)]
+    return all(not _STATES.isdisjoint(slot.type for slot in value.entry.slots) for value in said)
+
+
+def _are_alike(command: Token, other: Token) -> bool:
+    """Whether two commands drive, or are about the same thing, or neither drives."""
+    value, instead = command.value, other.value
+    if not isinstance(value, Called | Listed) or not isinstance(instead, Called | Listed):
+        return False
+    return drives(value) == drives(instead) or not set(texts_of(value)).isdisjoint(texts_of(instead))
