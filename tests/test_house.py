@@ -53,6 +53,7 @@ LONG: dict[str, str] = {
     "btlang/ros/robot/robot.py": "the same over ROS 2",
     "btlang/testing/words.toml": "the words of tests",
     "btlang/vocabulary/keyword_file.py": "what may stand in a keyword file, one table after the other",
+    "btlang/vocabulary/reading_context.py": "what words stand for at a place of a mission",
     "btlang/vocabulary/lexicon.py": "all that the words of a language are made into, which is then frozen",
     "docs/engine.md": "tables of behaviour that the tests play",
     "docs/keywords.md": "every key of keyword files",

@@ -211,6 +211,8 @@ class Lexicon:
         """What a mission calls the robot, and what the robot calls itself: `you are`, `I am`."""
         self.happened: dict[str, str] = language["happened"]
         """The verbs of what is so, and of what was so: `is`, `was`."""
+        self.idioms = tree_of((way, said) for words, said in language["idioms"].items() for way in ways([words]))
+        """Words that are read as others: `whoever says` as `everyone who says`."""
         self.persons: dict[str, list[str]] = language["persons"]
         """The other words for the person for whom a word stands: of `he`, `him` and `his`."""
         self.of_hearer: dict[str, str] = language["of_hearer"]

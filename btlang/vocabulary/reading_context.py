@@ -140,16 +140,23 @@ class ReadingContext:
             if spoken is not None:
                 parts = spoken or self._settled(kind, meant.parts)
                 choice = Choice(ALL, kind, self.keys.get(kind, kind), parts)
-                is_there = PLACE in self.pronouns.get(text.words[end], ()) and PLACE not in self.listed
-                is_there = is_there and text.words[end + 1] not in self.values.texts.inverting  # `all there is tea`
-                self.lacked |= is_there and PLACE not in self.latest
-                there = self.latest.get(PLACE, "{") if is_there else "{"
-                is_there = there[:1] != "{" and kind in (PERSON, OBJECT) and "inside" not in dict(parts)
-                if not (is_there and kind == PERSON):
+                there = self._place_behind(kind, text, end) if "inside" not in dict(parts) else ""
+                if not there or kind != PERSON:
                     yield "" if self.values.likenesses.members(choice) == () else choice.text, meant, end
-                if is_there:  # `everyone there`
+                if there:  # `everyone there`
                     placed = meant.replace(parts=tuple(sorted((*parts, ("inside", there)))))
                     yield choice.replace(parts=placed.parts).text, placed, end + 1
+
+    def _place_behind(self, kind: str, text: Words, at: int) -> str:
+        """The place for which `there` stands behind a set: one, or that of each round; "" for none."""
+        if PLACE not in self.pronouns.get(text.words[at], ()) or text.words[at + 1] in self.values.texts.inverting:
+            return ""  # `all there is tea`
+        self.lacked |= PLACE not in self.latest
+        latest, each = self.latest.get(PLACE, ""), choice_of(self.listed.get(PLACE, ""))
+        if PLACE in self.listed:  # `go to the lab and the hall and greet everybody there`
+            return f"{{{each.key}}}" if each is not None and kind == PERSON else ""
+        is_known = latest[:1] != "{" or latest[1:-1] in {*self.met, *(self.known or ())}
+        return latest if is_known and kind in (PERSON, OBJECT) else ""
 
     def _spoken_of(self, meant: Description, text: Words, at: int) -> Parts | None:
         """`in each room`, `in both rooms` behind journeys: the names to which the statement or the one before led.

@@ -110,6 +110,9 @@ class Mentions:
             latest = value.group or (value.more[-1] if value.more else value.text)
             choice = choice_of(latest) if latest[:1] == "{" else None
             if choice is not None:
+                where = next((text for name, text in choice.parts if name in ("at", "inside")), "{")
+                if where in self._vocabulary.values.listed(PLACE) and all(v.type != PLACE for v in match.values):
+                    self._context.latest[PLACE] = where  # `tell everyone in the lab "Hi" and count the people there`
                 self._context.met[choice.key] = choice.how == ALL
                 if choice.how == ALL and match.meaning.role != "command":  # `if all doors are open, close them`
                     self._context.listed[value.type] = latest

@@ -18,6 +18,7 @@ from btlang.frontends.mission.token import (
     run_end,
     run_start,
     statement_start,
+    texts_of,
     with_arguments,
 )
 from btlang.frontends.mission.tokens.ended_rules import say_there
@@ -129,7 +130,8 @@ class Places(SentenceReader):
         if not goal:
             return 0
         if self._calls.is_alternative(journey, goal):
-            return pronoun[1]
+            choices = map(choice_of, texts_of(said)) if isinstance(said, Called) else ()
+            return 0 if any(choice is not None and choice.how == ALL for choice in choices) else pronoun[1]
         if goal[:1] == "{":
             count = tokens[tokens.index(journey) + 1]
             if count.kind == "count":

@@ -19,6 +19,7 @@ from btlang.frontends.mission.token import (
     Token,
     arguments_of,
     run_end,
+    run_start,
     statement_end,
     statement_of,
     statement_start,
@@ -50,6 +51,7 @@ def with_repeats_apart(tokens: list[Token], source: Source) -> Iterator[Diagnost
         if tokens[at - 1].kind == "and" and tokens[at + 1 : at + 2] and tokens[at + 1].kind == "at":
             _at_both(tokens, at)
             continue
+        at = _joined(tokens, at)
         if tokens[at - 1].kind != "stop":
             continue
         kinds = [token.kind for token in tokens[at : at + 3]]
@@ -75,6 +77,23 @@ def with_repeats_apart(tokens: list[Token], source: Source) -> Iterator[Diagnost
             tokens[first + 1 : behind] = [
                 Token("comma", start, start), Token("open", start, start), *commands, Token("close", last, last),
             ]  # fmt: skip
+
+
+def _joined(tokens: list[Token], at: int) -> int:
+    """Make a sentence of its own of `..., and do that ten times` and `Then do the same in the hall`; return its place.
+
+    `A, then do that ten times` may be once more.
+    """
+    joint = run_start(tokens, at, JOINTS)
+    begin = joint - (tokens[joint - 1].kind == "semi")
+    elsewhere = tokens[at + 1 : at + 2] != [] and tokens[at + 1].role == ELSEWHERE
+    says_then = any(token.kind == "then" for token in tokens[joint:at])
+    before = tokens[statement_start(tokens, begin) : begin]
+    is_plain = bool(before) and all(token.kind in (*_PLAIN, "at") for token in before)
+    if tokens[at].kind != "do_that" or joint == at or not is_plain or (says_then and not elsewhere):
+        return at
+    tokens[begin:at] = [Token("stop", tokens[at].start, tokens[at].start)]
+    return begin + 1
 
 
 def with_questions_once(tokens: list[Token], source: Source) -> Iterator[Diagnostic]:

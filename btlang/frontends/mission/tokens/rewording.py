@@ -23,6 +23,7 @@ _LONGEST_TRY = 6  # words
 
 def reworded(text: Words, vocabulary: Lexicon) -> list[Diagnostic]:
     """Change the words of a text to those that are read. Returns notes about what is left out."""
+    _say_plainly(text, vocabulary)
     _drop_words_of_turns(text, vocabulary)
     _drop_still(text, vocabulary)
     _drop_left(text, vocabulary)
@@ -37,11 +38,25 @@ def reworded(text: Words, vocabulary: Lexicon) -> list[Diagnostic]:
     _say_again(text, vocabulary)
     _count_again(text, vocabulary)
     _tell_again(text, vocabulary)
+    _tell_each(text, vocabulary)
     _wait_to_try(text, vocabulary)
     _wait_once(text, vocabulary)
     _drop_commas(text, vocabulary)
     _list_ranges(text, vocabulary)
     return [*_drop_untold_sizes(text, vocabulary), *_drop_untold_contents(text, vocabulary)]
+
+
+def _say_plainly(text: Words, vocabulary: Lexicon) -> None:
+    """Put plain words in the place of idioms: `it is past 10 am` as `it is after 10 am`."""
+    if text.distinct.isdisjoint(vocabulary.idioms):
+        return
+    at = 0
+    while at < len(text.words) - 1:
+        found = find(vocabulary.idioms, text.words, at) if text.words[at] in vocabulary.idioms else None
+        if found is not None:
+            text.drop(at + 1, found[1])
+            text.replace(at, found[0].split())
+        at += 1
 
 
 def _drop_words_of_turns(text: Words, vocabulary: Lexicon) -> None:
@@ -239,6 +254,27 @@ def _tell_again(text: Words, vocabulary: Lexicon) -> None:
         person = find(vocabulary.values.names_tree(PERSON), words, at + 1)
         if words[at + 2 if person is None else person[1]] in again:
             text.replace(at, asking["informing"][:1])
+
+
+def _tell_each(text: Words, vocabulary: Lexicon) -> None:
+    """Repeat the verb of what several are told: `tell Bob that A, Alice that B`, `ask Bob to A and Alice to B`."""
+    words, people = text.words, vocabulary.values.names_tree(PERSON)
+    telling = vocabulary.opening_words("TellPerson", "Ask")
+    if text.distinct.isdisjoint(telling) or text.distinct.isdisjoint(people):
+        return  # as nearly always
+    said = (verb for verb in range(len(words)) if words[verb] in telling)
+    for verb in reversed([verb for verb in said if find(people, words, verb + 1) is not None]):
+        _, first = find(people, words, verb + 1) or ("", verb)
+        end = next(i for i in range(verb, len(words)) if words[i] in STOPS)
+        joints = (i for i in range(first + 1, end) if words[i] in (",", *vocabulary.roles["and"]))
+        for at in reversed([i for i in joints if words[i + 1] in people]):
+            other = find(people, words, at + 1)
+            opens = words[first] == words[other[1]] if other is not None else False
+            is_quoted = other is not None and words[first][0] == words[other[1]][0] == '"'
+            if is_quoted or (opens and words[first][0].isalpha()):
+                begin = at - (words[at - 1] == ",")
+                text.drop(begin + 1, at + 1)
+                text.replace(begin, [vocabulary.word("then"), words[verb]])
 
 
 def _wait_to_try(text: Words, vocabulary: Lexicon) -> None:

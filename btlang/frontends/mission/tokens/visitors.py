@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import (
     JOINTS,
     STATEMENT_ENDS,
     Called,
     Listed,
     Token,
+    arguments_of,
     drives,
     run_end,
     run_start,
@@ -22,11 +24,11 @@ from btlang.frontends.mission.tokens.rules_inside import ON_WAY
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, is_question
 from btlang.frontends.mission.tokens.settling import STAYS
 from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of, words_of
-from btlang.text.source import Source
+from btlang.text.source import Source, Span
 from btlang.tree.answers import ANSWERED
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match
-from btlang.vocabulary.references import ALL, choice_of, ordinal
+from btlang.vocabulary.references import ALL, NAMES, Choice, choice_of, ordinal
 from btlang.vocabulary.value_type import PERSON, PLACE, TEXT
 
 _SEEN, _SAYS, _COMMANDS = "SeesSomeone", "SomebodySays", ("command", "name")
@@ -83,6 +85,18 @@ class Visitors(SentenceReader):
             tokens[first:] = [rule, condition, Token("comma", end, end), command]
         return last
 
+    def in_each(self) -> None:
+        """`go to the lab and the hall and greet everybody there`: in each of them."""
+        said, several = self._tokens[-1], choice_of(self._context.listed.get(PLACE, ""))
+        choices = map(choice_of, texts_of(said.value)) if several is not None and isinstance(said.value, Called) else ()
+        if several is None or all(one is None or ("inside", f"{{{several.key}}}") not in one.parts for one in choices):
+            return  # as nearly always
+        journey = self._journey(self._tokens[:-1])
+        if journey is None or self._tokens[-2].kind != "and" or not self._calls.make_round(journey, several.text):
+            words, joint = Span(self._text.source, said.start, said.end), self._vocabulary.word("each_in")
+            reason, example = "the places may be meant together", f"... and {joint} each, ..."
+            self._calls.problems.append(diagnostic("BT150", words, words=words.text, reason=reason, example=example))
+
     def _of_those_asked(self, event: Match, said: Called, everyone: str, joint: int) -> bool:
         """`ask everyone "Tea?" and bring a cup to everyone who says yes`: to each of those asked, who says so."""
         tokens, entry = self._tokens, event.meaning.entry
@@ -90,12 +104,14 @@ class Visitors(SentenceReader):
         asked, answered = tokens[end - 1] if end else None, self._vocabulary.entry(ANSWERED)
         if entry is None or entry.id != _SAYS or answered is None:
             return False
-        if asked is None or not is_question(asked) or not isinstance(asked.value, Called):
+        if asked is None or not is_question(asked) or not isinstance(asked.value, Called | Listed):
             return False
-        people = choice_of(next(iter(asked.value.entry.given(PERSON, asked.value.arguments)), ""))
+        question = _of_set(asked.value, self._context.keys.get(PERSON, PERSON))
+        people = choice_of(next(iter(question.entry.given(PERSON, question.arguments)), ""))
         reply = next((value.text for value in event.values if value.type == TEXT), "")
         if people is None or people.how != ALL or not reply:
             return False
+        asked.value = question
         here, one = tokens[-1].start, f"{{{people.key}}}"
         arguments = tuple((name, one if text == everyone else text) for name, text in said.arguments)
         condition = Token("condition", here, here, Called(answered, ((answered.slots[0].name, reply),)))
@@ -117,6 +133,15 @@ class Visitors(SentenceReader):
         found = match_of(text, places, other, (self._vocabulary.trie,), self._context)
         is_event = found is not None and found.meaning.role == "condition"
         return relocated(found, places) if found is not None and is_event else None
+
+
+def _of_set(asked: Called | Listed, key: str) -> Called:
+    """A question to several people as one to a set of them."""
+    rows = arguments_of(asked)
+    names = [name for row in rows for name in asked.entry.given(PERSON, row)]
+    people = Choice(ALL, PERSON, key, ((NAMES, ";".join(names)),)).text if len(rows) > 1 else names[0] if names else ""
+    types = {slot.name: slot.type for slot in asked.entry.slots}
+    return Called(asked.entry, tuple((name, people if types[name] == PERSON else text) for name, text in rows[0]))
 
 
 def _kind_of(said: Called) -> str:

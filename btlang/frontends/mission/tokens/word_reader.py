@@ -447,6 +447,7 @@ class WordReader:
         self._requests.note_question(said)
         self._outcomes.give_up(match.last)
         self._places.search_there(match)
+        self._visitors.in_each()
         if len(tokens) > 1 and tokens[-2].kind == "while" and constraint_of(said) is not None:
             tokens[-2].kind = "while_doing"  # `while avoiding the kitchen`
         return 0
