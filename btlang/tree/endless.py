@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from typing import Any
 
 _SENTENCE_END = re.compile(r"[.!\n]")
-_STOP, _WAITS = "Stop", "WaitForPerson"
+_STOP, _WAITS = "Stop", ("WaitForPerson", "WaitForSomeone")
 
 
 def with_ends(mission: ast.Program) -> ast.Program:
@@ -110,7 +110,7 @@ def is_wait(node: ast.Ast) -> bool:
     """Return whether a command only waits for something: until a time of day it does so once."""
     if isinstance(node, ast.Retry) and node.attempts == "-1" and isinstance(node.body, ast.Chain):
         return isinstance(node.body.items[-1], ast.Check)
-    return isinstance(node, ast.WaitUntil) or (isinstance(node, ast.Phrase) and node.entry.id == _WAITS)
+    return isinstance(node, ast.WaitUntil) or (isinstance(node, ast.Phrase) and node.entry.id in _WAITS)
 
 
 def _split_timed(node: ast.Ast) -> tuple[ast.Ast | None, ast.Ast | None, list[ast.Ast]]:

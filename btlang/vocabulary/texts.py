@@ -51,7 +51,6 @@ class Texts:
         self._owners = frozenset(language["possessives"].get("others", ()))
         self._having = "".join(language["asking"].get("having", ())[:1])
         self._subjects = frozenset((*language["pronouns"], *language["asking"].get("addressed", ())))
-        self._doing = "".join(language["asking"].get("doing_it", ())[:1])
         self._sayings = tree_of((phrase, True) for phrase in language["sayings"])
         self._then, self._otherwise = words_of("then"), words_of("otherwise")
         self._direct = tree_of((words, said) for said, clauses in language["direct"].items() for words in ways(clauses))
@@ -160,11 +159,13 @@ class Texts:
         is_joint = any(find(joints, text.words, at) is not None for joints in (self._joints, self._then))
         return text.words[at - 1] in self.inverting - self._modals and text.words[at] in self._joining and not is_joint
 
-    def direct(self, text: Words, first: int, last: int, sure: Set[str], verbs: Mapping[int, str]) -> str | None:
+    def direct(
+        self, text: Words, first: int, last: int, sure: Set[str], verbs: Mapping[int, tuple[str, int]]
+    ) -> str | None:
         """The question that a clause stands for: `he is hungry` as "Are you hungry?"; None where that can't be told.
 
-        The `sure` words belong to it, though they may end others; the `verbs` are those of questions, by the place of
-        who does it: of `she drinks tea`, "drink".
+        The `sure` words belong to it, though they may end others; the `verbs` begin questions, by the place of who does
+        it, each with where the verb ends: of `she drinks tea`, "do you drink".
         """
         others = (text.words[at] for at in range(first, last) if not self._begins_no_other(text, at))
         doubtful = (self._doubtful - sure).intersection(others)  # but not `in` of `if she is in pain`
@@ -172,9 +173,8 @@ class Texts:
         asks = opener in self._question_words
         for at in range(first, last) if asks else (first,):  # `what tea he wants`
             front = find(self._direct, text.words, at)
-            if front is None and at in verbs:
-                front = f"{self._doing} {verbs[at]}", at + 2
-            if front is not None and (front[1] < last or asks):
+            front = front or verbs.get(at)
+            if front is not None and (front[1] < last or asks or at in verbs):
                 if not doubtful.isdisjoint(text.words[first:at]):
                     break  # `when she comes if she wants tea`
                 begin = self._having if self._having and self._is_perfect(text, front[1], last) else front[0]

@@ -219,7 +219,7 @@ class ClockWords(SentenceReader):
         if tokens[-1].kind in _BEFORE_HOURS:
             return ""
         form = run_start(tokens, len(tokens), IN_CONDITIONS) - 1
-        if tokens[-1].kind != "condition" or form < 0 or tokens[form].kind not in BEFORE_CONDITIONS:
+        if tokens[-1].kind != "condition" or form < 0 or tokens[form].kind not in (*BEFORE_CONDITIONS, "once"):
             return None
         return "if" if tokens[form].kind in ("if", "unless") else "and"
 

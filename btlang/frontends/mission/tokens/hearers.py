@@ -13,6 +13,7 @@ from btlang.text.words import Words
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.value_type import PERSON
+from btlang.vocabulary.word_tree import find
 
 _SOMEBODY = "may be somebody else for whoever hears it"
 _NEXT = "may be a part of it, or go on with the mission"
@@ -185,10 +186,28 @@ def as_robot(text: Words, first: int, last: int, vocabulary: Lexicon) -> Words:
     return text
 
 
-def verbs_of(text: Words, first: int, last: int, vocabulary: Lexicon) -> dict[int, str]:
-    """The verbs behind words for people, as they stand in questions, by the place of the word: of `she drinks tea`."""
-    places = (at for at in range(first, last - 1) if text.words[at] in vocabulary.persons)
-    return {at: verb for at in places if (verb := _with_you(text.words[at + 1], vocabulary)) != text.words[at + 1]}
+def verbs_of(text: Words, first: int, last: int, vocabulary: Lexicon) -> dict[int, tuple[str, int]]:
+    """Whoever does something and the verb, as they begin a question, by their place, and where the verb ends.
+
+    Of `she drinks tea`, "do you drink"; of `anybody drinks tea`, "does anybody drink".
+    """
+    asking, people, found = vocabulary.asking, vocabulary.values.names_tree(PERSON), dict[int, tuple[str, int]]()
+    you, do, does = ("".join(asking[name][:1]) for name in ("doing_it", "doing_ours", "doing_theirs"))
+    for at in range(first, last - 1):
+        word, named = text.words[at], find(people, text.words, at)
+        end = named[1] if named is not None else at + 1
+        verb = _with_you(text.words[end], vocabulary)
+        is_one = word in asking["one_doing"] or named is not None
+        if word in vocabulary.persons and verb != text.words[end]:
+            found[at] = f"{you} {verb}", end + 1
+        elif is_one and does and verb != text.words[end] and verb not in vocabulary.values.texts.inverting:
+            found[at] = f"{does} {' '.join(map(str, named[:1] if named is not None else (word,)))} {verb}", end + 1
+        elif word in asking["several_doing"] and text.words[end] not in vocabulary.values.texts.inverting:
+            found[at] = f"{do} {word} {text.words[end]}", end + 1
+    asked = text.words[first]
+    if not found and text.words[first - 1] in asking["who"] and _with_you(asked, vocabulary) != asked:
+        found[first] = asked, first + 1  # `who wants tea`
+    return found
 
 
 def _owns(text: Words, at: int, last: int, vocabulary: Lexicon) -> bool:

@@ -15,7 +15,7 @@ from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE
 from btlang.vocabulary.word_tree import find
 
 _ASKED = ("condition", "negated")
-COMES, _ANYBODY_COMES, _COMES_BACK, _DURATION = "WaitForPerson", "WaitForSomeone", "ComeBack", "duration"
+COMES, ANYBODY_COMES, _COMES_BACK, _DURATION = "WaitForPerson", "WaitForSomeone", "ComeBack", "duration"
 _SEES, _AT = "SeesPerson", "PersonIsAt"
 _ANY = "seen"  # how one of those in view is chosen
 _TAKES, _FROM = "Take", ("off", "at", "inside", "on")
@@ -253,7 +253,7 @@ class JourneyWords(SentenceReader):
             return match  # as nearly always
         if match.meaning.entry.id == _AT:
             return _of_those_there(match)
-        entry, who = self._vocabulary.entry(_ANYBODY_COMES), _whoever(match)
+        entry, who = self._vocabulary.entry(ANYBODY_COMES), _whoever(match)
         if entry is None or who is None or who.parts:
             return match
         return Match(Meaning("command", entry), match.last, tuple(v for v in match.values if v.type != PERSON))

@@ -28,7 +28,7 @@ from btlang.frontends.mission.tokens.silent_words import TRAVELS, begins
 from btlang.text.source import Span
 from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.references import ALL, NAMES, choice_of
-from btlang.vocabulary.value_type import OBJECT, PERSON, PLACE
+from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE
 from btlang.vocabulary.word_tree import find
 
 _HOLD, _SEES, _AT = "Hold", "SeesPerson", "PersonIsAt"
@@ -379,7 +379,7 @@ class Places(SentenceReader):
             return None
         journey = self._with_front(at, at + 1, "journey")
         goal = journey.values[0] if journey is not None and journey.values else None
-        is_there = goal is not None and (goal.type == PLACE or (goal.type == PERSON and bool(goal.group)))
+        is_there = goal is not None and (goal.type in (PLACE, DOOR) or (goal.type == PERSON and bool(goal.group)))
         is_open = goal is not None and bool(goal.more) and goal.joiner == "or"  # `wave in the kitchen or the lab`
         return journey if is_there and not is_open else None  # `at each person, wave`
 

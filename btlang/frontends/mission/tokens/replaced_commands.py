@@ -26,7 +26,7 @@ from btlang.text.source import Source, Span
 from btlang.tree.answers import ABOUT_ANSWERS
 from btlang.tree.sums import COMPARED
 from btlang.vocabulary.lexicon import Lexicon
-from btlang.vocabulary.value_type import DOOR, PLACE, ZONE
+from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE, ZONE
 
 INSTEAD = "instead"
 """The role of a command that is done in the place of one before it."""
@@ -46,6 +46,7 @@ def with_replacements(tokens: list[Token], vocabulary: Lexicon, source: Source) 
     for at in reversed(range(1, len(tokens))):
         if tokens[at].kind == "but" and tokens[at + 1 : at + 2] and _follows(tokens, at + 1):
             yield from _turn(tokens, at, vocabulary, source)
+    yield from _find_moved_again(tokens, vocabulary, source)
     for at in reversed(range(1, len(tokens))):
         if tokens[at].role == INSTEAD and not _replace(tokens, at, vocabulary, source):
             begin, last = tokens[at].end, tokens[at + 1].start if at + 1 < len(tokens) else len(source.text)
@@ -53,6 +54,33 @@ def with_replacements(tokens: list[Token], vocabulary: Lexicon, source: Source) 
             begin = source.text.index(said, begin)
             span = Span(source, begin, begin + len(said))
             yield diagnostic("BT166", span, words=span.text, otherwise=vocabulary.word("otherwise"))
+
+
+def _find_moved_again(tokens: Sequence[Token], vocabulary: Lexicon, source: Source) -> Iterator[Diagnostic]:
+    """BT151 for `bring the cup to Alice. If C, put it on the table`: then, or in its place."""
+    for at in range(2, len(tokens)):
+        if tokens[at].kind != "if" or tokens[at - 1].kind != "semi" or tokens[at - 2].kind != "command":
+            continue
+        end = statement_of(tokens, at)[1]
+        form = _form(tokens[at:end])
+        if form is None or not _is_state(form[0]) or any(token.role == INSTEAD for token in form[1]):
+            continue
+        moved = _moved(tokens[at - 2])
+        if moved and any(moved & _moved(token) for token in form[1]):
+            whole, first = Span(source, tokens[at].start, form[1][-1].end), form[1][0].start
+            asked, said = source.text[tokens[at].start : first], source.text[first : whole.end]
+            then, instead = vocabulary.word("then"), vocabulary.word("instead")
+            other = f"{then} {asked[:1].lower()}{asked[1:]}{said}"
+            yield diagnostic("BT151", whole, words=whole.text, one=f"{whole.text} {instead}", other=f"..., {other}")
+
+
+def _moved(command: Token) -> set[str]:
+    """The things that a command brings to a place or a person."""
+    value = command.value
+    if not isinstance(value, Called) or {slot.type for slot in value.entry.slots}.isdisjoint((PLACE, PERSON)):
+        return set()
+    goals = (*value.entry.given(PLACE, value.arguments), *value.entry.given(PERSON, value.arguments))
+    return set(value.entry.given(OBJECT, value.arguments)) if goals and drives(value) else set()
 
 
 def _follows(tokens: Sequence[Token], at: int) -> bool:

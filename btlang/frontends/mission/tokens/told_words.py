@@ -118,7 +118,8 @@ class ToldWords(SentenceReader):
         end = person[1] if person is not None else at + 2
         is_person = person is not None or words[at + 1] in {*self._vocabulary.values.role_words.speaker}
         end += words[end] in asking["informed"]
-        return end if is_person and self._ends(end) else 0
+        is_clause = self._vocabulary.values.texts.opens(words[end])  # `and tell Bob what she says`
+        return end if is_person and (is_clause or self._ends(end)) else 0
 
     def _asked_of(self) -> str:
         """The words of the one condition that the command being read depends on, with names for pronouns; else ""."""

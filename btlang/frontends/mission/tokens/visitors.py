@@ -19,7 +19,7 @@ from btlang.frontends.mission.token import (
     texts_of,
 )
 from btlang.frontends.mission.tokens.ended_rules import GO, journey_to
-from btlang.frontends.mission.tokens.journey_words import COMES
+from btlang.frontends.mission.tokens.journey_words import ANYBODY_COMES, COMES
 from btlang.frontends.mission.tokens.rules_inside import ON_WAY
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, is_question
 from btlang.frontends.mission.tokens.settling import STAYS
@@ -152,12 +152,23 @@ def _kind_of(said: Called) -> str:
 
 
 def with_meetings(tokens: list[Token], vocabulary: Lexicon) -> None:
-    """Make `wait for Alice in the lab for 5 min` go to the lab first: she needn't be there yet."""
+    """Make `wait for Alice in the lab for 5 min` go to the lab first: she needn't be there yet.
+
+    Until some time it waits there, as `wait for Alice at the lab until 6 pm` does.
+    """
     goes = vocabulary.entry(GO)
     for at in reversed(range(len(tokens)) if goes is not None else ()):
         said, start, end = tokens[at].value, tokens[at].start, tokens[at].end
-        if goes is None or not isinstance(said, Called) or said.entry.id != COMES:
+        if goes is None or not isinstance(said, Called) or said.entry.id not in (COMES, ANYBODY_COMES):
             continue  # as nearly always
+        if [token.kind for token in tokens[at + 1 : at + 3]] == ["close", "until_time"]:
+            until = tokens.pop(at + 2)
+            if at and tokens[at - 1].kind == "and":
+                tokens[at - 1].kind = "then"
+            tokens[at : at + 1] = [Token("open", start, start), tokens[at], until, Token("close", end, end)]
+            continue
+        if said.entry.id == ANYBODY_COMES:
+            continue
         who = choice_of(said.arguments[0][1])
         parts = dict(who.parts) if who is not None else {}
         if parts.keys() == {"inside", "named"}:
