@@ -24,6 +24,7 @@ _PERSON = "is a person, and the question is missing"
 _BEHIND_PERSON = frozenset(("instead", "politeness", "until", "every"))
 """What may stand behind who is asked the same: `keep asking him until he says yes`."""
 _MEASURES = frozenset(("count", "at_most", "up_to_times", "tries", "within", "by_time", "for", "up_to", "every"))
+_MOST_IN_NAME = 4  # words
 _BEFORE_TIME = frozenset((*BEGINS, "and"))
 
 
@@ -75,6 +76,7 @@ class AddressedTexts(Hearers):
         """`tell Bob dinner is ready`: a clause without a word before it."""
         text, texts = self._text, self._vocabulary.values.texts
         end = texts.end_of_clause(text, value.first)
+        end = self._note_form(command, value.first, end) or end
         end = self._end_before_command(value.first, end, is_told=True) or end
         if any(word[0] == '"' for word in text.words[value.first : end]):
             return 0  # `tell her quietly "Hello"`
@@ -93,6 +95,23 @@ class AddressedTexts(Hearers):
         for at in range(first + 2, last):
             if self._text.words[at] in timing and ((time := self._phrase(at)) is None or time.meaning.role == "at"):
                 yield at
+
+    def _said_lists(self, first: int, last: int) -> Iterator[int]:
+        """The places of what joins a list of things that is said: `tell Bob that he can have tea, juice and water`."""
+        words, joints = self._text.words, {*self._vocabulary.roles["and"], *self._vocabulary.roles["or"]}
+        places = [at for at in range(first, last) if words[at] in joints or words[at] == ","]
+        for at, joint in enumerate(places):
+            if words[joint] not in joints or not self._is_thing(joint + 1, joint + 2):
+                continue
+            begin = at
+            while begin and words[places[begin - 1]] == "," and self._is_thing(places[begin - 1] + 1, places[begin]):
+                begin -= 1
+            yield from places[begin : at + 1]
+
+    def _is_thing(self, first: int, last: int) -> bool:
+        """Whether words may name a thing: some behind an article, or one with which nothing begins."""
+        is_owned = first in self._text.articles
+        return last - first < _MOST_IN_NAME if is_owned else last - first == 1 and self._phrase(first) is None
 
     def _wish(self, value: SlotValue, command: Token) -> int:
         """`wish Bob a nice day`: "Have a nice day"."""
@@ -119,7 +138,7 @@ class AddressedTexts(Hearers):
     def _doubt_words(self, entry: Entry, command: Token, first: int, last: int, said: Words) -> None:
         """Doubt what somebody is told, where nothing says who or what is meant; a time in it is part of it."""
         text, texts = self._text, self._vocabulary.values.texts
-        sure = self._clear(said, first, last).union(self._said_times(first, last))
+        sure = self._clear(said, first, last).union(self._said_times(first, last), self._said_lists(first, last))
         if not self._doubt(entry, texts.doubt(text, first, last, sure), said=(command, first, last)):
             self._note_unnamed(first, last)
 
@@ -139,9 +158,11 @@ class AddressedTexts(Hearers):
         end = value.first + 1 if helps else texts.end_of_clause(text, value.first) or value.last
         end = (self._end_before_command(value.first, end, is_told=False) if is_thing else 0) or end
         end = next((at for at in range(value.first, end) if self._leaves_out_days(at + 1)), end)
+        end = self._note_form(command, value.first, end) or end
         heard = self._to_hearer(command, value.first, end, is_asked=True, is_plea=not is_thing)
         clear = self._clear(heard, value.first, end)
         clear |= {place for place in range(value.first, end) if text.words[place - 1] in asking["coming"]}
+        clear.update(self._said_lists(value.first, end))
         doubtful = (place for place in range(value.first, end) if texts.doubt(text, place, place + 1, clear))
         self._doubt(entry, next(doubtful, 0), said=(command, value.first, end))
         slot = self._ask_instead(command) if is_thing and text.words[end - 1] in asking["told_about"] else ""
@@ -191,6 +212,7 @@ class AddressedTexts(Hearers):
                 self._doubt(entry, at, _PERSON)
             return 0
         end = self._end_before_command(at, value.last, is_told=False)
+        end = end or self._note_form(command, at, value.last)
         last = end or value.last
         is_speaker = text.words[at - 2] in values.role_words.speaker
         asked = self._of_speaker(at, last) if is_speaker else self._to_hearer(command, at, last, is_asked=True)

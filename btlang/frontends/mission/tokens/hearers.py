@@ -9,6 +9,7 @@ from btlang.frontends.mission.token import STATEMENT_ENDS, Called, Listed, Token
 from btlang.frontends.mission.tokens.sentence_reader import is_question
 from btlang.frontends.mission.tokens.told_words import ToldWords
 from btlang.frontends.mission.tokens.word_matches import words_of
+from btlang.text.source import Span
 from btlang.text.words import Words
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
@@ -76,6 +77,21 @@ class Hearers(ToldWords):
             example = self._quoting(*said, at) if said is not None else entry.example
             self._calls.problems.append(diagnostic("BT159", span, word=span.text, reason=reason, example=example))
         return at > 0
+
+    def _note_form(self, command: Token, first: int, last: int) -> int:
+        """Where a clause ends before a form; BT050 there, as it could be said, too: `that tea is ready, unless C`."""
+        text, end = self._text, self._end_before_form(first, last)
+        if not end:
+            return 0
+        last = self._end_of_statement(end)
+        opener = text.words[first - 1]
+        is_opened = self._vocabulary.values.texts.opens(opener) or opener in self._vocabulary.asking["pleading"]
+        whole, behind = Span(text.source, command.start, text.ends[end - 1]), text.span(end, last).text
+        front = text.source.text[command.start : text.ends[first - 1 - is_opened]]
+        said = text.span(first, end).text
+        taken, other = f'{front} "{said}"{behind}', f'{front} "{said}{behind}"'
+        self._calls.problems.append(diagnostic("BT050", whole, taken=taken, other=other, fixed=taken))
+        return end
 
     def _quoting(self, command: Token, first: int, last: int, at: int) -> str:
         """A command with the words that it says in quotes, up to a word in doubt behind which another one begins."""

@@ -76,6 +76,7 @@ class Requests(Questions):
             return self._ask(entry, value, command)
         if self._is_clause(value):
             end = self._end_before_command(value.first, value.last, is_told=True)
+            end = end or self._note_form(command, value.first, value.last)
             last = end or value.last
             heard = self._to_hearer(command, value.first, last, is_asked=False)
             self._doubt_words(entry, command, value.first, last, heard)

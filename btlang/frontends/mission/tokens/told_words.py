@@ -32,6 +32,7 @@ _ASKED_BY = frozenset(("if", "whenever", "first_time", "as_soon_as", WORKS))
 _IN_CONDITIONS = frozenset(("condition", "not", "either", "neither", "or"))
 _LINE_ENDS = frozenset(("semi", "newline", "otherwise"))
 _DONE = ("command", "at", "wait", "wait_until", "wait_forever")
+_FORMS = ("unless", "if", "once", "as_soon_as", "whenever")
 _BEHIND = ("politeness", "then", "and", "unless")
 
 
@@ -71,11 +72,26 @@ class ToldWords(SentenceReader):
                 return at
             if not is_told and text.words[at] in (",", *joints) and self._asks_for_answer(at, context):
                 return at
-            if text.words[at] in joints and self._begins_command(at + 1, context):
+            if text.words[at] in ((*joints, ",") if is_told else joints) and self._begins_command(at + 1, context):
                 if self._is_done_to(first, at + 1):
                     return at
                 goes_on = not texts.is_whole(text, first, at) if is_told else texts.may_be_joined(text, first, at)
                 return 0 if goes_on else at - (text.words[at - 1] == ",")
+        return 0
+
+    def _end_before_form(self, first: int, last: int) -> int:
+        """Where a comma stands before what something depends on that is no part of a clause; 0 for none.
+
+        `tell Bob that tea is ready, unless Alice is near`, `ask Bob to wait, and if the door is open, A`.
+        """
+        words, context = self._text.words, self._context.with_references()
+        context.latest = dict.fromkeys(context.types, "")
+        for at in (at for at in range(first + 1, last) if words[at] == ","):
+            form = self._phrase(at + 1 + (words[at + 1] in self._vocabulary.roles["and"]))
+            if form is not None and form.meaning.role in _FORMS:
+                asked = longest(self._vocabulary.trie, self._text, form.last, context)
+                if asked is not None and asked.meaning.role in ("condition", "negated"):
+                    return at
         return 0
 
     def _asks_for_answer(self, at: int, context: ReadingContext) -> bool:
