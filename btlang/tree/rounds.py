@@ -269,7 +269,7 @@ def _index(chain: ast.Chain, path: Sequence[ast.Ast]) -> int:
 def _goes_along(chain: ast.Chain, first: int, last: int, choice: Choice) -> int:
     """Return the last part that is in the round of a set of places or people without a word about them."""
     node = chain.items[first]
-    goes = isinstance(node, ast.Phrase) and _TRAVELS in node.entry.needs
+    goes = isinstance(node, ast.Phrase) and (_TRAVELS in node.entry.needs or _counts_answers(chain, first))
     if choice.type in (PLACE, PERSON) and goes:
         tells = isinstance(node, ast.Phrase) and any(slot.type == TEXT for slot in node.entry.slots)
         while last + 1 < len(chain.items) and _is_joined(chain, last) and _goes_with(chain, last):
@@ -277,6 +277,13 @@ def _goes_along(chain: ast.Chain, first: int, last: int, choice: Choice) -> int:
                 break  # `tell everyone "Bye", wait 1 min and dock`
             last += 1
     return last
+
+
+def _counts_answers(chain: ast.Chain, at: int) -> bool:
+    """Whether a question stands there, and behind it what counts the answers."""
+    asked, *behind = chain.items[at : at + 2]
+    counts = isinstance(behind[0].body, ast.Assign) if behind and isinstance(behind[0], ast.If) else False
+    return counts and isinstance(asked, ast.Phrase) and asked.entry.id == ASK
 
 
 def _goes_with(chain: ast.Chain, at: int) -> bool:

@@ -49,7 +49,7 @@ ASKING = (
     "if_yes", "if_no", "told_of", "standing", "able", "unable", "reaching", "finishing", "waiting", "apiece",
     "between_joint", "standing_verbs", "kept_up", "events", "duties", "reasons", "performing", "naming", "named_as",
     "in_turn", "any_day", "said_before", "any_of_them", "of_them", "indefinite", "no_thing", "those", "whichever",
-    "pausing", "working", "stops", "at_least", "pairs", "telling_to", "says",
+    "pausing", "working", "stops", "at_least", "pairs", "telling_to", "says", "replying",
     "until_none", "rounds", "obliging", "failing", "found", "counted", "replied",
     "so", "being", "causing", "asking_for", "plea_for", "helping", "plea_for_help",
     "speaking", "spoken_of", "still", "motionless", "who", "somebody", "answering", "likewise",

@@ -10,6 +10,7 @@ from btlang.frontends.mission.explanations.times import find_midnights
 from btlang.frontends.mission.symbols.names import Load, Names
 from btlang.frontends.mission.token import Token
 from btlang.frontends.mission.tokens.condition_names import condition_names, settle
+from btlang.frontends.mission.tokens.counted_answers import with_counted_answers
 from btlang.frontends.mission.tokens.counted_things import with_counted_things
 from btlang.frontends.mission.tokens.ended_rules import with_ends
 from btlang.frontends.mission.tokens.framed_rules import with_framed_rules
@@ -82,6 +83,7 @@ class Lexer:
         self._words = WordReader(self.text, self.names, self.context, self.tokens, self.problems, explain)
         self._lines()
         self.problems += with_repeats_apart(self.tokens, source)
+        with_counted_answers(self.tokens, self.vocabulary)
         self.problems += with_replacements(self.tokens, self.vocabulary, source)
         with_times_first(self.tokens)
         self.problems += with_questions_once(self.tokens, source)

@@ -18,6 +18,7 @@ from btlang.frontends.mission.token import (
 )
 from btlang.frontends.mission.tokens.addressed_texts import TELL
 from btlang.frontends.mission.tokens.answers import Answers
+from btlang.frontends.mission.tokens.counted_answers import COUNTED
 from btlang.frontends.mission.tokens.sentence_reader import is_question, latest_question
 from btlang.frontends.mission.tokens.settling import IMPLIED
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
@@ -34,6 +35,7 @@ _ANSWER = "Answer"
 _BETWEEN = (*JOINTS, *STATEMENT_ENDS)
 _OF_SEVERAL = "could be that of any of those who were asked"
 _MOST_WORDS = 8  # of the subject of a question
+_MOST_BEFORE_REPLY = 3  # `how many people said yes`
 _DEPENDS = "may begin what is told, as 'whether' does, or say when it is told"
 
 
@@ -202,6 +204,8 @@ class Questions(Answers):
 
     def _how_many(self, at: int, end: int, command: Token | None = None, slot: str = "") -> int:
         """`how many people are there?`"""
+        if answered := self._how_many_said(at, end, command, slot):
+            return answered
         counted, count = self._counted(end), self._vocabulary.entry(COUNT)
         if counted is None:
             return self._say_last_count(at, end, command, slot)
@@ -210,6 +214,23 @@ class Questions(Answers):
             self._say(at, Match(Meaning("quantity", count), counted.last), command, slot)
             return counted.last
         return self._say_count(at, counted, command, slot) if self._ends(counted.last) else 0
+
+    def _how_many_said(self, at: int, end: int, command: Token | None, slot: str) -> int:
+        """`ask everyone "Tea?", then tell Bob how many said yes`: the answers that are counted."""
+        text, asking = self._text, self._vocabulary.asking
+        places = range(end, min(end + _MOST_BEFORE_REPLY, self._end_of_statement(end)))
+        verb = next((place for place in places if text.words[place] in asking["replying"]), 0)
+        answer = text.words[verb + 1].removeprefix('"') if verb else ""
+        if not verb or not self._ends(verb + 2) or latest_question(self._tokens) is None:
+            return 0
+        key = free_key(key_of([*answer.split(), asking["replying"][0]]), self._context.known or ())
+        if command is None:
+            command = Token("command", text.starts[at], text.ends[verb + 1], self._saying_of(f"{{{key}}}"))
+        else:
+            self._set_text(command, slot, f"{{{key}}}")
+        command.role, command.end = f"{COUNTED}|{answer}|{key}", text.ends[verb + 1]
+        self._tokens.append(command)
+        return verb + 2
 
     def _say_last_count(self, at: int, end: int, command: Token | None, slot: str) -> int:
         """`count the boxes, then tell me how many there are`, `then say how many`: what was counted."""

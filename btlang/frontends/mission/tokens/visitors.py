@@ -106,7 +106,7 @@ class Visitors(SentenceReader):
             return False
         if asked is None or not is_question(asked) or not isinstance(asked.value, Called | Listed):
             return False
-        question = _of_set(asked.value, self._context.keys.get(PERSON, PERSON))
+        question = question_to_set(asked.value, self._context.keys.get(PERSON, PERSON))
         people = choice_of(next(iter(question.entry.given(PERSON, question.arguments)), ""))
         reply = next((value.text for value in event.values if value.type == TEXT), "")
         if people is None or people.how != ALL or not reply:
@@ -135,7 +135,7 @@ class Visitors(SentenceReader):
         return relocated(found, places) if found is not None and is_event else None
 
 
-def _of_set(asked: Called | Listed, key: str) -> Called:
+def question_to_set(asked: Called | Listed, key: str) -> Called:
     """A question to several people as one to a set of them."""
     rows = arguments_of(asked)
     names = [name for row in rows for name in asked.entry.given(PERSON, row)]
