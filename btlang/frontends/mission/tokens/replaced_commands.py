@@ -80,7 +80,8 @@ def _moved(command: Token) -> set[str]:
     if not isinstance(value, Called) or {slot.type for slot in value.entry.slots}.isdisjoint((PLACE, PERSON)):
         return set()
     goals = (*value.entry.given(PLACE, value.arguments), *value.entry.given(PERSON, value.arguments))
-    return set(value.entry.given(OBJECT, value.arguments)) if goals and drives(value) else set()
+    things = set(value.entry.given(OBJECT, value.arguments))
+    return things if goals and drives(value) else set()
 
 
 def _follows(tokens: Sequence[Token], at: int) -> bool:
