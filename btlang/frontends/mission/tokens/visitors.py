@@ -32,6 +32,7 @@ from btlang.vocabulary.references import ALL, NAMES, Choice, choice_of, ordinal
 from btlang.vocabulary.value_type import PERSON, PLACE, TEXT
 
 _SEEN, _SAYS, _COMMANDS = "SeesSomeone", "SomebodySays", ("command", "name")
+_PACES = ("every_day", "at", "every")
 _SIMPLE = frozenset(("command", "name", "wait", "wait_time", "for", "until_time", "count", *JOINTS))
 
 
@@ -47,7 +48,7 @@ class Visitors(SentenceReader):
         said = tokens[-1].value if tokens else None
         if not isinstance(said, Called):
             return 0
-        kind = _kind_of(said)
+        kind, is_first = _kind_of(said)
         event = self._event(at, kind or next(iter(self._vocabulary.asking["somebody"]), ""))
         if event is None:
             return 0
@@ -63,8 +64,10 @@ class Visitors(SentenceReader):
         choice = choice_of(everyone)
         first = statement_start(tokens, len(tokens))
         joint = run_start(tokens, len(tokens) - 1, JOINTS)
-        is_plain = all(token.kind in _SIMPLE for token in tokens[first:])
-        if choice is None or (choice.parts and not kind) or ordinal(choice.how) or not is_plain:
+        is_plain = all(token.kind in _SIMPLE or (is_first and token.kind in _PACES) for token in tokens[first:])
+        if choice is None or (choice.parts and not kind) or (ordinal(choice.how) and not is_first) or not is_plain:
+            return 0
+        if is_first and event.meaning.entry is not None and event.meaning.entry.id == _SAYS:
             return 0  # `the first person who says yes` is somebody known by then
         if self._of_those_asked(event, said, everyone, joint):
             return last
@@ -75,6 +78,11 @@ class Visitors(SentenceReader):
         condition.kind = "condition"
         arguments = tuple((name, nearest if text == everyone else text) for name, text in said.arguments)
         command = Token("command", start, end, said.replace(arguments=arguments))
+        if is_first:  # `say hi to the first guest who comes in`
+            then = [Token("then", start, start)]
+            waits = [*(then if joint > first else ()), Token("wait_until", start, start), condition, *then]
+            tokens[max(joint, first) :] = [*waits, command]
+            return last
         before = run_start(tokens, first, STATEMENT_ENDS)
         if joint <= first and 0 < before < first and tokens[before - 1].kind == "command":
             tokens[before - 1].role = STAYS  # `go to the door. Say hi to everyone who comes in`
@@ -144,11 +152,13 @@ def question_to_set(asked: Called | Listed, key: str) -> Called:
     return Called(asked.entry, tuple((name, people if types[name] == PERSON else text) for name, text in rows[0]))
 
 
-def _kind_of(said: Called) -> str:
-    """The kind of everybody with whom something is done, "" for others: `greet every guest`."""
+def _kind_of(said: Called) -> tuple[str, bool]:
+    """The kind of everybody with whom something is done, "" for others, and whether it is only the first of them."""
     choices = map(choice_of, said.entry.given(PERSON, said.arguments))
-    parts = next((dict(choice.parts) for choice in choices if choice is not None and choice.how == ALL), {})
-    return parts.get("kind", "") if len(parts) == 1 else ""
+    choice = next((each for each in choices if each is not None and (each.how == ALL or ordinal(each.how) == 1)), None)
+    parts = dict(choice.parts) if choice is not None else {}
+    is_first = choice is not None and choice.how != ALL
+    return parts.get("kind", "") if len(parts) == 1 else "", is_first
 
 
 def with_meetings(tokens: list[Token], vocabulary: Lexicon) -> None:
