@@ -60,6 +60,7 @@ LONG: dict[str, str] = {
     "keywords/en/language.toml": "the words of English",
     "tests/english/read.out": "made from the sentences",
     "btlang/frontends/mission/tokens/word_reader.py": "what is asked of words, in the order in which it is asked",
+    "btlang/frontends/mission/tokens/rewording.py": "what is said in other words, one kind after the other",
     "btlang/tree/ast.py": "the classes of syntax nodes, which are read together",
 }
 """Files with more lines, each with the reason why it is one thing: no concept is cut for the sake of its length."""

@@ -139,13 +139,22 @@ class ReadingContext:
             spoken = self._spoken_of(meant, text, at) if meant.type == kind else None
             if spoken is not None:
                 parts = spoken or self._settled(kind, meant.parts)
-                choice = Choice(ALL, kind, self.keys.get(kind, kind), parts)
+                choice = self._spoken_of_before(Choice(ALL, kind, self.keys.get(kind, kind), parts), text, at)
                 there = self._place_behind(kind, text, end) if "inside" not in dict(parts) else ""
                 if not there or kind != PERSON:
                     yield "" if self.values.likenesses.members(choice) == () else choice.text, meant, end
                 if there:  # `everyone there`
                     placed = meant.replace(parts=tuple(sorted((*parts, ("inside", there)))))
                     yield choice.replace(parts=placed.parts).text, placed, end + 1
+
+    def _spoken_of_before(self, every: Choice, text: Words, at: int) -> Choice:
+        """`if more than 3 people are in the lab, tell the people "Hi"`: those of a set that was spoken of there."""
+        said = choice_of(self.listed.get(every.type, "")) if every.type == PERSON else None
+        article = text.source.text[slice(*text.articles[at])].lower() if at in text.articles else ""
+        if said is None or article != self.values.definite or not {"at", "inside"} & {name for name, _ in said.parts}:
+            return every
+        rest = tuple(part for part in said.parts if part[0] not in ("at", "inside"))
+        return said if rest == every.parts else every
 
     def _place_behind(self, kind: str, text: Words, at: int) -> str:
         """The place for which `there` stands behind a set: one, or that of each round; "" for none."""

@@ -11,6 +11,8 @@ from btlang.frontends.mission.token import (
     RULES,
     STATEMENT_ENDS,
     WAITING,
+    Called,
+    Listed,
     Token,
     run_end,
     run_start,
@@ -18,7 +20,9 @@ from btlang.frontends.mission.token import (
 )
 from btlang.text.source import Source, Span
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE, ZONE
 
+_MET = frozenset((DOOR, OBJECT, PERSON, PLACE, ZONE))
 _BLOCK = ("following", "colon", "indent")
 _CLEAR_BEHIND = frozenset(("then", "dedent", *RULES))
 
@@ -28,6 +32,7 @@ def with_framed_rules(tokens: list[Token], vocabulary: Lexicon, source: Source) 
 
     BT151 where more follows: `until 5 pm, whenever C, A. B` may do B at once, or then.
     """
+    _put_into_time(tokens, vocabulary)
     for at in reversed(range(1, len(tokens))):
         if tokens[at].kind not in RULES:
             continue
@@ -42,6 +47,40 @@ def with_framed_rules(tokens: list[Token], vocabulary: Lexicon, source: Source) 
             one, other = f"... {vocabulary.word('then')} {said}", f"{rule}\n{said}"
             yield diagnostic("BT151", whole, words=whole.text, one=one, other=other)
         tokens[first:last] = framed
+
+
+def _put_into_time(tokens: list[Token], vocabulary: Lexicon) -> None:
+    """`from 10 am to 4 pm, stay at the door. Whenever somebody is near, A`: in that time, where the robot is then.
+
+    What is about the robot itself holds for the whole mission: `whenever the battery is low`.
+    """
+    for ending in reversed([at for at, token in enumerate(tokens) if token.kind == "until_time"]):
+        first, end = statement_of(tokens, ending)
+        if ending >= first + len(_frame(tokens[first:end])) or any(each.kind in RULES for each in tokens[first:end]):
+            continue
+        at, rules = end, list[Token]()
+        while tokens[at : at + 1] and tokens[at].kind == "semi" and _meets_others(tokens[at + 1 :], vocabulary):
+            last = statement_of(tokens, at + 1)[1]
+            rules += [*tokens[at + 1 : last], Token("newline", tokens[at].start, tokens[at].start)]
+            at = last
+        if rules:
+            here = tokens[first].start
+            opening, dedent = [Token(kind, here, here) for kind in _BLOCK], Token("dedent", here, here)
+            tokens[first:at] = [*tokens[first:ending], *opening, *rules, *tokens[ending:end], dedent]
+
+
+def _meets_others(statement: Sequence[Token], vocabulary: Lexicon) -> bool:
+    """Whether a statement is a rule about somebody or something that the robot meets."""
+    if not statement or statement[0].kind not in RULES:
+        return False
+    asked = [token.value for token in statement[1 : _behind(statement)]]
+    entries = [value.entry for value in asked if isinstance(value, Called | Listed)]
+    somebody = vocabulary.negative_subjects.keys()
+    return any(
+        not _MET.isdisjoint(slot.type for slot in entry.slots)
+        or not somebody.isdisjoint(word for phrase in entry.phrases[:1] for word in phrase.split())
+        for entry in entries
+    )
 
 
 def _framed(before: Sequence[Token], rule: Sequence[Token]) -> list[Token]:

@@ -20,7 +20,7 @@ from btlang.frontends.mission.token import (
     statement_start,
 )
 from btlang.frontends.mission.tokens.rules_inside import ON_WAY
-from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, hears, searches
+from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, hears, question_in, searches
 from btlang.frontends.mission.tokens.settling import (
     FAILS,
     MEASURES,
@@ -138,6 +138,11 @@ class GoingOn(SentenceReader):
             if not set(said).isdisjoint(self._vocabulary.asking["finding"]):
                 tokens[first - 1].kind, tokens[first].kind = "stop", WORKS
 
+    @property
+    def _searching(self) -> set[str]:
+        """The words that ask whether something was found."""
+        return {*self._vocabulary.asking["search"], *self._vocabulary.asking["missed"]}
+
     def going_on(self, role: str, words: Span) -> str:
         """The role of words that go on with the statement before: `if you don't find it` denies `if you find it`.
 
@@ -152,7 +157,7 @@ class GoingOn(SentenceReader):
             self._unclear(words)  # `A. If that fails, B. In parallel, C`
         if role not in ("otherwise", FAILS, WORKS):
             return role
-        if role != "otherwise" and not set(self._vocabulary.asking["search"]).isdisjoint(_words(words.text)):
+        if role != "otherwise" and not self._searching.isdisjoint(_words(words.text)):
             role = self._about_search(role, words)
         if role == "otherwise":
             self._ask_after_all()
@@ -235,7 +240,7 @@ class GoingOn(SentenceReader):
             return
         word, verb = self._vocabulary.word, self._vocabulary.entry(ASK)
         begin = verb.phrases[0].split()[0] if verb is not None else ""
-        question = f'{begin} "{_question_in(said)}"'
+        question = f'{begin} "{question_in(said)}"'
         example = f"{question}. {word(WORKS).capitalize()}, wave. {word('otherwise').capitalize()} nod"
         self._calls.problems.append(diagnostic("BT145", words, words=words.text.rstrip(","), example=example))
 
@@ -300,6 +305,8 @@ class GoingOn(SentenceReader):
         at = next(at for at in reversed(range(len(self._tokens))) if self._tokens[at].kind == WORKS)
         worked, pronouns = self._tokens[at], self._vocabulary.values.pronouns
         asked, said = _words(self._text.source.text[worked.start : worked.end]), _words(words.text)
+        if not self._searching.isdisjoint(asked) and not self._searching.isdisjoint(said):
+            return True  # `if you find it, A; if it is nowhere, B`
         has_left = any(drives(token.value) for token in self._tokens[at:])
         if has_left and any(PLACE in pronouns.get(word, ()) for word in said):
             return False  # `if he is there, go to the lab. If he isn't there, A`: it may be about the lab
@@ -387,13 +394,6 @@ class GoingOn(SentenceReader):
         joint = self._vocabulary.word(FAILS if role == "otherwise" else "at" if until else role)
         one = f"{joint} {until}, {said}" if until else f"{joint}, {said}" if role != "then" else f"... {joint} {said}"
         self._calls.problems.append(diagnostic("BT151", words, words=words.text, one=one, other=said))
-
-
-def _question_in(command: Token | None) -> str:
-    """Return the question that a command only says, `say "Who is there?"`, or one as an example."""
-    value = command.value if command is not None else None
-    said = value.arguments[-1][1] if isinstance(value, Called) and value.arguments else ""
-    return said if said.endswith("?") else "Tea?"
 
 
 def _words(text: str) -> list[str]:

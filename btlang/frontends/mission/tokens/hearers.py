@@ -112,6 +112,10 @@ class Hearers(ToldWords):
             kind = "plea_for" if opener in asking["asking_for"] else "reminder" if reminds else "plea"
             said = f"{asking[kind][0].capitalize()} {said}"
         front = text.source.text[command.start : text.ends[first - 1 - (pleads or values.texts.opens(opener))]]
+        if pleads:  # a question would wait for an answer
+            verb, _, whom = front.partition(" ")
+            told = asking["informing"][0]
+            front = f"{told.capitalize() if verb[:1].isupper() else told} {whom}"
         rest = f", {self._vocabulary.word('then')} {values.texts.written(text, at + 1, last)}" if goes_on else ""
         return f'{front} "{said}"{rest}'
 

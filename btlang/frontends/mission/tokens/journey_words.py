@@ -10,7 +10,7 @@ from btlang.frontends.mission.tokens.word_matches import match_of, relocated, re
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.language_tables import NOT_ALONE
 from btlang.vocabulary.match import Match, SlotValue
-from btlang.vocabulary.references import Choice, choice_of, ordinal
+from btlang.vocabulary.references import ALL, Choice, choice_of, ordinal
 from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE
 from btlang.vocabulary.word_tree import find
 
@@ -249,6 +249,8 @@ class JourneyWords(SentenceReader):
 
         `if a guest is in the lab` asks of the guests there, not where the nearest one is.
         """
+        if match.meaning.role == "negated" or (self._tokens and self._tokens[-1].kind == "not"):
+            match = self._none_of(match)
         if match.meaning.entry is None or match.meaning.entry.id not in (COMES, _AT):
             return match  # as nearly always
         if match.meaning.entry.id == _AT:
@@ -257,6 +259,17 @@ class JourneyWords(SentenceReader):
         if entry is None or who is None or who.parts:
             return match
         return Match(Meaning("command", entry), match.last, tuple(v for v in match.values if v.type != PERSON))
+
+    def _none_of(self, match: Match) -> Match:
+        """`if there are no cups`, `if no guests are near`: not that some are missing, but that there isn't one."""
+        values, none = list[SlotValue](), self._vocabulary.asking["no_thing"]
+        for value in match.values:
+            every = choice_of(value.group or value.text) if value.type in (OBJECT, PERSON) else None
+            if every is not None and every.how == ALL and {*self._text.words[value.first - 1 : value.last]} & {*none}:
+                how = _ANY if value.type == PERSON else "nearest"
+                value = value.replace(text=every.replace(how=how).text, more=(), group="")
+            values.append(value)
+        return match.replace(values=tuple(values))  # type: ignore[no-any-return]
 
     def _wait_for_one(self, match: Match, at: int) -> bool:
         """`wait for a guest`, `wait for the first guest`: until any of that kind is in view, who is the one then."""

@@ -22,6 +22,7 @@ from btlang.vocabulary.references import ALL, NAMES, SELF, Choice, choice_of, fr
 from btlang.vocabulary.value_type import DOOR, KINDS, OBJECT, PERSON, PLACE, TEXT, WORLD, ZONE
 from btlang.vocabulary.word_tree import find
 
+_SEVERAL = {"PeopleAt": PERSON, "ObjectsAt": OBJECT}  # conditions about so many of them
 _MEETS = "SomeoneNear"  # the condition that holds once a command for nobody in particular is done
 ODD = ("", "{", "(")
 """How texts begin that are no plain values: of unknown names, references, choices and points."""
@@ -52,7 +53,7 @@ class Mentions:
         if self.speaks_of_people and match.meaning.entry is not None and match.meaning.role != "negated":
             self._note_somebody(match.meaning.entry, match)
         self._note_values(match)
-        if match.meaning.entry is not None and match.meaning.role == "command":
+        if match.meaning.entry is not None and match.meaning.role in ("command", "condition"):
             self._note_counted(match.meaning.entry, match)
         for kind, value in before.items():
             if self._context.latest.get(kind, value) != value:
@@ -75,7 +76,7 @@ class Mentions:
 
     def _note_counted(self, entry: Entry, match: Match) -> None:
         """`count the people in the lab, then greet them`: all of those that are there, or in view."""
-        kind = COUNTED.get(entry.id, "")
+        kind = COUNTED.get(entry.id) or _SEVERAL.get(entry.id, "")
         place = next((value.text for value in match.values if value.type == PLACE and not value.more), "")
         if not kind or place[:1] in ODD[1:]:
             return

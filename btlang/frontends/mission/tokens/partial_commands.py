@@ -29,7 +29,7 @@ from btlang.frontends.mission.tokens.word_matches import (
     words_of,
 )
 from btlang.text.words import Words
-from btlang.vocabulary.entry import RECIPIENT
+from btlang.vocabulary.entry import RECIPIENT, THEME
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import ReadingContext
@@ -178,6 +178,7 @@ class PartialCommands:
             return 0
         people = self._people()
         token, before = self._token_of(read[0], at), said_before(self._tokens)
+        _complete(token, before)
         if self._tokens[-1].kind in ("and", "then", "comma"):
             self._list_people(people)
         is_further = before is not None and self._calls.search_on(before, read[0])
@@ -228,13 +229,20 @@ class PartialCommands:
         for token in reversed(self._tokens):
             value = token.value
             if token.kind == "command" and isinstance(value, Called | Listed) and value.entry is said.entry:
-                words = (self._text.words[at] for at in words_of(self._text, token))
                 own = arguments_of(value)
-                if any(name in slots for each in own for name, _ in each) or not speaker.isdisjoint(words):
+                has_own = any(name in slots for each in own for name, _ in each)
+                if has_own or not speaker.isdisjoint(self._words_of(token)):
                     return
                 token.value = with_arguments(value, [(*each, *given) for each in own])
+            elif token.kind == "command" and speaker.isdisjoint(self._words_of(token)):
+                _complete(token, last)  # `take the cup and all plates to the lab`
+                if token.value is value:
+                    return
             elif token.kind not in ("and", "comma") and token.role != "list":
                 return
+
+    def _words_of(self, token: Token) -> list[str]:
+        return [self._text.words[at] for at in words_of(self._text, token)]
 
     def named(self, at: int) -> Match | None:
         """The name of a definition at a word."""
@@ -349,3 +357,17 @@ def enlist(tokens: list[Token], command: Token) -> None:
     else:
         tokens.insert(first - 1, Token("open", before.start, before.start, role="list"))
     tokens += (command, Token("close", command.end, command.end, role="list"))
+
+
+def _complete(command: Token, before: Token | None) -> None:
+    """Give a command that only names a thing the goal of another one: `take the cup to the lab, then the book`."""
+    said, value = command.value, before.value if before is not None else None
+    if not isinstance(said, Called) or not isinstance(value, Called | Listed) or said.entry is value.entry:
+        return
+    themes, given = value.entry.slots_of(THEME), {slot.name: slot.type for slot in said.entry.slots}
+    types, rows = {slot.name: slot.type for slot in value.entry.slots}, arguments_of(value)
+    named = {given[name]: text for name, text in said.arguments}
+    if len(named) == 1 and len(themes) == 1 and {types[name] for name in themes} == named.keys():
+        rest = (each for each in rows[0] if each[0] not in themes and all(each in row for row in rows))
+        theme = next(iter(themes))
+        command.value = Called(value.entry, ((theme, named[types[theme]]), *rest))

@@ -39,6 +39,7 @@ def reworded(text: Words, vocabulary: Lexicon) -> list[Diagnostic]:
     _count_again(text, vocabulary)
     _tell_again(text, vocabulary)
     _tell_each(text, vocabulary)
+    _say_so(text, vocabulary)
     _wait_to_try(text, vocabulary)
     _wait_once(text, vocabulary)
     _drop_commas(text, vocabulary)
@@ -275,6 +276,27 @@ def _tell_each(text: Words, vocabulary: Lexicon) -> None:
                 begin = at - (words[at - 1] == ",")
                 text.drop(begin + 1, at + 1)
                 text.replace(begin, [vocabulary.word("then"), words[verb]])
+
+
+def _say_so(text: Words, vocabulary: Lexicon) -> None:
+    """Leave out the pronoun for what is reported: `if C, report it to Alice` is `if C, tell Alice`."""
+    words, asking, people = text.words, vocabulary.asking, vocabulary.values.names_tree(PERSON)
+    if text.distinct.isdisjoint(asking["told_pronouns"]):
+        return
+    for at in reversed([at for at in range(1, len(words) - 1) if words[at] in asking["told_pronouns"]]):
+        named = find(people, words, at + 2) if words[at + 1] in vocabulary.purpose else None
+        end = named[1] if named is not None else at + 1
+        is_last = words[end][0] in ENDING or words[end] in vocabulary.joining
+        if is_last and words[at - 1] in asking["reporting"]:
+            whom = words[at + 2 : end] if named is not None else sorted(vocabulary.values.role_words.speaker)[:1]
+            text.drop(at + 1, end)
+            text.replace(at, whom)
+            text.replace(at - 1, asking["informing"][:1])
+            continue
+        told = next((i for i in range(text.earlier(at)[1], at) if words[i] in asking["informing"]), at)
+        person = find(people, words, told + 1)
+        if is_last and words[at] != asking["told_pronouns"][0] and person is not None and person[1] == at:
+            text.replace(at, asking["so"][:1])  # `tell Bob this`
 
 
 def _wait_to_try(text: Words, vocabulary: Lexicon) -> None:

@@ -100,3 +100,10 @@ def is_answer(token: Token) -> bool:
 def searches(token: Token) -> bool:
     """Whether a command looks for something in one place after the other."""
     return isinstance(token.value, Called | Listed) and token.value.entry.first
+
+
+def question_in(command: Token | None) -> str:
+    """Return the question that a command only says, `say "Who is there?"`, or one as an example."""
+    value = command.value if command is not None else None
+    said = value.arguments[-1][1] if isinstance(value, Called) and value.arguments else ""
+    return said if said.endswith("?") else "Tea?"

@@ -185,11 +185,18 @@ class WordReader:
             end = self._in_its_place(match, role, at)
         if not end and role == "but":
             end = self._places.left_out(at)  # `go to every room, but not the kitchen`
+        if not end and self._shares and match is not None and self._depends_behind(match.last):
+            end = self._partial.add_left_out(at)  # `bring her the cup if she says cup, and the book if she says book`
         if not end and (match is None or match.meaning.entry is not None):
             end = self._left_out(match, role, at)
         if not end and match is not None and role not in _NOT_READ:
             return self._known(match, at)
         return end or self._other(match, role, at, last)
+
+    def _depends_behind(self, at: int) -> bool:
+        """Whether what something depends on begins at a word: `if C`."""
+        behind = longest(self._vocabulary.trie, self._text, at, self._context)
+        return behind is not None and behind.meaning.role in ("if", "unless")
 
     def _is_to_be_there(self) -> bool:
         """Whether the command before says where the robot is to be, `be back at the dock`, and not that it sets out."""
