@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from collections import deque
+from itertools import pairwise
 from typing import Any, cast
 
 from btlang.engine.blackboard import Blackboard
@@ -321,6 +323,24 @@ class MoreNodes(ReferenceNode):
                 return FAILURE
         self.board.set(key, 0)
         return SUCCESS
+
+    def PathLongerOnApproach(self) -> int:
+        """As there, but a child that ran is halted where the path is no longer that long. Paths are along one axis."""
+        key = self.node.port("path").strip("{}")
+        text = str(self.board.get(key)) if key in self.board else ""
+        new = json.loads(text.removeprefix("json:")) if text.startswith("json:") else []
+        old, self.path = self.path, new
+        if not (old and new and old[-1] == new[-1]):
+            self.reset_children()
+            return SUCCESS
+        lengths = [sum(abs(one[0] - other[0]) for one, other in pairwise(path)) for path in (old, new)]
+        if not (lengths[0] < 3 and lengths[1] > 2 * lengths[0]):
+            self.reset_children()
+            return SUCCESS
+        result = self.once_more()
+        if result not in (SUCCESS, FAILURE):
+            self.path = old
+        return result
 
     def GoalUpdater(self) -> int:
         source, target = (self.node.port(port).strip("{}") for port in ("input_goal", "output_goal"))
