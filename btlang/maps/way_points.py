@@ -6,8 +6,9 @@ from collections.abc import Iterator, Mapping
 from math import cos, degrees, radians, tau
 
 from btlang.maps.data_text import number, numbers, shown, yaw
+from btlang.maps.route_graph import read_lanes
 from btlang.robots.geometry import Point, wrap
-from btlang.robots.worlds.world import Place
+from btlang.robots.worlds.world import Lane, Place
 from btlang.support.record import Record
 from btlang.text.toml_table import Problem
 
@@ -54,10 +55,14 @@ _QUATERNION = {axis: tuple(f"{word}{axis}" for word in ("q", "q_", "orientation_
 
 
 class WayPoints(Record):
-    """The way points of a file as places, and a line for each thing about them that a user should look at."""
+    """The way points of a file as places, and a line for each thing about them that a user should look at.
+
+    `lanes` are the edges of a route graph.
+    """
 
     places: tuple[Place, ...]
     notes: tuple[str, ...] = ()
+    lanes: tuple[Lane, ...] = ()
 
 
 class _Pose(Record):
@@ -99,7 +104,10 @@ def way_points(data: Any, origin: Point | None = None) -> WayPoints:
     turns = any(abs(pose.radians or 0.0) > tau + 0.01 for _, pose in found)
     if turns:
         notes.append("directions are read as degrees, because one of them is more than a whole turn in radians")
-    return WayPoints(tuple(_place(name, pose, origin, turns) for name, pose in found), tuple(notes))
+    places = tuple(_place(name, pose, origin, turns) for name, pose in found)
+    in_degrees = origin if reader.geographic else None
+    lanes = read_lanes(data, lambda at: at if in_degrees is None else _in_metres(at, in_degrees, "of a node"))
+    return WayPoints(places, tuple(notes), lanes)
 
 
 def _expected(data: Any) -> str:
@@ -122,12 +130,18 @@ def _place(name: str, pose: _Pose, origin: Point | None, in_degrees: bool) -> Pl
         facing = pose.radians if in_degrees else degrees(pose.radians)
     x, y = pose.x, pose.y
     if pose.geographic and origin is not None:
-        x = radians((pose.x - origin[1] + 180.0) % 360.0 - 180.0) * cos(radians(origin[0])) * _EARTH
-        y = radians(pose.y - origin[0]) * _EARTH
-        x, y = round(x, 3), round(y, 3)
-        if max(abs(x), abs(y)) > _FARTHEST:
-            raise Problem(f'the way point "{name}" is more than {_FARTHEST / 1000:g} km from --origin')
+        x, y = _in_metres((x, y), origin, f'"{name}"')
     return Place(name, x, y, None if facing is None else wrap(facing))
+
+
+def _in_metres(degrees: Point, origin: Point, name: str) -> Point:
+    """Return the metres east and north of the origin of a longitude and latitude. Raises Problem if that is too far."""
+    longitude, latitude = degrees
+    x = radians((longitude - origin[1] + 180.0) % 360.0 - 180.0) * cos(radians(origin[0])) * _EARTH
+    y = radians(latitude - origin[0]) * _EARTH
+    if max(abs(x), abs(y)) > _FARTHEST:
+        raise Problem(f"the way point {name} is more than {_FARTHEST / 1000:g} km from --origin")
+    return round(x, 3), round(y, 3)
 
 
 def _fields(value: Any) -> Fields:
@@ -156,7 +170,7 @@ def place_name(text: object) -> str:
 
 class _Reader:
     def __init__(self, geographic: bool) -> None:
-        self._geographic = geographic
+        self.geographic = geographic
         self.notes: list[str] = []
 
     def points(self, data: Any, name: str, where: str) -> Iterator[tuple[str, Any, str]]:
@@ -259,7 +273,7 @@ class _Reader:
         """Return the pose in a list; the third of three numbers is its yaw, or else its height."""
         if len(value) == 2 and isinstance(value[0], list):
             return _with_list(self._pose_list(value[0][:2], where), value[1], where, w_first=False)
-        if self._geographic:
+        if self.geographic:
             longitude, latitude, *_ = numbers(value, where, 2, 3)
             return _Pose(longitude, latitude, geographic=True)
         x, y, *more = numbers(value, where, 2, 3, 4, 7)
