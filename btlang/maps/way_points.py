@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from math import cos, degrees, radians, tau
 
 from btlang.maps.data_text import number, numbers, shown, yaw
+from btlang.maps.point_shapes import are_numbers, usual_shape
 from btlang.maps.route_graph import read_lanes
 from btlang.robots.geometry import Point, wrap
 from btlang.robots.worlds.world import Lane, Place
@@ -23,6 +24,7 @@ MOST = 10_000
 _LISTS = (
     "waypoints", "way_points", "poses", "points", "goals", "places", "locations", "stations", "route", "routes",
     "features", "nodes", "targets", "target_points", "patrol_points", "coordinates",
+    "list", "items", "wps",
 )  # fmt: skip
 _NAMES = ("name", "label", "id", "frame_name", "location_name", "title", "location", "key")
 _POSITIONS = (
@@ -33,7 +35,8 @@ _POSES = ("pose", "goal", "target", "pos")  # whose third number is the yaw
 _SHAPES = ("LineString", "MultiLineString", "Polygon", "MultiPolygon", "MultiPoint")  # of GeoJSON
 _UNNAMED = ("ros__parameters", "properties", "geometry")
 _GENERIC = ("node", "waypoint", "way_point", *_POSITIONS)  # keys that say what a point is, and not its name
-_TURNS = ("orientation", "quaternion", "rotation", "angle", "rot", "quat", "rpy")
+_TURNS = ("orientation", "quaternion", "rotation", "angle", "rot", "quat", "rpy", "euler", "rotation_euler")
+_TURNS_IN_DEGREES = tuple(f"{key}_{unit}" for key in _TURNS for unit in ("deg", "degrees"))
 _YAWS = ("yaw", "theta", "heading", "th", "angle", "bearing")  # radians, as everywhere in ROS
 _YAWS_IN_DEGREES = tuple(f"{key}_{unit}" for key in _YAWS for unit in ("deg", "degrees"))
 _COMPASS = ("heading", "bearing")  # of geographic points: degrees from north, clockwise
@@ -52,6 +55,11 @@ def _spellings(axis: str) -> tuple[str, ...]:
 
 _AXES = {axis: _spellings(axis) for axis in "xy"}
 _QUATERNION = {axis: tuple(f"{word}{axis}" for word in ("q", "q_", "orientation_", "quaternion_")) for axis in "xyzw"}
+_KNOWN = frozenset((
+    *_NAMES, *_POSITIONS, *_TURNS, *_TURNS_IN_DEGREES, *_YAWS, *_YAWS_IN_DEGREES, *_DIRECTION, *_LATITUDES,
+    *_LONGITUDES, *_AXES["x"], *_AXES["y"], *_spellings("z"), *(key for keys in _QUATERNION.values() for key in keys),
+    "z", "w", "roll", "pitch", "altitude", "alt", "height", "covariance", "bbox",
+))  # fmt: skip
 
 
 class WayPoints(Record):
@@ -85,6 +93,7 @@ def way_points(data: Any, origin: Point | None = None) -> WayPoints:
     lists. Directions are in radians, unless one of them is more than a whole turn. Points in degrees need the latitude
     and longitude of the origin. Raises Problem.
     """
+    data = usual_shape(data, _NAMES)
     reader = _Reader(geographic=_is_geographic(data))
     found: list[tuple[str, _Pose]] = []
     for name, value, where in reader.points(data, "", "the list" if isinstance(data, list) else ""):
@@ -94,6 +103,8 @@ def way_points(data: Any, origin: Point | None = None) -> WayPoints:
     if not found:
         raise Problem(_expected(data))
     notes = reader.notes
+    if reader.unread:
+        notes.append(f"of the way points, these aren't read: {', '.join(reader.unread)}")
     if any(pose.geographic for _, pose in found):
         if origin is None:
             raise Problem(
@@ -154,14 +165,6 @@ def _first(fields: Fields, keys: tuple[str, ...]) -> str:
     return next((key for key in keys if fields.get(key) is not None), "")
 
 
-def _are_numbers(value: Any) -> bool:
-    return (
-        isinstance(value, list)
-        and bool(value)
-        and all(isinstance(each, int | float) and not isinstance(each, bool) for each in value)
-    )
-
-
 def place_name(text: object) -> str:
     """Return the name of a place that people can say: with blanks for underscores, and "point 7" for a number."""
     name = " ".join(str(text).replace("_", " ").split())[:200]
@@ -172,12 +175,13 @@ class _Reader:
     def __init__(self, geographic: bool) -> None:
         self.geographic = geographic
         self.notes: list[str] = []
+        self.unread: dict[str, None] = {}
 
     def points(self, data: Any, name: str, where: str) -> Iterator[tuple[str, Any, str]]:
         """Yield the name of each point, the point, and where it is in messages; `name` is that of the whole."""
         if self._is_point(data):
             yield name or self._name(data), data, where or "the way point"
-        elif _are_numbers(data):
+        elif are_numbers(data):
             yield from self._flat(data, name, where)
         elif isinstance(data, list):
             for index, value in enumerate(data):
@@ -230,18 +234,29 @@ class _Reader:
 
     def _is_point(self, value: Any) -> bool:
         if isinstance(value, list):
-            pair = len(value) == 2 and _are_numbers(value[0]) and _are_numbers(value[1])
+            pair = len(value) == 2 and are_numbers(value[0]) and are_numbers(value[1])
             pair = pair and len(value[0]) in (2, 3) and len(value[1]) == 4
-            return pair or (_are_numbers(value) and (len(value) in (2, 3, 7) or _is_planar(value)))
+            return pair or (are_numbers(value) and (len(value) in (2, 3, 7) or _is_planar(value)))
         fields = _fields(value)
         if _first(fields, _AXES["x"]) or _first(fields, _LATITUDES):
             return not any(isinstance(fields[key], dict | list) for key in ("x", "y") if key in fields)
-        inner = fields.get(_first(fields, _POSITIONS))
+        inner = fields.get(self._position(fields))
         if inner is None:
             return False
         if fields.get("type") in _SHAPES:
             return False
-        return self._is_point(inner) or _are_numbers(inner)
+        return self._is_point(inner) or are_numbers(inner)
+
+    def _position(self, fields: Fields) -> str:
+        """Return the key of the position in the table of a point, "" if it has none.
+
+        In a table with a name, that is the only point under any key.
+        """
+        known = _first(fields, _POSITIONS)
+        if known or not _first(fields, _NAMES):
+            return known
+        others = [key for key in fields if key not in (*_TURNS, *_LISTS) and self._is_point(fields[key])]
+        return others[0] if len(others) == 1 else ""
 
     def _name(self, value: Any) -> str:
         fields = _fields(value)
@@ -256,7 +271,9 @@ class _Reader:
         if isinstance(value, list):
             return self._pose_list(value, where)
         fields = _fields(value)
-        north, x, inner = (_first(fields, keys) for keys in (_LATITUDES, _AXES["x"], _POSITIONS))
+        north, x = _first(fields, _LATITUDES), _first(fields, _AXES["x"])
+        inner = "" if north or x else self._position(fields)
+        self.unread |= dict.fromkeys(key for key in fields if key != inner and not _is_known(key, fields[key]))
         if north:
             longitude = number(fields.get(_first(fields, _LONGITUDES)), f"{where}.longitude", -180.0, 180.0)
             found = _Pose(longitude, number(fields[north], f"{where}.{north}", -90.0, 90.0), geographic=True)
@@ -287,6 +304,9 @@ class _Reader:
     def _turned(self, pose: _Pose, fields: Fields, where: str, w_first: bool) -> _Pose:
         """Return a pose with the direction that its table has, if it has one."""
         turn = fields.get(_first(fields, _TURNS))
+        in_degrees = fields.get(_first(fields, _TURNS_IN_DEGREES))
+        if isinstance(in_degrees, list):
+            return _facing(pose, in_degrees=numbers(in_degrees, f"{where}.orientation", 3)[2])
         if isinstance(turn, list):
             return _with_list(pose, turn, f"{where}.orientation", w_first)
         if isinstance(turn, dict):
@@ -317,6 +337,12 @@ class _Reader:
         if key and pose.radians is None and pose.degrees is None:
             self.notes.append(f"{where} faces any direction: {key} {shown(fields[key])} isn't an angle")
         return pose
+
+
+def _is_known(key: str, value: Any) -> bool:
+    """Return whether a field of a point is read, needn't be, or can't be a part of its pose."""
+    of_a_pose = are_numbers(value) or (isinstance(value, int | float) and not isinstance(value, bool))
+    return not of_a_pose or key in _KNOWN
 
 
 def _facing(pose: _Pose, in_radians: float | None = None, in_degrees: float | None = None) -> _Pose:
