@@ -35,6 +35,28 @@ CASES = {
         "</ReactiveSequence>",
         ['"still wanted": do detect tags with {goal} provided that not test is goal new'],
     ),
+    "several guards": (
+        "<ReactiveSequence><IsLidOpen/><Inverter><IsGoalNew/></Inverter><Wave/></ReactiveSequence>",
+        ["provided that test is lid open, provided that not test is goal new, wave"],
+    ),
+    "several guards with a name, of something long": (
+        f'<ReactiveSequence name="g"><IsLidOpen/><IsGoalNew/><Sequence><DetectTags {LONG}/><Wave/></Sequence>'
+        "</ReactiveSequence>",
+        [
+            '"g", provided that test is lid open, provided that test is goal new:',
+            '  do detect tags with shelf "shelf of the cell", tray "tray of the cell",',
+            '      gripper "gripper of the cell", camera "camera of the cell", approach "approach of the cell"',
+            "  wave",
+        ],
+    ),
+    "guards in each other": (
+        "<ReactiveSequence><IsLidOpen/><ReactiveSequence><IsGoalNew/><Wave/></ReactiveSequence></ReactiveSequence>",
+        ["in order, checked at each tick:", "  check test is lid open", "  wave provided that test is goal new"],
+    ),
+    "trees of other files": (
+        '<Sequence><SubTree ID="move_to_dock" speed="{v}"/><SubTree ID="Dock"/><move_arm/></Sequence>',
+        ['do "move_to_dock" with speed {v}', 'do subtree "Dock"', 'do node "move_arm"'],
+    ),
     "a guard of something long": (
         f"<ReactiveSequence><IsLidOpen/><Sequence><DetectTags {LONG}/><Wave/></Sequence></ReactiveSequence>",
         [
