@@ -17,7 +17,7 @@ from btlang.frontends.btcpp.spelling import AUTOREMAP, TRUE
 from btlang.projects.entries import EntryUse, TreeEntries
 from btlang.projects.ports import attribute_value, describe_type
 from btlang.text.source import Span
-from btlang.tree.catalogue import SCRIPT, port_content
+from btlang.tree.catalogue import CATALOGUE, SCRIPT, SUBTREE, port_content
 from btlang.tree.node import Node
 from btlang.tree.visit import in_order_of_use
 
@@ -127,7 +127,7 @@ def _wrong_value(key: str, own: Sequence[EntryUse], use: EntryUse, here: EntryUs
         yield diagnostic(
             "BT233", place, notes, None, text=use.constant, port=typed.port, id=typed.node.id, wanted=wanted
         )
-    elif typed is None or typed.type not in _SCALARS:
+    elif (typed is None or typed.type not in _SCALARS) and not any(map(_may_have_type, own)):
         first = next(one for one in own if _is_value(one))
         if first.type == TEXT if use.type == NUMBER else first.type == NUMBER and not _may_be_number(use.constant):
             yield _refused(key, f"a {first.type}, and {maker} makes it a {use.type}", first, use, here)
@@ -159,6 +159,11 @@ def _places(key: str, before: EntryUse, use: EntryUse, here: EntryUse) -> tuple[
 
 def _is_value(use: EntryUse) -> bool:
     return use.type in (NUMBER, TEXT)
+
+
+def _may_have_type(use: EntryUse) -> bool:
+    """Return whether a port may give its entry a type, and which isn't known."""
+    return not use.type and (use.node.id == SUBTREE or use.node.id not in CATALOGUE)
 
 
 def _written(use: EntryUse) -> str:

@@ -165,6 +165,7 @@ TO_NUMBER, TO_TEXT = (
         (NUMBER + '<SubTree ID="T2" _autoremap="true"/>', "BT132 a number, and its tree makes it a text"),
         ('<SubTree ID="T1" text="5"/>', "BT132 a number, and its port text makes it a text"),
         ('<SubTree ID="T1" text="five"/>', ""),
+        (NUMBER + TEXT + '<Nobody n="{n}"/>', ""),  # its port may have a type that both become
     ],
 )  # fmt: skip
 def test_values_of_scripts_that_an_entry_cannot_become(
