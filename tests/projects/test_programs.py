@@ -157,3 +157,14 @@ def test_a_tree_may_be_in_a_file_that_cannot_be_included(tmp_path: Path, capsys:
     assert found.keys() - {"BT236"} == {"BT128", "BT126", "BT244"}
     assert "'Prat'" in found["BT126"]
     assert "'Nowhere'" in found["BT244"]
+
+
+def test_what_colcon_has_built_is_not_checked_again(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A workspace has copies of the trees in `build` and `install`."""
+    for folder in ("src", "build", "install"):
+        write(tmp_path, f"{folder}/docks/main.xml", TREE.format("Main", '<SubTree ID="Gone"/>'))
+        if folder != "src":
+            (tmp_path / folder / "COLCON_IGNORE").touch()
+    [problem] = [each for each in problems(capsys, str(tmp_path)) if each["code"] == "BT126"]
+    assert problem["file"] == str(tmp_path / "src" / "docks" / "main.xml")
+    assert problems(capsys, str(tmp_path / "install")) != []  # if that is asked for
