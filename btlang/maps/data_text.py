@@ -46,7 +46,7 @@ def read_data(source: Source) -> Any:
     except ValueError:  # no JSON, or a number that is too long
         if source.name.lower().endswith(".json"):
             raise ForeignFileError("this isn't JSON", source.name, None, source) from None
-        if source.name.lower().endswith((".csv", ".tsv")):
+        if source.name.lower().endswith((".csv", ".tsv", ".txt")):
             return read_csv(source.text)
     if len(source.text) > _MOST_YAML:
         message = f"a YAML file may have at most {_MOST_YAML:,} characters; write JSON instead"

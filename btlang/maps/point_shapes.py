@@ -73,10 +73,14 @@ def _rows(table: Mapping[Any, Any]) -> list[dict[str, Any]] | None:
 
 
 def read_csv(text: str) -> list[Any]:
-    """Return a table for each line below a line of names, or a list for each line; numbers as numbers."""
-    lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
-    divider = next((each for each in ";\t" if all(each in line for line in lines)), ",")
-    rows = [[_value(cell.strip()) for cell in row] for row in csv.reader(lines, delimiter=divider)]
+    """Return a table for each line below a line of names, or a list for each line; numbers as numbers.
+
+    Semicolons, tabs, commas or blanks are between the columns.
+    """
+    lines = [line.strip() for line in text.splitlines() if line.strip() and not line.startswith("#")]
+    divider = next((each for each in ";\t," if all(each in line for line in lines)), " ")
+    cells = csv.reader(lines, delimiter=divider, skipinitialspace=True)
+    rows = [[_value(cell.strip()) for cell in row] for row in cells]
     if not rows or any(isinstance(cell, float) for cell in rows[0]):
         return rows
     names = [str(name).lower() for name in rows[0]]

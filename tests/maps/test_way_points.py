@@ -232,8 +232,10 @@ def test_what_is_not_read_of_way_points_is_said() -> None:
         ("name,x,y,yaw\na,1,2,1.5707963\n", [("a", 1, 2, 90)]),
         ("X;Y;Label\n1;2;a\n\n3;4;b\n", [("a", 1, 2, None), ("b", 3, 4, None)]),
         ("1,2\n3,4\n", [("point 1", 1, 2, None), ("point 2", 3, 4, None)]),
+        ("lab 1   2 1.5707963\nhall 3 4\n", [("lab", 1, 2, 90), ("hall", 3, 4, None)]),
         ("# x y\nlab\t1\t2\t0\n", [("lab", 1, 2, 0)]),
     ],
 )
 def test_way_points_in_csv(text: str, found: Any) -> None:
     assert named(read_data(Source(text, "points.csv"))) == found
+    assert named(read_data(Source(text, "points.txt"))) == found
