@@ -123,12 +123,12 @@ def _head(node: ast.Exact, ports: dict[str, str], printer: Printer) -> str:
     vocabulary, subtrees = printer.vocabulary, printer.subtrees
     role = "test" if node.is_condition else "do"
     word, words = vocabulary.word(role), vocabulary.nodes.get(node.id)
-    if node.id == SUBTREE and "ID" in ports and words is not None:
-        name = ports.pop("ID")
-        said = _in_words(id_of_name(name), name, role, printer)
-        if name in subtrees or (is_tree_name(name, vocabulary) and not node.items):
-            return f"{word} {(name in subtrees and said) or quote(name, vocabulary)}"
-        return f"{word} {words} {quote(name, vocabulary)}"
+    name = ports.get("ID", "") if node.id == SUBTREE else ""
+    is_known = name in subtrees or (is_tree_name(name, vocabulary) and not node.items)
+    if name and (is_known or words is not None):
+        del ports["ID"]
+        said = _in_words(id_of_name(name), name, role, printer) if name in subtrees else ""
+        return f"{word} {said or quote(name, vocabulary)}" if is_known else f"{word} {words} {quote(name, vocabulary)}"
     if words is not None and node.id != SUBTREE:
         return f"{word} {words}"
     said = _in_words(node.id, "", role, printer)

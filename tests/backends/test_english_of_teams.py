@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from btlang.api import parse_tree
+from btlang.cli import main
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.text.source import Source
 
@@ -132,3 +135,11 @@ def test_a_node_has_one_name(text: str) -> None:
     with pytest.raises(MissionError) as error:
         parse_tree(text)
     assert [problem.code for problem in error.value.diagnostics] == ["BT141"]
+
+
+def test_trees_of_other_files_in_spanish(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """It has no word for a subtree."""
+    path = tmp_path / "tree.xml"
+    path.write_text(TREE.format('<SubTree ID="move_to_dock" speed="0.5"/>'), "utf-8")
+    assert main(["compile", "--language", "es", "--to", "english", str(path)]) == 0
+    assert capsys.readouterr().out.splitlines()[0] == 'haz "move_to_dock" con speed 0.5'
