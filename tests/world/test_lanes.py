@@ -61,3 +61,8 @@ def test_lanes_of_a_world_file(tmp_path: Path, capsys: pytest.CaptureFixture[str
     picture = tmp_path / "world.svg"
     assert main(["world", str(path), "--picture", str(picture)]) == 0
     assert "#7a9e87" in picture.read_text("utf-8")
+
+
+def test_the_page_gets_lanes() -> None:
+    shown = World(Pose(1.0, 1.0), lanes=LANES[3:]).as_map()["lanes"]
+    assert shown == [{"start": (18.0, 2.0), "end": (2.0, 2.0), "one_way": True}]

@@ -389,7 +389,7 @@ class World(Record):
         """Return what is drawn of it, as in a world file."""
         found: dict[str, Any] = {
             kind: [each.as_dict(_UNDRAWN) for each in getattr(self, kind)]
-            for kind in ("boxes", "places", "objects", "people", "zones", "doors")
+            for kind in ("boxes", "places", "objects", "people", "zones", "doors", "lanes")
         }
         for person, shown in zip(self.people, found["people"], strict=True):
             shown["walks"] = [(stop.x, stop.y) for stop in person.walks]
