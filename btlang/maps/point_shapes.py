@@ -75,16 +75,25 @@ def _rows(table: Mapping[Any, Any]) -> list[dict[str, Any]] | None:
 def read_csv(text: str) -> list[Any]:
     """Return a table for each line below a line of names, or a list for each line; numbers as numbers.
 
-    Semicolons, tabs, commas or blanks are between the columns.
+    Semicolons, tabs, commas or blanks are between the columns. A text that is no CSV has no lines.
     """
     lines = [line.strip() for line in text.splitlines() if line.strip() and not line.startswith("#")]
     divider = next((each for each in ";\t," if all(each in line for line in lines)), " ")
-    cells = csv.reader(lines, delimiter=divider, skipinitialspace=True)
+    try:
+        cells = list(csv.reader(lines, delimiter=divider, skipinitialspace=True))
+    except csv.Error:  # a cell is too long
+        return []
     rows = [[_value(cell.strip()) for cell in row] for row in cells]
     if not rows or any(isinstance(cell, float) for cell in rows[0]):
         return rows
     names = [str(name).lower() for name in rows[0]]
     return [dict(zip(names, row, strict=False)) for row in rows[1:]]
+
+
+def are_lines_of_points(rows: list[Any]) -> bool:
+    """Return whether each line of a text has at least two numbers; a text in YAML has not."""
+    values = [row.values() if isinstance(row, dict) else row for row in rows]
+    return bool(values) and all(sum(isinstance(cell, float) for cell in line) >= _LEAST for line in values)
 
 
 def _value(cell: str) -> str | float:

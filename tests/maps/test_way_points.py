@@ -239,3 +239,7 @@ def test_what_is_not_read_of_way_points_is_said() -> None:
 def test_way_points_in_csv(text: str, found: Any) -> None:
     assert named(read_data(Source(text, "points.csv"))) == found
     assert named(read_data(Source(text, "points.txt"))) == found
+
+
+def test_a_cell_of_csv_that_is_too_long() -> None:
+    assert read_data(Source(f'"{"a" * 200_000}",1,2', "points.csv")) == []
