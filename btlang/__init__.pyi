@@ -28,6 +28,7 @@ from btlang.builders import loop_string as loop_string
 from btlang.builders import nonblocking_sequence as nonblocking_sequence
 from btlang.builders import parallel as parallel
 from btlang.builders import parallel_all as parallel_all
+from btlang.builders import path_longer_on_approach as path_longer_on_approach
 from btlang.builders import pause_resume_controller as pause_resume_controller
 from btlang.builders import persistent_sequence as persistent_sequence
 from btlang.builders import pipeline_sequence as pipeline_sequence

@@ -293,6 +293,17 @@ def goal_updater(
 ) -> Behavior:
     """Make the node GoalUpdater of Nav2."""
 
+def path_longer_on_approach(
+    child: Child,
+    *,
+    path: Value,
+    prox_len: float | str | None = None,
+    length_factor: float | str | None = None,
+    name: str = "",
+    **scripts: Unpack[Scripts],
+) -> Behavior:
+    """Make the node PathLongerOnApproach of Nav2."""
+
 def single_trigger(child: Child, *, name: str = "", **scripts: Unpack[Scripts]) -> Behavior:
     """Make the node SingleTrigger of Nav2."""
 

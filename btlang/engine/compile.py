@@ -62,6 +62,7 @@ SEMANTICS: dict[str, Callable[[NodeInstance, Sequence[Compiled]], Compiled]] = {
     "DistanceController": nav2_controllers.distance_controller,
     "GoalUpdatedController": nav2_controllers.goal_updated_controller,
     "GoalUpdater": nav2_controllers.goal_updater,
+    "PathLongerOnApproach": nav2_controllers.path_longer_on_approach,
     "PauseResumeController": nav2.pause_resume_controller,
     "RecoveryNode": nav2.recovery_node,
     "RoundRobin": nav2.round_robin,

@@ -1,4 +1,4 @@
-"""Buildings of Open-RMF (building.yaml): the walls, doors, chargers, lifts and named points of one level."""
+"""Buildings of Open-RMF (building.yaml): the walls, doors, lanes, chargers, lifts and named points of one level."""
 
 from __future__ import annotations
 
@@ -6,9 +6,10 @@ from collections.abc import Iterator, Mapping
 from math import hypot
 
 from btlang.maps.data_text import number, shown
+from btlang.maps.route_graph import join_lanes
 from btlang.maps.way_points import place_name
 from btlang.robots.geometry import Point, Pose, Segment
-from btlang.robots.worlds.world import Door, Place
+from btlang.robots.worlds.world import Door, Lane, Place
 from btlang.support.record import Record
 from btlang.text.toml_table import Problem
 
@@ -29,7 +30,7 @@ class Building(Record):
     chargers: frozenset[str]
     start: Pose | None
     level: str
-    notes: tuple[str, ...]
+    lanes: tuple[Lane, ...]
 
 
 def is_building(data: object) -> bool:
@@ -56,7 +57,6 @@ def read_building(data: Mapping[str, Any], level: str | None) -> Building:
 class _Level:
     def __init__(self, name: str, data: Mapping[str, Any], is_image: bool) -> None:
         self._name, self._data = name, data
-        self._notes: list[str] = []
         raw = [self._pair(vertex, at) for at, vertex in enumerate(self._rows("vertices"))]
         scale = self._scale(raw) if is_image else 1.0
         self._scale_x, self._scale_y = scale, -scale if is_image else 1.0  # images count down from the top
@@ -104,11 +104,9 @@ class _Level:
         walls = [self._segment(start, end) for start, end, _ in self._edges("walls")]
         places, chargers, start = self._places()
         places += self._lifts(lifts)
-        lanes = list(self._edges("lanes"))
-        if lanes:
-            self._notes.append(f"the lanes ({len(lanes):,}) are left out: the robot finds ways of its own")
+        lanes = join_lanes(self._ways())
         if start is None and not places and lanes:
-            start = Pose(*self._points[lanes[0][0]])
+            start = Pose(*lanes[0].start)
         return Building(
             tuple((wall[:2], wall[2:]) for wall in walls if wall[:2] != wall[2:]),
             tuple(self._doors()),
@@ -116,8 +114,14 @@ class _Level:
             frozenset(chargers),
             start,
             self._name,
-            tuple(self._notes),
+            lanes,
         )
+
+    def _ways(self) -> Iterator[tuple[Point, Point]]:
+        for start, end, properties in self._edges("lanes"):
+            yield self._points[start], self._points[end]
+            if _value(properties, "bidirectional") is True:
+                yield self._points[end], self._points[start]
 
     def _segment(self, start: int, end: int) -> Segment:
         return (*self._points[start], *self._points[end])

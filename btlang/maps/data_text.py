@@ -6,6 +6,7 @@ import json
 from math import atan2, degrees
 
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.maps.point_shapes import are_lines_of_points, read_csv
 from btlang.robots.files import DataFileError
 from btlang.robots.geometry import wrap
 from btlang.robots.worlds.world import World
@@ -34,7 +35,7 @@ class ForeignFileError(DataFileError):
 
 
 def read_data(source: Source) -> Any:
-    """Return the data in JSON or YAML; of several documents a list of them.
+    """Return the data in JSON, YAML or CSV; of several documents a list of them.
 
     Raises ForeignFileError for any other text, MissionError (BT087) if PyYAML isn't installed.
     """
@@ -45,6 +46,10 @@ def read_data(source: Source) -> Any:
     except ValueError:  # no JSON, or a number that is too long
         if source.name.lower().endswith(".json"):
             raise ForeignFileError("this isn't JSON", source.name, None, source) from None
+        if source.name.lower().endswith((".csv", ".tsv")):
+            return read_csv(source.text)
+        if source.name.lower().endswith(".txt") and are_lines_of_points(rows := read_csv(source.text)):
+            return rows
     if len(source.text) > _MOST_YAML:
         message = f"a YAML file may have at most {_MOST_YAML:,} characters; write JSON instead"
         raise ForeignFileError(message, source.name, None, source)

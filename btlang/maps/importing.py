@@ -15,7 +15,7 @@ from btlang.maps.reach import reached
 from btlang.maps.way_points import WayPoints, way_points
 from btlang.robots.files import as_mission_error
 from btlang.robots.geometry import Point, Pose, Segment
-from btlang.robots.worlds.world import Door, Place, World
+from btlang.robots.worlds.world import Door, Lane, Place, World
 from btlang.robots.worlds.world_bounds import closed_walls, is_outside
 from btlang.robots.worlds.world_file import WorldError, has_room
 from btlang.support.record import Record
@@ -69,7 +69,7 @@ def import_world(
         raise MissionError(problems)
     read = list(zip(paths, parts, strict=True))
     found = [line for path, part in read for line in _show(path, part)]
-    notes = [f"{path}: {note}" for path, part in read if isinstance(part, WayPoints | Building) for note in part.notes]
+    notes = [f"{path}: {note}" for path, part in read if isinstance(part, WayPoints) for note in part.notes]
     world, warnings = _together(parts, radius, start)
     return ImportedWorld(world, tuple(found), (*notes, *warnings))
 
@@ -80,16 +80,20 @@ def _show(path: str, part: _Part) -> Iterator[str]:
         rows, columns = part.free.shape
         yield f"{path}: a map of {columns * part.resolution:g} m x {rows * part.resolution:g} m"
     elif not isinstance(part, World):
-        count, ending = len(part.places), "s" if len(part.places) != 1 else ""
+        lanes = f" and {_count(part.lanes, 'lane')}" if part.lanes else ""
         if isinstance(part, Building):
-            yield f"{path}: the level {part.level} of a building, with {count:,} place{ending}"
+            yield f"{path}: the level {part.level} of a building, with {_count(part.places, 'place')}{lanes}"
         else:
-            yield f"{path}: {count:,} way point{ending}"
+            yield f"{path}: {_count(part.places, 'way point')}{lanes}"
         for place in part.places[:_MOST_SHOWN]:
             facing = "" if place.facing is None else f", facing {place.facing:.4g} degrees"
             yield f"  {place.name}: ({place.x:g}, {place.y:g}){facing}"
         if len(part.places) > _MOST_SHOWN:
             yield f"  ... and {len(part.places) - _MOST_SHOWN:,} more"
+
+
+def _count(things: Sequence[object], name: str) -> str:
+    return f"{len(things):,} {name}{'s' if len(things) != 1 else ''}"
 
 
 def _read(path: str, origin: Point | None, level: str | None) -> _Part:
@@ -119,6 +123,7 @@ def _together(parts: Iterable[_Part], radius: float, start: Pose | None) -> tupl
     doors: list[Door] = []
     chargers: set[str] = set()
     walls: list[tuple[Point, ...]] = []
+    lanes: list[Lane] = []
     for part in parts:
         if isinstance(part, World) and whole is not None:
             raise _unusable("only one of the files may be a whole world")
@@ -126,10 +131,12 @@ def _together(parts: Iterable[_Part], radius: float, start: Pose | None) -> tupl
             whole = part
         elif isinstance(part, WayPoints):
             places += part.places
+            lanes += part.lanes
         elif isinstance(part, Building):
             walls += part.walls
             doors += part.doors
             places += part.places
+            lanes += part.lanes
             chargers |= part.chargers
             start = start or part.start
         else:
@@ -147,12 +154,25 @@ def _together(parts: Iterable[_Part], radius: float, start: Pose | None) -> tupl
         around, apart = _walls(each, (start.x, start.y), places, radius)
         walls += around
         notes += apart
-    base = base.replace(start=start, walls=(*base.walls, *walls), doors=(*base.doors, *doors))
-    world, changes = _with_room(base, places, radius)
+    base = base.replace(
+        start=start, walls=(*base.walls, *walls), doors=(*base.doors, *doors), lanes=(*base.lanes, *lanes)
+    )
+    world, changes = _with_room(base, _without_doubles(places), radius)
     at_chargers = [place for place in world.places if place.name in chargers and place != world.dock]
     others = tuple(place for place in world.places if place not in at_chargers)
     docks = tuple(place.replace(facing=place.facing or 0.0) for place in at_chargers)
     return world.replace(places=(*others, *docks), docks=(*world.docks, *docks)), notes + changes
+
+
+def _without_doubles(places: Iterable[Place]) -> list[Place]:
+    """Return the places, without those that another file has by the same name and at the same spot."""
+    found: dict[tuple[str, float, float], Place] = {}
+    for place in places:
+        key = place.name.lower(), round(place.x, 2), round(place.y, 2)
+        first = found.setdefault(key, place)
+        if first.facing is None and place.facing is not None:
+            found[key] = first.replace(facing=place.facing)
+    return list(found.values())
 
 
 def _guess_start(occupancy: OccupancyMap, radius: float) -> Pose:

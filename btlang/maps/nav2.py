@@ -9,6 +9,7 @@ import numpy as np
 
 from btlang.maps.occupancy import MOST_CELLS
 from btlang.maps.reach import reached
+from btlang.maps.route_graph import write_route_graph
 from btlang.robots.geometry import Point, Segment
 from btlang.robots.worlds.world import World
 from btlang.text.toml_table import Problem
@@ -153,6 +154,8 @@ def nav2_files(world: World, resolution: float, full_speed: float) -> dict[str, 
     }
     if world.places:
         files["waypoints.yaml"] = _way_points(world).encode()
+    if world.lanes:
+        files["route_graph.geojson"] = write_route_graph(world).encode()
     return files
 
 

@@ -22,6 +22,7 @@ def summarize(world: World) -> Iterator[str]:
         "people": [_person(person) for person in world.people],
         "zones": [_zone(zone) for zone in world.zones],
         "doors": [f"{door.name} ({'open' if door.open else 'closed'})" for door in world.doors],
+        "lanes": [f"{len(world.lanes):,}"] if world.lanes else [],
         "faults": [fault.kind for fault in world.faults],
     }
     yield from (f"{kind}: {one_line(', '.join(listed))}" for kind, listed in groups.items() if listed)

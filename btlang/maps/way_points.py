@@ -6,8 +6,10 @@ from collections.abc import Iterator, Mapping
 from math import cos, degrees, radians, tau
 
 from btlang.maps.data_text import number, numbers, shown, yaw
+from btlang.maps.point_shapes import are_numbers, usual_shape
+from btlang.maps.route_graph import read_lanes
 from btlang.robots.geometry import Point, wrap
-from btlang.robots.worlds.world import Place
+from btlang.robots.worlds.world import Lane, Place
 from btlang.support.record import Record
 from btlang.text.toml_table import Problem
 
@@ -22,6 +24,7 @@ MOST = 10_000
 _LISTS = (
     "waypoints", "way_points", "poses", "points", "goals", "places", "locations", "stations", "route", "routes",
     "features", "nodes", "targets", "target_points", "patrol_points", "coordinates",
+    "list", "items", "wps",
 )  # fmt: skip
 _NAMES = ("name", "label", "id", "frame_name", "location_name", "title", "location", "key")
 _POSITIONS = (
@@ -32,7 +35,8 @@ _POSES = ("pose", "goal", "target", "pos")  # whose third number is the yaw
 _SHAPES = ("LineString", "MultiLineString", "Polygon", "MultiPolygon", "MultiPoint")  # of GeoJSON
 _UNNAMED = ("ros__parameters", "properties", "geometry")
 _GENERIC = ("node", "waypoint", "way_point", *_POSITIONS)  # keys that say what a point is, and not its name
-_TURNS = ("orientation", "quaternion", "rotation", "angle", "rot", "quat", "rpy")
+_TURNS = ("orientation", "quaternion", "rotation", "angle", "rot", "quat", "rpy", "euler", "rotation_euler")
+_TURNS_IN_DEGREES = tuple(f"{key}_{unit}" for key in _TURNS for unit in ("deg", "degrees"))
 _YAWS = ("yaw", "theta", "heading", "th", "angle", "bearing")  # radians, as everywhere in ROS
 _YAWS_IN_DEGREES = tuple(f"{key}_{unit}" for key in _YAWS for unit in ("deg", "degrees"))
 _COMPASS = ("heading", "bearing")  # of geographic points: degrees from north, clockwise
@@ -51,13 +55,22 @@ def _spellings(axis: str) -> tuple[str, ...]:
 
 _AXES = {axis: _spellings(axis) for axis in "xy"}
 _QUATERNION = {axis: tuple(f"{word}{axis}" for word in ("q", "q_", "orientation_", "quaternion_")) for axis in "xyzw"}
+_KNOWN = frozenset((
+    *_NAMES, *_POSITIONS, *_TURNS, *_TURNS_IN_DEGREES, *_YAWS, *_YAWS_IN_DEGREES, *_DIRECTION, *_LATITUDES,
+    *_LONGITUDES, *_AXES["x"], *_AXES["y"], *_spellings("z"), *(key for keys in _QUATERNION.values() for key in keys),
+    "z", "w", "roll", "pitch", "altitude", "alt", "height", "covariance", "bbox",
+))  # fmt: skip
 
 
 class WayPoints(Record):
-    """The way points of a file as places, and a line for each thing about them that a user should look at."""
+    """The way points of a file as places, and a line for each thing about them that a user should look at.
+
+    `lanes` are the edges of a route graph.
+    """
 
     places: tuple[Place, ...]
     notes: tuple[str, ...] = ()
+    lanes: tuple[Lane, ...] = ()
 
 
 class _Pose(Record):
@@ -80,6 +93,7 @@ def way_points(data: Any, origin: Point | None = None) -> WayPoints:
     lists. Directions are in radians, unless one of them is more than a whole turn. Points in degrees need the latitude
     and longitude of the origin. Raises Problem.
     """
+    data = usual_shape(data, _NAMES)
     reader = _Reader(geographic=_is_geographic(data))
     found: list[tuple[str, _Pose]] = []
     for name, value, where in reader.points(data, "", "the list" if isinstance(data, list) else ""):
@@ -89,6 +103,8 @@ def way_points(data: Any, origin: Point | None = None) -> WayPoints:
     if not found:
         raise Problem(_expected(data))
     notes = reader.notes
+    if reader.unread:
+        notes.append(f"of the way points, these aren't read: {', '.join(reader.unread)}")
     if any(pose.geographic for _, pose in found):
         if origin is None:
             raise Problem(
@@ -99,7 +115,10 @@ def way_points(data: Any, origin: Point | None = None) -> WayPoints:
     turns = any(abs(pose.radians or 0.0) > tau + 0.01 for _, pose in found)
     if turns:
         notes.append("directions are read as degrees, because one of them is more than a whole turn in radians")
-    return WayPoints(tuple(_place(name, pose, origin, turns) for name, pose in found), tuple(notes))
+    places = tuple(_place(name, pose, origin, turns) for name, pose in found)
+    in_degrees = origin if reader.geographic else None
+    lanes = read_lanes(data, lambda at: at if in_degrees is None else _in_metres(at, in_degrees, "of a node"))
+    return WayPoints(places, tuple(notes), lanes)
 
 
 def _expected(data: Any) -> str:
@@ -122,12 +141,18 @@ def _place(name: str, pose: _Pose, origin: Point | None, in_degrees: bool) -> Pl
         facing = pose.radians if in_degrees else degrees(pose.radians)
     x, y = pose.x, pose.y
     if pose.geographic and origin is not None:
-        x = radians((pose.x - origin[1] + 180.0) % 360.0 - 180.0) * cos(radians(origin[0])) * _EARTH
-        y = radians(pose.y - origin[0]) * _EARTH
-        x, y = round(x, 3), round(y, 3)
-        if max(abs(x), abs(y)) > _FARTHEST:
-            raise Problem(f'the way point "{name}" is more than {_FARTHEST / 1000:g} km from --origin')
+        x, y = _in_metres((x, y), origin, f'"{name}"')
     return Place(name, x, y, None if facing is None else wrap(facing))
+
+
+def _in_metres(degrees: Point, origin: Point, name: str) -> Point:
+    """Return the metres east and north of the origin of a longitude and latitude. Raises Problem if that is too far."""
+    longitude, latitude = degrees
+    x = radians((longitude - origin[1] + 180.0) % 360.0 - 180.0) * cos(radians(origin[0])) * _EARTH
+    y = radians(latitude - origin[0]) * _EARTH
+    if max(abs(x), abs(y)) > _FARTHEST:
+        raise Problem(f"the way point {name} is more than {_FARTHEST / 1000:g} km from --origin")
+    return round(x, 3), round(y, 3)
 
 
 def _fields(value: Any) -> Fields:
@@ -140,14 +165,6 @@ def _first(fields: Fields, keys: tuple[str, ...]) -> str:
     return next((key for key in keys if fields.get(key) is not None), "")
 
 
-def _are_numbers(value: Any) -> bool:
-    return (
-        isinstance(value, list)
-        and bool(value)
-        and all(isinstance(each, int | float) and not isinstance(each, bool) for each in value)
-    )
-
-
 def place_name(text: object) -> str:
     """Return the name of a place that people can say: with blanks for underscores, and "point 7" for a number."""
     name = " ".join(str(text).replace("_", " ").split())[:200]
@@ -156,14 +173,15 @@ def place_name(text: object) -> str:
 
 class _Reader:
     def __init__(self, geographic: bool) -> None:
-        self._geographic = geographic
+        self.geographic = geographic
         self.notes: list[str] = []
+        self.unread: dict[str, None] = {}
 
     def points(self, data: Any, name: str, where: str) -> Iterator[tuple[str, Any, str]]:
         """Yield the name of each point, the point, and where it is in messages; `name` is that of the whole."""
         if self._is_point(data):
             yield name or self._name(data), data, where or "the way point"
-        elif _are_numbers(data):
+        elif are_numbers(data):
             yield from self._flat(data, name, where)
         elif isinstance(data, list):
             for index, value in enumerate(data):
@@ -216,18 +234,29 @@ class _Reader:
 
     def _is_point(self, value: Any) -> bool:
         if isinstance(value, list):
-            pair = len(value) == 2 and _are_numbers(value[0]) and _are_numbers(value[1])
+            pair = len(value) == 2 and are_numbers(value[0]) and are_numbers(value[1])
             pair = pair and len(value[0]) in (2, 3) and len(value[1]) == 4
-            return pair or (_are_numbers(value) and (len(value) in (2, 3, 7) or _is_planar(value)))
+            return pair or (are_numbers(value) and (len(value) in (2, 3, 7) or _is_planar(value)))
         fields = _fields(value)
         if _first(fields, _AXES["x"]) or _first(fields, _LATITUDES):
             return not any(isinstance(fields[key], dict | list) for key in ("x", "y") if key in fields)
-        inner = fields.get(_first(fields, _POSITIONS))
+        inner = fields.get(self._position(fields))
         if inner is None:
             return False
         if fields.get("type") in _SHAPES:
             return False
-        return self._is_point(inner) or _are_numbers(inner)
+        return self._is_point(inner) or are_numbers(inner)
+
+    def _position(self, fields: Fields) -> str:
+        """Return the key of the position in the table of a point, "" if it has none.
+
+        In a table with a name, that is the only point under any key.
+        """
+        known = _first(fields, _POSITIONS)
+        if known or not _first(fields, _NAMES):
+            return known
+        others = [key for key in fields if key not in (*_TURNS, *_LISTS) and self._is_point(fields[key])]
+        return others[0] if len(others) == 1 else ""
 
     def _name(self, value: Any) -> str:
         fields = _fields(value)
@@ -242,7 +271,9 @@ class _Reader:
         if isinstance(value, list):
             return self._pose_list(value, where)
         fields = _fields(value)
-        north, x, inner = (_first(fields, keys) for keys in (_LATITUDES, _AXES["x"], _POSITIONS))
+        north, x = _first(fields, _LATITUDES), _first(fields, _AXES["x"])
+        inner = "" if north or x else self._position(fields)
+        self.unread |= dict.fromkeys(key for key in fields if key != inner and not _is_known(key, fields[key]))
         if north:
             longitude = number(fields.get(_first(fields, _LONGITUDES)), f"{where}.longitude", -180.0, 180.0)
             found = _Pose(longitude, number(fields[north], f"{where}.{north}", -90.0, 90.0), geographic=True)
@@ -259,7 +290,7 @@ class _Reader:
         """Return the pose in a list; the third of three numbers is its yaw, or else its height."""
         if len(value) == 2 and isinstance(value[0], list):
             return _with_list(self._pose_list(value[0][:2], where), value[1], where, w_first=False)
-        if self._geographic:
+        if self.geographic:
             longitude, latitude, *_ = numbers(value, where, 2, 3)
             return _Pose(longitude, latitude, geographic=True)
         x, y, *more = numbers(value, where, 2, 3, 4, 7)
@@ -273,6 +304,9 @@ class _Reader:
     def _turned(self, pose: _Pose, fields: Fields, where: str, w_first: bool) -> _Pose:
         """Return a pose with the direction that its table has, if it has one."""
         turn = fields.get(_first(fields, _TURNS))
+        in_degrees = fields.get(_first(fields, _TURNS_IN_DEGREES))
+        if isinstance(in_degrees, list):
+            return _facing(pose, in_degrees=numbers(in_degrees, f"{where}.orientation", 3)[2])
         if isinstance(turn, list):
             return _with_list(pose, turn, f"{where}.orientation", w_first)
         if isinstance(turn, dict):
@@ -303,6 +337,12 @@ class _Reader:
         if key and pose.radians is None and pose.degrees is None:
             self.notes.append(f"{where} faces any direction: {key} {shown(fields[key])} isn't an angle")
         return pose
+
+
+def _is_known(key: str, value: Any) -> bool:
+    """Return whether a field of a point is read, needn't be, or can't be a part of its pose."""
+    of_a_pose = are_numbers(value) or (isinstance(value, int | float) and not isinstance(value, bool))
+    return not of_a_pose or key in _KNOWN
 
 
 def _facing(pose: _Pose, in_radians: float | None = None, in_degrees: float | None = None) -> _Pose:

@@ -244,7 +244,10 @@ def _stop_when(item: ast.StopWhen, done: list[Lowered], _scope: LoweringScope) -
 
 
 def _provided(item: ast.Provided, done: list[Lowered], _scope: LoweringScope) -> Lowered:
-    return Lowered(new_node("ReactiveSequence", [part.node for part in done], item.span), False, done[1].endless)
+    """Make a node with all guards of a command: `provided that A, provided that B: wave`."""
+    guarded = done[1].node
+    children = guarded.children if isinstance(item.body, ast.Provided) else (guarded,)
+    return Lowered(new_node("ReactiveSequence", [done[0].node, *children], item.span), False, done[1].endless)
 
 
 def _named(item: ast.Named, done: list[Lowered], _scope: LoweringScope) -> Lowered:

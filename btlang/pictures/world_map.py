@@ -11,7 +11,7 @@ import numpy as np
 from btlang.pictures import letters
 from btlang.pictures.surface import INK, SMALL, SOFT
 from btlang.robots.geometry import Point, edges
-from btlang.robots.worlds.world import AREA, Door, Person, Thing, World, Zone
+from btlang.robots.worlds.world import AREA, Door, Lane, Person, Thing, World, Zone
 from btlang.support.record import Record
 
 TYPE_CHECKING = False
@@ -115,7 +115,8 @@ def along(points: list[tuple[float, float]], step: float) -> list[tuple[float, f
 
 
 _CLOSED_ZONE, _SLOW_ZONE = "#c0440c", "#9a6a00"
-DOOR_COLOUR, _ROUTE = "#2f6f8f", "#cc79a7"
+DOOR_COLOUR, _ROUTE, _LANE = "#2f6f8f", "#cc79a7", "#7a9e87"
+_ARROW = 5.0  # points
 _GAP, _HATCH = 5.0, 7.0  # points between the dots of a route, and between the lines of a zone
 
 At = Callable[[float, float], tuple[float, float]]
@@ -185,6 +186,19 @@ def draw_door(canvas: Surface, door: Door, at: At, middle: Point) -> None:
     canvas.line([start, leaf], colour=DOOR_COLOUR, line=2.0, round=False)
 
 
+def draw_lanes(canvas: Surface, lanes: Iterable[Lane], at: At) -> None:
+    """Draw lanes as thin lines, with an arrow in the middle of those that lead one way."""
+    for lane in lanes:
+        start, end = at(*lane.start), at(*lane.end)
+        canvas.line([start, end], colour=_LANE, line=0.7)
+        length = hypot(end[0] - start[0], end[1] - start[1])
+        if lane.one_way and length > 0:
+            x, y = (end[0] - start[0]) * _ARROW / length, (end[1] - start[1]) * _ARROW / length
+            tip = (start[0] + end[0] + x) / 2, (start[1] + end[1] + y) / 2
+            wings = (tip[0] - x - y / 2, tip[1] - y + x / 2), (tip[0] - x + y / 2, tip[1] - y - x / 2)
+            canvas.polygon([tip, *wings], fill=_LANE)
+
+
 def draw_route(canvas: Surface, person: Person, at: At) -> None:
     """Draw dots from where somebody begins to each stop, and back to the first one where the route is walked again."""
     stops = [(person.x, person.y), *((stop.x, stop.y) for stop in person.walks)]
@@ -222,6 +236,7 @@ class WorldMap:
         points += [(stop.x, stop.y) for person in world.people for stop in person.walks]
         points += [point for zone in world.zones for point in zone.points]
         points += [point for door in world.doors for point in (door.start, door.end)]
+        points += [point for lane in world.lanes for point in (lane.start, lane.end)]
         xs, ys = [x for x, _ in points], [y for _, y in points]
         width = max(max(xs) - min(xs) + 2 * _ROUND, _LEAST[0])
         height = max(max(ys) - min(ys) + 2 * _ROUND, _LEAST[1])
@@ -235,13 +250,14 @@ class WorldMap:
         return self.area.x + (x - self._left) * self.scale, self.area.y + (self._top - y) * self.scale
 
     def draw(self, canvas: Surface, walked: Container[str] = ()) -> None:
-        """Draw the floor, zones, walls, doors and furniture, and a ring and the route of each person.
+        """Draw the floor, zones, lanes, walls, doors and furniture, and a ring and the route of each person.
 
         The rings of those who have `walked` away are dashed.
         """
         world, s = self._world, self.scale
         canvas.box(self.area.x, self.area.y, self.area.width, self.area.height, round=4, fill=_FLOOR)
         draw_zones(canvas, world, self.at)
+        draw_lanes(canvas, world.lanes, self.at)
         for box in world.boxes:
             x, y = self.at(box.x - box.width / 2, box.y + box.height / 2)
             canvas.box(x, y, box.width * s, box.height * s, round=1.5, fill=_FURNITURE, edge="#b3aa98", line=0.8)

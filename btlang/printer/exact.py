@@ -18,7 +18,7 @@ from btlang.tree.catalogue import SEQUENCE, SUBTREE, takes_one_child
 from btlang.vocabulary.language_tables import CHANGING
 from btlang.vocabulary.lexicon import DEFINING, Lexicon
 from btlang.vocabulary.node_forms import is_negative, node_details, node_forms, opposite_script
-from btlang.vocabulary.node_words import id_of_name, is_port, said_id, subtree_named
+from btlang.vocabulary.node_words import id_of_name, is_port, is_tree_name, said_id, subtree_named
 from btlang.vocabulary.trie import longest
 
 _BARE = re.compile(r"-?\d+(\.\d+)?|\{[A-Za-z_][A-Za-z0-9_]*\}")
@@ -123,18 +123,18 @@ def _head(node: ast.Exact, ports: dict[str, str], printer: Printer) -> str:
     vocabulary, subtrees = printer.vocabulary, printer.subtrees
     role = "test" if node.is_condition else "do"
     word, words = vocabulary.word(role), vocabulary.nodes.get(node.id)
-    if node.id == SUBTREE and "ID" in ports and words is not None:
-        name = ports.pop("ID")
-        said = _in_words(id_of_name(name), name, role, printer)
-        if name in subtrees or (" " in name and not node.items):
-            return f"{word} {(name in subtrees and said) or quote(name, vocabulary)}"
-        return f"{word} {words} {quote(name, vocabulary)}"
+    name = ports.get("ID", "") if node.id == SUBTREE else ""
+    is_known = name in subtrees or (is_tree_name(name, vocabulary) and not node.items)
+    if name and (is_known or words is not None):
+        del ports["ID"]
+        said = _in_words(id_of_name(name), name, role, printer) if name in subtrees else ""
+        return f"{word} {said or quote(name, vocabulary)}" if is_known else f"{word} {words} {quote(name, vocabulary)}"
     if words is not None and node.id != SUBTREE:
         return f"{word} {words}"
     said = _in_words(node.id, "", role, printer)
     if said:
         return f"{word} {said}"
-    if not node.is_condition and (node.id in subtrees or " " in node.id):
+    if not node.is_condition and (node.id in subtrees or is_tree_name(node.id, vocabulary)):
         return f"{word} {vocabulary.word('node')} {quote(node.id, vocabulary)}"
     return f"{word} {quote(node.id, vocabulary)}"
 

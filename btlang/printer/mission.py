@@ -17,6 +17,7 @@ from btlang.printer.sentence import (
     PRINTERS,
     definition_head,
     each_head,
+    guards,
     is_flat_fallback,
     paced_rounds,
     rule_word,
@@ -185,8 +186,8 @@ def _sequence(node: ast.Chain, printer: Printer) -> Iterator[Section]:
 
 
 def _provided(node: ast.Provided, printer: Printer) -> Iterator[Section]:
-    condition = printer.condition(printer.say(node.condition))
-    yield (printer.word("provided"), condition.fragments), statements(node.body)
+    head, body = guards(node, printer)
+    yield head, statements(body)
 
 
 def _repeat(node: ast.Repeat, printer: Printer) -> Iterator[Section]:

@@ -113,8 +113,7 @@ def _if_works(node: ast.IfWorks, parts: list[Doc], printer: Printer) -> Doc:
 
 
 def _whenever(node: ast.Whenever, parts: list[Doc], printer: Printer) -> Doc:
-    word = printer.word(rule_word(node))
-    return printer.before((word, printer.condition(parts[0]).fragments, mark(COMMA)), parts[1])
+    return printer.before((printer.word(rule_word(node)), printer.condition(parts[0]).fragments, mark(COMMA)), parts[1])
 
 
 def rule_word(node: ast.Whenever) -> str:
@@ -122,8 +121,21 @@ def rule_word(node: ast.Whenever) -> str:
     return "first_time" if node.once else "whenever"
 
 
-def _provided(_node: ast.Provided, parts: list[Doc], printer: Printer) -> Doc:
-    return printer.behind(parts[1], printer.word("provided"), printer.condition(parts[0]).fragments)
+def _provided(node: ast.Provided, parts: list[Doc], printer: Printer) -> Doc:
+    if not isinstance(node.body, ast.Provided):
+        return printer.behind(parts[1], printer.word("provided"), printer.condition(parts[0]).fragments)
+    head, body = guards(node, printer)
+    return printer.before((*head, mark(COMMA)), printer.say(body))
+
+
+def guards(node: ast.Provided, printer: Printer) -> tuple[tuple[Fragment | Fragments, ...], ast.Ast]:
+    """Return the words of all guards of a command, the outermost first, and the command."""
+    head: tuple[Fragment | Fragments, ...] = ()
+    body: ast.Ast = node
+    while isinstance(body, ast.Provided):
+        said = printer.condition(printer.say(body.condition)).fragments
+        head, body = (*head, mark(COMMA), printer.word("provided"), said), body.body
+    return head[1:], body
 
 
 def _named(node: ast.Named, parts: list[Doc], printer: Printer) -> Doc:

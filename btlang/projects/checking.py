@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from btlang.backends.checking import accept_anything, bind_placeholder, find_misnamed, tree_problems
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic, sort_diagnostics
 from btlang.engine.leaves.leaf import LeafBinding
-from btlang.frontends.btcpp.files import XmlFiles
+from btlang.frontends.btcpp.files import NOT_INCLUDED, XmlFiles
 from btlang.frontends.btcpp.models import nav2_models
 from btlang.frontends.btcpp.project import XmlProject, read_project
 from btlang.passes import PASSES
@@ -298,7 +298,7 @@ class _Check:
         for problem in tree_problems(self._whole(own), self._vocabulary, self._bind):
             arguments = dict(problem.arguments)
             if problem.code == "BT126":
-                if arguments["name"] in elsewhere:
+                if arguments["name"] in elsewhere or self._may_be_included(arguments["name"], problem.span):
                     continue
                 if self._may_be_elsewhere(arguments["name"], problem.span):
                     missing.setdefault(arguments["name"], []).append(problem)
@@ -314,6 +314,13 @@ class _Check:
             yield diagnostic("BT244", found[0].span, name=name, times=count_times(len(found)))
         if self._vocabulary.entries:
             yield from find_misnamed(self._whole(self._project.trees), self._vocabulary)
+
+    def _may_be_included(self, name: str, span: Span) -> bool:
+        """Return whether a tree may be in a file that this one, or another one of its program, includes in vain."""
+        vain = {problem.span.source.name for problem in self._project.problems if problem.code == NOT_INCLUDED}
+        file, project = span.source.name, self._project
+        is_one = file in vain or (project.is_joined(file) and any(project.may_share(file, place) for place in vain))
+        return is_one and not misspelt(name, project.trees)
 
     def _may_be_elsewhere(self, name: str, span: Span) -> bool:
         """Return whether a tree may be in a file that isn't checked: nothing is called like it, and this file includes

@@ -7,6 +7,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.engine.instance import blackboard_key
+from btlang.engine.script.assignments import CHANGES, TEXT, assignments
 from btlang.engine.script.tokens import READS, SETS, ScriptError, find_script_names
 from btlang.frontends.btcpp.spelling import AUTOREMAP, TRUE
 from btlang.projects.ports import attribute_value, describe_type, place_of
@@ -28,7 +29,10 @@ _ISOLATED = "Give it to the SubTree, or set it in this tree, which sees no other
 
 
 class EntryUse(Record):
-    """An entry that a port or script of a node names: what it may do with it, and its type, "" if that isn't known."""
+    """An entry that a port or script of a node names: what it may do with it, and its type, "" if that isn't known.
+
+    For a value that the node sets, the type is NUMBER or TEXT, and `constant` is that value if the node says it.
+    """
 
     node: Node
     port: str
@@ -36,6 +40,7 @@ class EntryUse(Record):
     reads: bool = True
     sets: bool = True
     type: str = ""
+    constant: str | None = None
 
     @property
     def may_be_enum(self) -> bool:
@@ -47,9 +52,9 @@ class EntryUse(Record):
 class TreeEntries(Record):
     """The entries that a tree names, in the order in which its nodes are made, and its SubTree nodes.
 
-    `given` are those in ports of SubTree nodes: what becomes of them, their trees decide. `steps` are the uses and the
-    SubTree nodes, in this order. If it `is_older`, it is of version 3, where outputs may name an entry without braces:
-    `named`.
+    `given` are those in ports of SubTree nodes: what becomes of them, their trees decide. `steps` are the uses, the
+    values that are set and the SubTree nodes, in this order. If it `is_older`, it is of version 3, where outputs may
+    name an entry without braces: `named`.
     """
 
     uses: tuple[EntryUse, ...]
@@ -88,12 +93,14 @@ def entries_of(root: Node, ports_of: PortsOf, is_older: bool) -> TreeEntries:
             holds = port_content(node.id, port) if may_hold else ""
             if holds == SCRIPT:
                 uses += _script_uses(node, port, text)
+                steps += _script_values(node, port, text)
             elif "{" in text:
                 key = blackboard_key(port, text)
                 if key is not None and key[:1] != "@":
                     (given if node.id == SUBTREE else uses).append(_port_use(node, port, key, ports.get(port)))
             elif holds:
                 uses.append(EntryUse(node, port, text, reads=False))
+                steps += _set_value(node, port, text)
             elif is_older and not is_built_in and (port not in ports or ports[port].direction != "input"):
                 named.add(text)
         steps += uses[done:]
@@ -110,6 +117,19 @@ def _script_uses(node: Node, port: str, code: str) -> list[EntryUse]:
     except ScriptError:
         return []
     return [EntryUse(node, port, name, READS in how, SETS in how) for name, how in uses.items() if name[:1] != "@"]
+
+
+def _script_values(node: Node, port: str, code: str) -> Iterator[EntryUse]:
+    for made in assignments(code) if blackboard_key(port, code) is None else ():
+        if made.kind:
+            yield EntryUse(node, port, made.key, made.sign in CHANGES, True, made.kind, made.constant)
+
+
+def _set_value(node: Node, port: str, key: str) -> Iterator[EntryUse]:
+    """Yield what is set beside the port that names an entry, if it is a constant: a text, whatever it looks like."""
+    constant = node.port("value")
+    if "{" not in constant:
+        yield EntryUse(node, port, key, False, True, TEXT, constant)
 
 
 def _port_use(node: Node, port: str, key: str, described: PortModel | None) -> EntryUse:

@@ -13,6 +13,9 @@ from btlang.text.source import Source, Span
 
 _ROOT = re.compile(r"\s*(?:<\?.*?\?>\s*|<!--.*?-->\s*|<!DOCTYPE[^>]*>\s*)*<root[\s/>]", re.DOTALL)
 
+_IGNORED = frozenset(("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE"))
+"""Files in folders that aren't sources: colcon puts them into `build`, `install` and `log`, where copies are."""
+
 
 def find_tree_files(folder: str) -> list[str]:
     """Return the files of trees and models in a folder and below it, without hidden ones.
@@ -42,8 +45,11 @@ def find_named_files(paths: Sequence[str], inside: Callable[[str], Iterable[str]
 
 
 def find_files_below(folder: str, endings: tuple[str, ...]) -> Iterator[str]:
-    """Yield the files with these endings in a folder and below it, without hidden ones."""
+    """Yield the files with these endings in a folder and below it, without hidden ones and what builds leave out."""
     for inside, folders, files in os.walk(folder):
+        if inside != folder and not _IGNORED.isdisjoint(files):
+            folders.clear()
+            continue
         folders[:] = sorted(name for name in folders if name[:1] != ".")
         for name in sorted(files):
             if name.endswith(endings) and name[:1] != ".":

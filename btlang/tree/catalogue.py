@@ -255,6 +255,14 @@ CATALOGUE: dict[str, NodeKind] = {
             },
             origin=NAV2,
         ),
+        _decorator(
+            "PathLongerOnApproach",
+            ports={
+                "path": Port("nav_msgs::msg::Path"), "prox_len": Port("double", "3.0"),
+                "length_factor": Port("double", "2.0"),
+            },
+            origin=NAV2,
+        ),
         _decorator("SingleTrigger", origin=NAV2),
         _decorator("RunOnce", ports={"then_skip": Port("bool", "true")}),
         _decorator("Precondition", ports={"if": Port(holds=SCRIPT), "else": Port(default="FAILURE")}),

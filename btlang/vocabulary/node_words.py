@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 _ID = re.compile(r"(?:[A-Z][a-z0-9]*)+")
 _PART = re.compile(r"[A-Z]{2,}[0-9]*(?![a-z])|[A-Z][a-z0-9]*")
 _WORD = re.compile(r"[a-z][a-z0-9]*")
+_SNAKE_CASE = re.compile(r"[a-z0-9]+(?:_[a-z0-9]+)+")
 _ACRONYM = re.compile(r"[A-Z]{2,}[0-9]*")
 BEHIND_ID = ("called", "with", "giving")
 """The roles of what is said of a node behind its id."""
@@ -71,6 +72,13 @@ def subtree_named(written: str, subtrees: Collection[str], *, in_words: bool) ->
         return written if written in subtrees else ""
     found = [name for name in subtrees if written == id_of_name(name)]
     return found[0] if len(found) == 1 else ""
+
+
+def is_tree_name(name: str, vocabulary: Lexicon) -> bool:
+    """Return whether a name in quotes is that of a tree of another file: no tag of XML has blanks, and no node that is
+    a class of C++ is called like `move_to_dock`.
+    """
+    return " " in name or (_SNAKE_CASE.fullmatch(name) is not None and name not in vocabulary.entries)
 
 
 def read_id(text: Words, at: int, vocabulary: Lexicon) -> tuple[str, int] | None:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from btlang.api import parse_tree
+from btlang.cli import main
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.text.source import Source
 
@@ -34,6 +37,28 @@ CASES = {
         '<ReactiveSequence name="still wanted"><Inverter><IsGoalNew/></Inverter><DetectTags goal="{goal}"/>'
         "</ReactiveSequence>",
         ['"still wanted": do detect tags with {goal} provided that not test is goal new'],
+    ),
+    "several guards": (
+        "<ReactiveSequence><IsLidOpen/><Inverter><IsGoalNew/></Inverter><Wave/></ReactiveSequence>",
+        ["provided that test is lid open, provided that not test is goal new, wave"],
+    ),
+    "several guards with a name, of something long": (
+        f'<ReactiveSequence name="g"><IsLidOpen/><IsGoalNew/><Sequence><DetectTags {LONG}/><Wave/></Sequence>'
+        "</ReactiveSequence>",
+        [
+            '"g", provided that test is lid open, provided that test is goal new:',
+            '  do detect tags with shelf "shelf of the cell", tray "tray of the cell",',
+            '      gripper "gripper of the cell", camera "camera of the cell", approach "approach of the cell"',
+            "  wave",
+        ],
+    ),
+    "guards in each other": (
+        "<ReactiveSequence><IsLidOpen/><ReactiveSequence><IsGoalNew/><Wave/></ReactiveSequence></ReactiveSequence>",
+        ["in order, checked at each tick:", "  check test is lid open", "  wave provided that test is goal new"],
+    ),
+    "trees of other files": (
+        '<Sequence><SubTree ID="move_to_dock" speed="{v}"/><SubTree ID="Dock"/><move_arm/></Sequence>',
+        ['do "move_to_dock" with speed {v}', 'do subtree "Dock"', 'do node "move_arm"'],
     ),
     "a guard of something long": (
         f"<ReactiveSequence><IsLidOpen/><Sequence><DetectTags {LONG}/><Wave/></Sequence></ReactiveSequence>",
@@ -110,3 +135,11 @@ def test_a_node_has_one_name(text: str) -> None:
     with pytest.raises(MissionError) as error:
         parse_tree(text)
     assert [problem.code for problem in error.value.diagnostics] == ["BT141"]
+
+
+def test_trees_of_other_files_in_spanish(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """It has no word for a subtree."""
+    path = tmp_path / "tree.xml"
+    path.write_text(TREE.format('<SubTree ID="move_to_dock" speed="0.5"/>'), "utf-8")
+    assert main(["compile", "--language", "es", "--to", "english", str(path)]) == 0
+    assert capsys.readouterr().out.splitlines()[0] == 'haz "move_to_dock" con speed 0.5'

@@ -32,6 +32,7 @@ RUNS: dict[str, tuple[str, dict[str, str]]] = {
     "DistanceController": ("R", {}),
     "GoalUpdatedController": ("R", {}),
     "GoalUpdater": ("R", {"input_goal": "{x}", "output_goal": "{y}"}),
+    "PathLongerOnApproach": ("R", {"path": "{path}"}),
     "PauseResumeController": ("R s s s", {}),
     "RecoveryNode": ("f R", {}),
     "RoundRobin": ("f R", {}),
@@ -61,7 +62,13 @@ def around(id: str, *children: Node) -> Tree:
     ports = RUNS[id][1]
     if id == "SubTree":
         return Tree(n("ParallelAll", n(id, **ports), n("Z")), (("go", n("Sequence", *children)),))
-    return Tree(n("ParallelAll", n(id, *children, **ports), n("Z")))
+    node = n(id, *children, **ports)
+    if id == "PathLongerOnApproach":  # runs its child only once the path has become longer
+        short, long = (n("SetBlackboard", output_key="path", value=f"json:[[{x}, 0], [0, 0]]") for x in (1, 9))
+        node = n(
+            "Sequence", short, n("RecoveryNode", n("Sequence", node, long, n("AlwaysFailure")), n("AlwaysSuccess"))
+        )
+    return Tree(n("ParallelAll", node, n("Z")))
 
 
 def running(id: str) -> tuple[World, Engine, list[str]]:

@@ -19,6 +19,10 @@ REACTIVE = ("ReactiveSequence", "ReactiveFallback")
 PLAIN_DECORATORS = ("Inverter", "ForceSuccess", "ForceFailure", "KeepRunningUntilFailure")
 ASKED = st.sampled_from(("x > 1", "x < 3", "true", "false", "y == '1'", "_p == 1", "@x > 1", "gone"))
 DONE = st.sampled_from(("x := 1", "x += 1", "z := x", "_p := 1", "@x := 2", "gone"))
+PATHS = tuple(
+    n("SetBlackboard", output_key="p", value=f"json:[[{start}, 0], [0, 0], [{goal}, 0]]")
+    for start, goal in ((-1, 0), (-4, 0), (-9, 0), (-4, 1))
+)
 SUBTREES = st.fixed_dictionaries(
     {"_autoremap": st.sampled_from(("true", "false"))},
     optional={
@@ -90,6 +94,11 @@ def _more_parents(children: st.SearchStrategy[Node]) -> list[st.SearchStrategy[N
         several("PauseResumeController", 1, 4),
         several("PersistentSequence", 1, 4, current_child_idx="{x}"),
         around("GoalUpdater", input_goal=st.just("{x}"), output_goal=st.just("{y}")),
+        st.tuples(children, st.permutations(PATHS)).map(  # with another path at each tick
+            lambda d: n(
+                "NonblockingSequence", n("PathLongerOnApproach", d[0], path="{p}"), n("AsyncSequence", *d[1], *d[1])
+            )
+        ),
         around("GoalUpdatedController", goal=st.just("{x}")),
         several("PipelineSequence", 1, 4).flatmap(
             lambda many: st.just(
@@ -128,7 +137,7 @@ LEAVES = st.one_of(
     ASKED.map(lambda code: n("ScriptCondition", code=code)),
     DONE.map(lambda code: n("Script", code=code)),
     st.sampled_from((("x", 1), ("x", 2), ("q", "1;2"))).map(lambda s: n("SetBlackboard", output_key=s[0], value=s[1])),
-    st.sampled_from((n("UnsetBlackboard", key="x"), n("WasEntryUpdated", entry="{x}"))),
+    st.sampled_from((n("UnsetBlackboard", key="x"), n("WasEntryUpdated", entry="{x}"), *PATHS)),
 )
 TREES = st.recursive(LEAVES, _parents, max_leaves=12)
 

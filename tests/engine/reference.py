@@ -9,11 +9,11 @@ from __future__ import annotations
 
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 
-from .reference_nodes import MoreNodes
+from .reference_nav2 import Nav2Nodes
 from .scripted import STATUS
 
 
-class Reference(MoreNodes):
+class Reference(Nav2Nodes):
     """One node and, below it, the others."""
 
     def execute(self) -> int:

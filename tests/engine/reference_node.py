@@ -51,6 +51,7 @@ class ReferenceNode(ABC):
         self.armed, self.fired = True, False
         self.once = IDLE
         self.queue: list[str] = []
+        self.path: list[list[float]] = []
         self.behaviour: Callable[[], int] = getattr(self, node.id, self.leaf)
 
     @abstractmethod

@@ -40,11 +40,11 @@ def play(text: str, scripts: str, ticks: str) -> tuple[str, str]:
     """What happened, written as in the columns `ticks` and `calls`."""
     world = World()
     engine = world.engine(built(world, text, scripts))
-    engine.blackboard.set("x", 0)
+    engine.blackboard.set("x", [] if "path=" in text else 0)
     happened = ""
     for step in ticks:
         if step.isdigit():
-            engine.blackboard.set("x", int(step))
+            engine.blackboard.set("x", [[int(step), 0], [0, 0]] if "path=" in text else int(step))
             happened += step
             continue
         if step in "!e":

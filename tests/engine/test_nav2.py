@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import Any
+
 import pytest
 
 from btlang.engine.instance import EngineError
@@ -192,3 +195,35 @@ def test_a_persistent_sequence_needs_a_position(value: object) -> None:
     assert world.log == []
     with pytest.raises(EngineError, match="must be a"):
         world.engine(n("PersistentSequence", world.fn("A", "s"), current_child_idx="0"))
+
+
+def test_a_path_that_became_longer_near_the_goal_runs_the_child() -> None:
+    """The path is a message, a list of points or JSON; without one there's nothing to compare."""
+    world = World()
+    engine = world.engine(n("PathLongerOnApproach", world.fn("Wait", "s"), path="{path}", prox_len="2"))
+    assert world.ticks(engine, 1) == "s"
+
+    def message(length: float) -> Any:
+        positions = [SimpleNamespace(x=length, y=0.0, z=0.0), SimpleNamespace(x=0.0, y=0.0, z=0.0)]
+        return SimpleNamespace(poses=[SimpleNamespace(pose=SimpleNamespace(position=each)) for each in positions])
+
+    asked = []
+    for path in (
+        message(2),
+        message(5),
+        message(1),
+        [[3, 0], [0, 0]],
+        'json:{"poses": [[1, 0], [0, 0]]}',
+        message(2.5),
+        [],
+    ):
+        engine.blackboard.set("path", path)
+        world.log.clear()
+        assert world.ticks(engine, 1) == "s"
+        asked.append("Wait" in world.log)
+    assert asked == [False, False, False, True, False, True, False]
+    for wrong in (3, "soon", [[1]], [["a", "b"]], [None]):
+        engine.blackboard.set("path", wrong)
+        assert engine.tick() == FAILURE
+        assert engine.failure is not None
+        assert engine.failure.reason.startswith("path must be a path, such as json:[[0, 0], [1, 2]], not ")

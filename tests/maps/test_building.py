@@ -10,7 +10,7 @@ import pytest
 
 from btlang.cli import main
 from btlang.maps.building import read_building
-from btlang.robots.worlds.world import Door, Place
+from btlang.robots.worlds.world import Door, Lane, Place
 from btlang.robots.worlds.world_file import load_world
 from btlang.text.toml_table import Problem
 
@@ -22,7 +22,7 @@ LEVEL: dict[str, Any] = {
     ],
     "walls": [[0, 1, {}], [1, 2, {}], [2, 3, {}], [3, 4, {}], [4, 5, {}], [5, 0, {}], [1, 8, {}], [9, 4, {}]],
     "doors": [[8, 9, {"name": [1, "lab_door"], "type": [1, "hinged"]}]],
-    "lanes": [[6, 7, {"bidirectional": [4, True]}]],
+    "lanes": [[6, 7, {"bidirectional": [4, True]}], [7, 6, {}], [8, 9, {"bidirectional": [4, False]}]],
     "measurements": [[0, 2, {"distance": [3, 10.0]}]],
 }  # fmt: skip
 LIFTS = {"lift_1": {"x": 20, "y": 20, "level_doors": {"L1": ["door1"]}}, "lift_2": {"x": 1, "y": 1, "level_doors": {}}}
@@ -34,13 +34,14 @@ def test_a_level_becomes_a_world(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     Path("lab.json").write_text(json.dumps(BUILDING))
     assert main(["world", "import", "lab.json", "-o", "lab.toml"]) == 0
     told = capsys.readouterr()
-    assert told.out.splitlines()[0] == "lab.json: the level L1 of a building, with 3 places"
-    assert told.err == "Warning: lab.json: the lanes (1) are left out: the robot finds ways of its own\n"
+    assert told.out.splitlines()[0] == "lab.json: the level L1 of a building, with 3 places and 2 lanes"
+    assert told.err == ""
     assert "-0]" not in Path("lab.toml").read_text()
     world = load_world("lab.toml", bounded=True)
     assert (world.start.x, world.start.y) == (7.5, -2.5)  # the drawing counts down, and is 5 cm a pixel
     assert world.docks == (Place("charger", 7.5, -2.5, 0.0),)
     assert {place.name: place.kind for place in world.places} == {"front desk": "", "lift 1": "lift", "charger": ""}
+    assert world.lanes == (Lane((2.5, -2.5), (7.5, -2.5)), Lane((5.0, -2.0), (5.0, -3.0), one_way=True))
     assert world.doors == (Door("lab door", (5.0, -2.0), (5.0, -3.0)),)
     assert len(world.wall_segments()) == 8
     assert (

@@ -70,6 +70,15 @@ def named(data: Any) -> list[tuple[str, float, float, float | None]]:
         ([{"position": [1, 2, 0], "orientation": [0, 0, 0, 0]}], [("point 1", 1, 2, None)]),  # never set
         ([{"pose": {"position": {"x": 1, "y": 2}, "angle": {"yaw": 90}}}], [("point 1", 1, 2, 90)]),
         ([[1, 2, 90.0], [3, 4, 1.0]], [("point 1", 1, 2, 90), ("point 2", 3, 4, 1)]),  # all of them in degrees
+        ({"x": [1, 3], "y": [2, 4], "yaw": [0, 1.5707963]}, [("point 1", 1, 2, 0), ("point 2", 3, 4, 90)]),
+        ({"a": {"names": ["b", "c"], "wp_x": [1, 3], "wp_y": [2, 4]}}, [("b", 1, 2, None), ("c", 3, 4, None)]),
+        ([["a", 1, 2, 1.5707963]], [("a", 1, 2, 90)]),
+        ({"a": "1.0, 2.0, 1.5707963", "b": "(3 -4)"}, [("a", 1, 2, 90), ("b", 3, -4, None)]),
+        ([{"name": "1 2", "x": 1, "y": 2}], [("1 2", 1, 2, None)]),
+        ({"a": [[1, 2], 1.5707963]}, [("a", 1, 2, 90)]),
+        ([{"name": "a", "translation": [1, 2, 0], "rotation_euler_deg": [0, 0, 90]}], [("a", 1, 2, 90)]),
+        ({"locations": [{"name": "a", "coords": {"x": 1, "y": 2}, "yaw": 1.5707963}]}, [("a", 1, 2, 90)]),
+        ({"goals": {"list": [STAMPED]}}, [("point 1", 1, 2, 90)]),
         (
             {"patrol": {"ros__parameters": {"waypoints": ["a"], "a": [1, 2], "cycles": 3, "covariance": [1] * 36}}},
             [("a", 1, 2, None)],
@@ -207,3 +216,30 @@ def test_what_a_user_should_look_at(data: Any, note: str) -> None:
 def test_compass_headings_of_geographic_points() -> None:
     [place] = way_points([{"latitude": 48.0, "longitude": 11.0, "heading": 0}], (48.0, 11.0)).places
     assert (place.x, place.y, place.facing) == (0.0, 0.0, 90.0)
+
+
+def test_what_is_not_read_of_way_points_is_said() -> None:
+    """A direction under an odd key isn't lost in silence."""
+    found = way_points([{"x": 1, "y": 2, "z": 0, "a": 1.57}, {"x": 2, "y": 2, "turned": [0, 1], "name": "b"}])
+    assert found.notes == ("of the way points, these aren't read: a, turned",)
+    with pytest.raises(Problem, match="x has 2 numbers, and y has 1"):
+        way_points({"x": [1, 2], "y": [1]})
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("name,x,y,yaw\na,1,2,1.5707963\n", [("a", 1, 2, 90)]),
+        ("X;Y;Label\n1;2;a\n\n3;4;b\n", [("a", 1, 2, None), ("b", 3, 4, None)]),
+        ("1,2\n3,4\n", [("point 1", 1, 2, None), ("point 2", 3, 4, None)]),
+        ("lab 1   2 1.5707963\nhall 3 4\n", [("lab", 1, 2, 90), ("hall", 3, 4, None)]),
+        ("# x y\nlab\t1\t2\t0\n", [("lab", 1, 2, 0)]),
+    ],
+)
+def test_way_points_in_csv(text: str, found: Any) -> None:
+    assert named(read_data(Source(text, "points.csv"))) == found
+    assert named(read_data(Source(text, "points.txt"))) == found
+
+
+def test_a_cell_of_csv_that_is_too_long() -> None:
+    assert read_data(Source(f'"{"a" * 200_000}",1,2', "points.csv")) == []

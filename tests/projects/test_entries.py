@@ -130,6 +130,57 @@ def test_two_types_of_an_entry(tree: str, types: str, tmp_path: Path, capsys: py
     assert [message.partition("'n' is of type ")[2] for message in messages] == ([f"{types}."] if types else [])
 
 
+TEXT, NUMBER = "<Script code=\"n := 'slow'\"/>", '<Script code="n := 1"/>'
+TO_NUMBER, TO_TEXT = (
+    "BT132 a text, and its port code makes it a number",
+    "BT132 a number, and its port code makes it a text",
+)
+
+
+@pytest.mark.parametrize(
+    ("tree", "wanted"),
+    [
+        (NUMBER + TEXT, TO_TEXT),
+        (TEXT + NUMBER, TO_NUMBER),
+        (TEXT + '<Script code="n += 1"/>', TO_NUMBER),
+        ('<SetBlackboard output_key="n" value="0"/><Script code="n = n + 1"/>', TO_NUMBER),
+        ('<Script code="n := m == 1"/><Log text="x" _onSuccess="n := \'done\'"/>',
+         "BT132 a number, and its port _onSuccess makes it a text"),
+        (NUMBER + '<Script code="n := \'5\'"/>', ""),  # the text is converted
+        (NUMBER + '<Script code="n := \'RED\'"/>', ""),  # it may be an enum
+        (NUMBER + '<Script code="n := m"/>' + NUMBER, ""),
+        (NUMBER + '<Script code="n := m ? \'a\' : \'b\'"/>', ""),
+        (NUMBER + '<Script code="n := -2.5; n := 0x10"/>', ""),
+        (NUMBER + '<Log text="{n}"/>', ""),  # a number is read as a text
+        (TEXT + '<Spin speed="{n}"/>', "BT233 'slow' can't be the port speed of Spin: a number is needed"),
+        (NUMBER + '<Move to="{n}"/>',
+         "BT132 of type geometry_msgs::msg::Pose, and its port code makes it a number"),
+        ('<SetBlackboard output_key="n" value="soon"/><Sleep msec="{n}"/>',
+         "BT233 'soon' can't be the port msec of Sleep: a whole number from 0 to 4,294,967,295 is needed"),
+        ('<Script code="n := 2.5"/><Spin times="{n}"/>',
+         "BT233 '2.5' can't be the port times of Spin: a whole number from -2,147,483,648 to 2,147,483,647 is needed"),
+        ('<Script code="n := 0x10"/><Spin times="{n}"/>', ""),
+        ('<SetBlackboard output_key="n" value="3"/><Sleep msec="{n}"/><Script code="n += 1"/>', ""),  # Sleep types it
+        (NUMBER + '<SubTree ID="T1" text="{n}"/>', "BT132 a number, and its port text makes it a text"),
+        (NUMBER + '<SubTree ID="T2" _autoremap="true"/>', "BT132 a number, and its tree makes it a text"),
+        ('<SubTree ID="T1" text="5"/>', "BT132 a number, and its port text makes it a text"),
+        ('<SubTree ID="T1" text="five"/>', ""),
+        (NUMBER + TEXT + '<Nobody n="{n}"/>', ""),  # its port may have a type that both become
+    ],
+)  # fmt: skip
+def test_values_of_scripts_that_an_entry_cannot_become(
+    tree: str, wanted: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """An entry has the type of its ports, wherever they are, else of its first value."""
+    trees = tree, "<Script code=\"text := 'slow'\"/>", TEXT
+    named = [TREE.format(f"T{at}", f"<Sequence>{each}</Sequence>") for at, each in enumerate(trees)]
+    write(tmp_path, "trees.xml", *named, models=MODELS, attributes='main_tree_to_execute="T0"')
+    found = [problem for problem in problems(capsys, str(tmp_path)) if problem["code"] in ("BT132", "BT233")]
+    code, _, text = wanted.partition(" ")
+    assert [problem["code"] for problem in found] == ([code] if wanted else [])
+    assert all(problem["message"].endswith(f"{text}.") for problem in found)
+
+
 def test_only_one_asynchronous_sequence_in_a_reactive_one(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     part = '<AsyncSequence><Log text="x"/></AsyncSequence>'
     trees = f"<ReactiveSequence>{part * 2}</ReactiveSequence><ReactiveSequence>{part}</ReactiveSequence>{part}{part}"

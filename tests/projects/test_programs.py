@@ -146,3 +146,25 @@ def test_the_planted_faults_of_a_repository_are_found_and_nothing_else(capsys: p
         for problem in problems(capsys, str(WAREHOUSE))
     ]
     assert found == [line.partition("  ")[0] for line in planted]
+
+
+def test_a_tree_may_be_in_a_file_that_cannot_be_included(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Only the include is reported; misspelt trees of this file, and unknown ones of other programs, still are."""
+    uses = '<Sequence><SubTree ID="Gone"/><SubTree ID="Prat"/></Sequence>'
+    write(tmp_path, "main.xml", '<include path="gone.xml"/>', TREE.format("Main", uses), TREE.format("Part", "<Nod/>"))
+    write(tmp_path, "other.xml", TREE.format("Other", '<SubTree ID="Nowhere"/>'))
+    found = {problem["code"]: problem["message"] for problem in problems(capsys, str(tmp_path))}
+    assert found.keys() - {"BT236"} == {"BT128", "BT126", "BT244"}
+    assert "'Prat'" in found["BT126"]
+    assert "'Nowhere'" in found["BT244"]
+
+
+def test_what_colcon_has_built_is_not_checked_again(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A workspace has copies of the trees in `build` and `install`."""
+    for folder in ("src", "build", "install"):
+        write(tmp_path, f"{folder}/docks/main.xml", TREE.format("Main", '<SubTree ID="Gone"/>'))
+        if folder != "src":
+            (tmp_path / folder / "COLCON_IGNORE").touch()
+    [problem] = [each for each in problems(capsys, str(tmp_path)) if each["code"] == "BT126"]
+    assert problem["file"] == str(tmp_path / "src" / "docks" / "main.xml")
+    assert problems(capsys, str(tmp_path / "install")) != []  # if that is asked for

@@ -13,6 +13,7 @@ from btlang.robots.worlds.world import (
     SLOW,
     Door,
     FurnitureBox,
+    Lane,
     Person,
     PersonUtterance,
     Place,
@@ -60,6 +61,7 @@ def worlds(draw: st.DrawFn) -> World:
         tuple(_zone(draw, next(names)) for _ in some()),
         tuple(Door(next(names), draw(_points), (60.0, 60.0), draw(st.booleans())) for _ in some()),
         draw(st.none() | st.integers(0, 1_000_000)),
+        lanes=tuple(Lane(draw(_points), draw(_points), draw(st.booleans())) for _ in some()),
     )
 
 

@@ -10,7 +10,7 @@ from btlang.robots.geometry import Pose, segment_distance
 from btlang.robots.robot import RobotError
 from btlang.robots.simulation.robot import SimulatedRobot
 from btlang.robots.worlds.obstacles import Obstacles
-from btlang.robots.worlds.planning import ClearanceGrid
+from btlang.robots.worlds.planning_grid import ClearanceGrid
 from btlang.robots.worlds.world import FurnitureBox, Person, Place, World, WorldFault
 from btlang.robots.worlds.world_file import load_world
 

@@ -9,13 +9,12 @@ that looks like a number is set by a Script before, and a port of another type g
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 
 from btlang.engine.instance import blackboard_key
-from btlang.engine.script.tokens import ScriptError, Tokens
+from btlang.engine.script.assignments import CHANGES, SETS, Assignment, assignments
 from btlang.engine.script.values import literal
 from btlang.passes.scripts import make_script
-from btlang.support.record import Record
 from btlang.tree.catalogue import CATALOGUE, SEQUENCE, SUBTREE
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import children_first, fold
@@ -33,8 +32,6 @@ _DECIMALS = ("double", "float")
 _TEXT = "std::string"
 _INTEGER = re.compile(r"u?int(8|16|32|64)?(_t)?|(unsigned|long|short)( .*)?|size_t|int")
 _OWN_KEY = re.compile(r"_([0-9]{1,15})")
-_SETS = (":=", "=")
-_CHANGES = ("+=", "-=", "*=", "/=")
 
 
 _BUILT_IN = {
@@ -42,23 +39,6 @@ _BUILT_IN = {
     for kind in CATALOGUE.values()
     if any(port.type for port in kind.ports.values())
 }
-
-
-class Assignment(Record):
-    """An assignment of a script: its right side is from `start` to `end`.
-
-    `number` is the constant that is assigned, "" for another value; `copied` is the key that is alone on the right
-    side, `names` are all keys there.
-    """
-
-    key: str
-    sign: str
-    number: str
-    copied: str
-    names: tuple[str, ...]
-    is_text: bool
-    start: int
-    end: int
 
 
 class _Facts:
@@ -134,10 +114,10 @@ class _Typing:
                 self._facts[self._value((name, key))].is_said = True
             return
         facts = self._facts[value]
-        facts.is_number |= bool(made.number) or made.sign in _CHANGES
-        facts.is_set |= bool(made.number) and made.sign in _SETS
+        facts.is_number |= bool(made.number) or made.sign in CHANGES
+        facts.is_set |= bool(made.number) and made.sign in SETS
         facts.is_decimal |= made.sign == "/=" or isinstance(literal(made.number), float)
-        if made.copied and made.sign in _SETS:
+        if made.copied and made.sign in SETS:
             self._join(value, self._value((name, made.copied)))
             return
         for other in [self._value((name, key)) for key in made.names]:
@@ -227,38 +207,7 @@ class _Typing:
 
     def _code(self, name: str, code: str) -> str:
         for made in reversed(list(assignments(code))):
-            if made.sign in _SETS and isinstance(literal(made.number), int):
+            if made.sign in SETS and isinstance(literal(made.number), int):
                 if self._type(self._facts[self._value((name, made.key))]) in _DECIMALS:
                     code = f"{code[: made.start]}{made.number}.0{code[made.end :]}"
         return code
-
-
-def assignments(code: str) -> Iterator[Assignment]:
-    """List the assignments of a script, one for each statement that is one; none of what can't be read."""
-    try:
-        tokens = Tokens(code)
-        found: list[tuple[str, str, int]] = []
-        while True:
-            if tokens.kind == "end" or tokens.sign == ";":
-                if len(found) > 2 and found[0][0] == "name" and found[1][1] in _SETS + _CHANGES:
-                    yield _assignment(found)
-                found = []
-                if tokens.kind == "end":
-                    return
-            else:
-                found.append((tokens.kind, tokens.text, tokens.position))
-            tokens.advance()
-    except ScriptError:
-        return
-
-
-def _assignment(tokens: list[tuple[str, str, int]]) -> Assignment:
-    (_, key, _), (_, sign, _), *right = tokens
-    sort, text, start = right[0]
-    is_text = any(sort == "text" or text in ("..", "?") for sort, text, _ in right)
-    names = tuple(text for sort, text, _ in right if sort == "name")
-    negative = len(right) == 2 and text == "-" and right[1][0] == "number"
-    number = "".join(text for _, text, _ in right) if negative or (sort == "number" and len(right) == 1) else ""
-    copied = text if sort == "name" and len(right) == 1 else ""
-    end = right[-1][2] + len(right[-1][1])
-    return Assignment(key, sign, number, copied, names, is_text, start, end)

@@ -128,8 +128,14 @@ def _stop_when(children: tuple[Candidate, ...]) -> Iterator[ast.Ast]:
 
 
 def _provided(_node: Node, children: tuple[Candidate, ...], _checked: Checked) -> Iterator[ast.Ast]:
-    if len(children) == 2 and children[0].condition is not None:
-        yield ast.Provided(children[0].condition, children[1].part, NOWHERE)
+    guards = [child.condition for child in children[:-1]]
+    guarded: ast.Ast = children[-1].part if children else ast.Nothing(NOWHERE)
+    for condition in reversed(guards):
+        if condition is None:
+            return
+        guarded = ast.Provided(condition, guarded, NOWHERE)
+    if guards:
+        yield guarded
 
 
 def propose_held(node: Node, children: tuple[Candidate, ...], checked: Checked) -> Iterator[ast.Ast]:

@@ -343,9 +343,12 @@ def _first_line(said: ast.Ast) -> ast.Ast:
 def _find_asked(tree: Tree) -> Iterator[str]:
     """Yield the leaves that stand where a condition does and have the name of one: `IsDoorOpen`."""
     for node in tree.walk():
-        first = node.children[0] if node.children and node.id in _ASKING else None
-        if first is not None and not first.children and first.id not in CATALOGUE and _QUESTION.match(first.id):
-            yield first.id
+        if node.id not in _ASKING:
+            continue
+        guards = node.children[: max(len(node.children) - 1, 1) if CATALOGUE[node.id].goes_on else 1]
+        for child in guards:
+            if not child.children and child.id not in CATALOGUE and _QUESTION.match(child.id):
+                yield child.id
 
 
 def _outputs(tree: Tree) -> dict[str, set[str]]:

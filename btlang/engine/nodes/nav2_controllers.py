@@ -1,5 +1,5 @@
-"""Decorators of Nav2 that pass on a goal, or tick their child when the goal, the place or the speed asks for it
-(nav2_behavior_tree/plugins/decorator).
+"""Decorators of Nav2 that pass on a goal, or tick their child when the goal, the path, the place or the speed asks for
+it (nav2_behavior_tree/plugins/decorator).
 
 Differences: the GoalUpdater has no topics, so its goals come from the blackboard alone. Pose and speed are those of the
 robot, not of transforms and odometry, so the frames are not used. Ports under a `{key}` are read at every tick.
@@ -7,7 +7,8 @@ robot, not of transforms and odometry, so the frames are not used. Ports under a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import json
+from collections.abc import Callable, Mapping, Sequence
 from math import dist
 
 from btlang.engine.instance import NodeInstance, blackboard_key
@@ -18,9 +19,11 @@ from btlang.engine.status import FAILURE, RUNNING, SUCCESS
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any, Protocol
+    from typing import Any, Protocol, TypeAlias
 
     from btlang.engine.instance import Compiled, EngineState
+
+    Point: TypeAlias = tuple[float, float]
 
     class Trigger(Protocol):
         """When a decorator ticks its child again. The methods raise ActionFailed for what can't be known."""
@@ -72,6 +75,70 @@ def speed_controller(instance: NodeInstance, children: Sequence[Compiled]) -> Co
     robot drives (speed_controller.cpp).
     """
     return _on_demand(instance, children, SpeedTrigger(instance))
+
+
+def path_longer_on_approach(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
+    """Tick its child while the path to the same goal is `length_factor` times as long as before, which was shorter than
+    `prox_len` metres; SUCCESS otherwise (path_longer_on_approach.cpp).
+
+    The path before is that of the last tick without the child, or of the child's end; no halt makes it forgotten. A
+    child that is RUNNING when the path is no longer that long is halted; there it keeps running. Only the positions of
+    goals are compared.
+    """
+    [(child, halt)] = children
+    path, near, factor = (
+        _goal_entry(instance, "path"),
+        rate_port(instance, "prox_len"),
+        rate_port(instance, "length_factor"),
+    )
+    before: list[Point] = []
+
+    def tick() -> int:
+        nonlocal before
+        try:
+            now, most = _points(path()), factor() * _length(before)
+            is_longer = (
+                bool(now and before) and now[-1] == before[-1] and _length(before) < near() and _length(now) > most
+            )
+        except ActionFailed as problem:
+            halt(False)
+            return instance.fail(str(problem))
+        if is_longer:
+            status = child()
+            if status in (SUCCESS, FAILURE):
+                before = now
+            return status
+        halt(False)
+        before = now
+        return SUCCESS
+
+    return tick, halt
+
+
+def _points(path: Any) -> list[Point]:
+    """Return the points of a path: a message with poses, a list of poses or of points [x, y], or JSON; [] for None.
+
+    Raises ActionFailed.
+    """
+    try:
+        found = json.loads(path.removeprefix("json:")) if isinstance(path, str) else path
+        return [_point(_part(_part(pose, "pose"), "position")) for pose in _part(found, "poses") or ()]
+    except (ValueError, TypeError, LookupError, AttributeError, RecursionError):
+        raise ActionFailed(f"path must be a path, such as json:[[0, 0], [1, 2]], not {str(path)[:80]!r}") from None
+
+
+def _part(whole: Any, name: str) -> Any:
+    """Return what a message or its JSON has by a name, else the whole."""
+    return whole.get(name, whole) if isinstance(whole, Mapping) else getattr(whole, name, whole)
+
+
+def _point(position: Any) -> Point:
+    x, y = position[:2] if isinstance(position, Sequence) else (_part(position, axis) for axis in "xy")
+    return float(x), float(y)
+
+
+def _length(points: Sequence[Point]) -> float:
+    return sum(map(dist, points, points[1:]))
 
 
 def _on_demand(instance: NodeInstance, children: Sequence[Compiled], trigger: Trigger) -> Compiled:

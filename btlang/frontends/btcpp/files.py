@@ -26,7 +26,7 @@ _PACKAGE = re.compile(r"<name>\s*([\w-]+)\s*</name>")
 _ROS_FOLDERS = "AMENT_PREFIX_PATH"  # where ROS 2 has its packages
 
 
-_NOT_INCLUDED = "BT128"
+NOT_INCLUDED = "BT128"
 
 
 class XmlFiles:
@@ -237,7 +237,7 @@ class XmlFiles:
         return found[0] if len(found) == 1 else ""
 
     def _not_included(self, span: Span, *, path: str, reason: str) -> None:
-        self.problems.append(diagnostic(_NOT_INCLUDED, span, path=path, reason=reason))
+        self.problems.append(diagnostic(NOT_INCLUDED, span, path=path, reason=reason))
 
 
 def _split_installed(path: str, package: str) -> tuple[str, list[str]]:
@@ -269,7 +269,7 @@ def read_files(sources: Sequence[Source], *, follows_includes: bool = False) -> 
     read = XmlFiles(sources, follows_includes=follows_includes)
     for source in sources:
         read.add(source)
-    read.problems = [problem for problem in read.problems if problem.code != _NOT_INCLUDED]
+    read.problems = [problem for problem in read.problems if problem.code != NOT_INCLUDED]
     read.problems += [problem for file in read.files for problem in repeated(file.heads)]
     if not read.problems:
         read.read_trees(read.models)

@@ -212,6 +212,9 @@ class _UrdfReader:
             speed = _SLIDING_SPEED if slides else _SPEED
             pace = f"{speed:g} m/s" if slides else f"{speed * unit:.0f} degrees per second"
             self._notes.append(f'the joint "{name}" has no top speed; {pace} is a guess')
+        mimic = joint.first("mimic")
+        if mimic is not None:
+            self._notes.append(f'the joint "{name}" moves by itself here, and not with "{file.name(mimic, "joint")}"')
         axis = joint.first("axis")
         way = turned @ np.array(file.vector(axis, "xyz", (1.0, 0.0, 0.0)) if axis is not None else (1.0, 0.0, 0.0))
         if np.linalg.norm(way) < _SAME:

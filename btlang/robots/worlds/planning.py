@@ -5,23 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from heapq import heappop, heappush
 from itertools import pairwise
-from math import ceil, hypot, sqrt
+from math import ceil, hypot
 from random import Random
 
 import numpy as np
 import numpy.typing as npt
 
-from btlang.robots.geometry import Point, Segment, edges
-from btlang.robots.robot import RobotError
+from btlang.robots.geometry import Point
+from btlang.robots.worlds.lanes import LaneMap
 from btlang.robots.worlds.obstacles import Disc, Obstacles
+from btlang.robots.worlds.planning_grid import Array, ClearanceGrid
 from btlang.robots.worlds.world import World
 from btlang.robots.zones import Zones
 
-Array = npt.NDArray[np.float64]
-Bools = npt.NDArray[np.bool_]
-
-_MARGIN = 1.0
-_MOST_AREA = 40_000  # square metres: the grid of a planner takes 250 MB
 CELL = 0.1
 _NEEDED, _COMFORTABLE = 0.04, 0.2  # metres beside the robot
 _USUAL_SPEED = 0.5  # metres a second: how much a slow zone costs
@@ -32,120 +28,6 @@ _ROOM = 0.05  # metres beside the widest person
 _MOST_GOALS = 200
 _TIGHT = 3
 _SEARCH = 2.0  # metres to the nearest free cell
-
-
-class ClearanceGrid:
-    """Square cells of `size` metres. Raises RobotError if the world is too large.
-
-    `xs` and `ys` are their centres, a row of the arrays has one y. `steps` lead from a cell to its neighbours: what to
-    add to its number, and the length in cells.
-    """
-
-    def __init__(self, world: World, size: float) -> None:
-        points = [(x, y) for ax, ay, bx, by in world.segments() for x, y in ((ax, ay), (bx, by))]
-        points += [(world.start.x, world.start.y), *((place.x, place.y) for place in world.places)]
-        points += [(thing.x, thing.y) for thing in (*world.objects, *world.people)]
-        points += [(stop.x, stop.y) for person in world.people for stop in person.walks]
-        low_x, high_x = min(p[0] for p in points) - _MARGIN, max(p[0] for p in points) + _MARGIN
-        low_y, high_y = min(p[1] for p in points) - _MARGIN, max(p[1] for p in points) + _MARGIN
-        if (high_x - low_x) * (high_y - low_y) > _MOST_AREA:
-            extent = f"{high_x - low_x:.0f} m by {high_y - low_y:.0f} m"
-            most = f"at most {_MOST_AREA:,} square metres are possible"
-            raise RobotError(f"the world is too large to plan a way: {extent}, and {most}")
-        self.size, self.origin = size, (low_x, low_y)
-        self.columns, self.rows = ceil((high_x - low_x) / size), ceil((high_y - low_y) / size)
-        self.steps = [(row * self.columns + column, sqrt(abs(row) + abs(column)))
-                      for row in (-1, 0, 1) for column in (-1, 0, 1) if row or column]  # fmt: skip
-        self.xs, self.ys = np.meshgrid(
-            low_x + size * (np.arange(self.columns) + 0.5), low_y + size * (np.arange(self.rows) + 0.5)
-        )
-
-    def clearance(self, obstacles: Obstacles, within: float) -> Array:
-        """Return the metres from each cell to the nearest wall, closed door or box, 0 inside a box.
-
-        A cell that is farther than `within` from all of them may have any greater number.
-        """
-        nearest2 = np.full(self.xs.shape, np.inf)
-        for segment in obstacles.segments:  # maps have thousands, so only the cells around each are looked at
-            window = self._window(segment, within)
-            near = nearest2[window]
-            np.minimum(near, self._squared(segment, window), out=near)
-        for box in obstacles.boxes:
-            inside = (np.abs(self.xs - box.x) <= box.width / 2) & (np.abs(self.ys - box.y) <= box.height / 2)
-            nearest2[inside] = 0.0
-        clearance: Array = np.sqrt(nearest2)
-        return clearance
-
-    def to_polygon(self, points: Sequence[Point]) -> Array:
-        """Return the metres from each cell to a polygon, 0 inside."""
-        distances = self._to_border(points)
-        distances[self._inside(points)] = 0.0
-        return distances
-
-    def depth(self, points: Sequence[Point]) -> Array:
-        """Return the metres from each cell in a polygon to its border, 0 outside."""
-        distances = self._to_border(points)
-        distances[~self._inside(points)] = 0.0
-        return distances
-
-    def _to_border(self, points: Sequence[Point]) -> Array:
-        nearest2 = np.full(self.xs.shape, np.inf)
-        for start, end in edges(points):
-            nearest2 = np.minimum(nearest2, self._squared((*start, *end)))
-        distances: Array = np.sqrt(nearest2)
-        return distances
-
-    def cell_of(self, point: Point) -> int:
-        """Return the cell of a point; the nearest one for a point outside the grid."""
-        column = int((point[0] - self.origin[0]) / self.size)
-        row = int((point[1] - self.origin[1]) / self.size)
-        return min(max(row, 0), self.rows - 1) * self.columns + min(max(column, 0), self.columns - 1)
-
-    def centre(self, cell: int) -> Point:
-        """Return the centre of a cell."""
-        row, column = divmod(cell, self.columns)
-        return self.origin[0] + self.size * (column + 0.5), self.origin[1] + self.size * (row + 0.5)
-
-    def nearest_free(self, point: Point, blocked: Bools, within: float) -> int | None:
-        """Return the cell nearest to a point that isn't blocked, None if there is none within so many metres."""
-        distances = np.hypot(self.xs - point[0], self.ys - point[1]).ravel()
-        distances[blocked] = np.inf
-        cell = int(distances.argmin())
-        return cell if distances[cell] <= within else None
-
-    def is_clear(self, clearance: Array, a: Point, b: Point, room: float) -> bool:
-        """Return whether all cells on a straight line have so many metres of room."""
-        count = ceil(hypot(b[0] - a[0], b[1] - a[1]) / (self.size / 2)) + 1
-        columns = (np.linspace(a[0], b[0], count) - self.origin[0]) / self.size
-        rows = (np.linspace(a[1], b[1], count) - self.origin[1]) / self.size
-        return bool((clearance[rows.astype(int), columns.astype(int)] >= room).all())
-
-    def _window(self, segment: Segment, within: float) -> tuple[slice, slice]:
-        """Return the rows and the columns of the cells that may be so near to a segment."""
-        ax, ay, bx, by = segment
-        spans = zip((min(ay, by), min(ax, bx)), (max(ay, by), max(ax, bx)), self.origin[::-1], strict=True)
-        rows, columns = (
-            slice(max(int((low - within - start) / self.size), 0), max(int((high + within - start) / self.size) + 1, 0))
-            for low, high, start in spans
-        )
-        return rows, columns
-
-    def _squared(self, segment: Segment, window: tuple[slice, slice] = (slice(None), slice(None))) -> Array:
-        """Return the squared metres from each cell, in a window, to a segment."""
-        ax, ay, bx, by = segment
-        dx, dy = bx - ax, by - ay
-        xs, ys = self.xs[window], self.ys[window]
-        t = np.clip(((xs - ax) * dx + (ys - ay) * dy) / max(dx**2 + dy**2, 1e-12), 0.0, 1.0)
-        squared: Array = (xs - ax - t * dx) ** 2 + (ys - ay - t * dy) ** 2
-        return squared
-
-    def _inside(self, points: Sequence[Point]) -> Bools:
-        inside = np.zeros(self.xs.shape, dtype=bool)
-        for (ax, ay), (bx, by) in edges(points):
-            if ay != by:
-                crosses = ((ay > self.ys) != (by > self.ys)) & (self.xs < ax + (self.ys - ay) * (bx - ax) / (by - ay))
-                inside ^= crosses
-        return inside
 
 
 def smooth(points: list[Point], is_clear: Callable[[Point, Point], bool]) -> list[Point]:
@@ -163,11 +45,12 @@ def smooth(points: list[Point], is_clear: Callable[[Point, Point], bool]) -> lis
 class PathPlanner:
     """A planner for a round robot among standing obstacles, around zones to keep out of.
 
-    Slow zones cost as much as they slow it. Raises RobotError if the world is too large.
+    Slow zones cost as much as they slow it, and it keeps to lanes. Raises RobotError if the world is too large.
     """
 
     def __init__(self, world: World, obstacles: Obstacles, radius: float, zones: Zones | None = None) -> None:
         self._grid = grid = ClearanceGrid(world, CELL)
+        self._lanes = LaneMap(grid, world.lanes)
         self._obstacles = obstacles
         self._zones = zones or Zones(world.zones)
         self._radius, self._needed, self._comfort = radius, radius + _NEEDED, radius + _COMFORTABLE
@@ -177,7 +60,7 @@ class PathPlanner:
         self._planned: object = None
         self._clearance: Array = np.empty(0)
         self._blocked: npt.NDArray[np.bool_] = np.empty(0, dtype=bool)
-        self._costs: list[float] = []
+        self._steps: list[tuple[int, float, list[float]]] = []
 
     def path(self, start: Point, goal: Point, reach: float = 0.0, around: Sequence[Disc] = ()) -> list[Point] | None:
         """Return points at most 0.1 m apart to the goal, or to a spot within reach of it without a wall between; None:
@@ -225,12 +108,12 @@ class PathPlanner:
         costs[0, :] = costs[-1, :] = costs[:, 0] = costs[:, -1] = 0.0  # the rim is blocked, so neighbours always exist
         self._clearance = clearance
         self._blocked = costs.ravel() == 0.0
-        self._costs = costs.ravel().tolist()
+        self._steps = [(*step, each) for step, each in zip(grid.steps, self._lanes.by_step(costs), strict=True)]
         self._planned = planned
 
     def _search(self, first: int, goal: Point, reach: float) -> list[int] | None:
         """Search with A*: cells near obstacles cost up to four times as much, blocked ones have cost 0."""
-        costs, columns, steps = self._costs, self._columns, self._grid.steps
+        columns, steps = self._columns, self._steps
         goal_x, goal_y = (goal[0] - self._origin[0]) / CELL - 0.5, (goal[1] - self._origin[1]) / CELL - 0.5
         near = reach / CELL
         best = {first: 0.0}
@@ -247,7 +130,7 @@ class PathPlanner:
             if gone <= near and not (reach > CELL and self._obstacles.wall_between(self._grid.centre(cell), goal)):
                 return _walk_back(came, cell)
             here = best[cell]
-            for offset, length in steps:
+            for offset, length, costs in steps:
                 other = cell + offset
                 cost = costs[other]
                 if not cost or other in closed:
@@ -261,9 +144,10 @@ class PathPlanner:
         return None
 
     def _smooth(self, points: list[Point]) -> list[Point]:
-        """Pull the path straight where that leaves comfortable room, then space its points evenly."""
-        room = self._comfort - CELL / 2
-        return _evenly(smooth(points, lambda a, b: self._grid.is_clear(self._clearance, a, b, room)))
+        """Pull the path straight where that leaves comfortable room and no lane, then space its points evenly."""
+        room, clearance = self._comfort - CELL / 2, self._clearance
+        is_clear = self._grid.is_clear
+        return _evenly(smooth(points, lambda a, b: self._lanes.is_uniform(a, b) and is_clear(clearance, a, b, room)))
 
 
 def _walk_back(came: dict[int, int], cell: int) -> list[int]:

@@ -233,6 +233,14 @@ class Door(Record):
         return (self.start[0] + self.end[0]) / 2, (self.start[1] + self.end[1]) / 2
 
 
+class Lane(Record):
+    """A straight piece of the ways that a robot keeps to, `one_way` from its start to its end."""
+
+    start: Point
+    end: Point
+    one_way: bool = False
+
+
 class FurnitureBox(Record):
     """A piece of furniture: a rectangle parallel to the axes, given by its centre and size."""
 
@@ -332,6 +340,7 @@ class World(Record):
     docks: tuple[Place, ...] = ()
     ordinals: str = "way"
     home: str = ""
+    lanes: tuple[Lane, ...] = ()
 
     @property
     def all_docks(self) -> tuple[Place, ...]:
@@ -380,7 +389,7 @@ class World(Record):
         """Return what is drawn of it, as in a world file."""
         found: dict[str, Any] = {
             kind: [each.as_dict(_UNDRAWN) for each in getattr(self, kind)]
-            for kind in ("boxes", "places", "objects", "people", "zones", "doors")
+            for kind in ("boxes", "places", "objects", "people", "zones", "doors", "lanes")
         }
         for person, shown in zip(self.people, found["people"], strict=True):
             shown["walks"] = [(stop.x, stop.y) for stop in person.walks]

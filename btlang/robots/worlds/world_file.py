@@ -17,6 +17,7 @@ from btlang.robots.worlds.world_tables import (
     read_corners,
     read_crowd,
     read_door,
+    read_lane,
     read_likeness,
     read_object,
     read_person,
@@ -103,6 +104,7 @@ def _world(top: Table, radius: float | None, bounded: bool = False) -> World:
     seed = problems.part(lambda: int(top.number("seed", low=0.0)) if top.has("seed") else None, None)
     ordinals = problems.part(lambda: top.choice("ordinals", ("way", "name"), "way"), "way")
     home = problems.part(lambda: top.choice("home", names, ""), "")
+    lanes = _made(problems.rows(top, "lanes", read_lane))
     problems.part(lambda: top.finish(None), None)
     objects, people, zones, doors = (_made(rows[key]) for key in ("objects", "people", "zones", "doors"))
     zones += tuple(each[1] for each in with_areas if each and each[1] is not None)
@@ -110,6 +112,7 @@ def _world(top: Table, radius: float | None, bounded: bool = False) -> World:
     world = World(
         start or Pose(0.0, 0.0), battery, _made(pieces), boxes, places, objects, people, faults, dock, clock, zones,
         doors, seed, weekday, _made(rows["docks"]), ordinals, home,
+        lanes,
     )  # fmt: skip
     problems.found += _names_given_twice(rows)
     problems.found += _without_room(world, rows, radius)

@@ -11,6 +11,7 @@ from btlang.robots.worlds.world import (
     PERSON_RADIUS,
     SLOW,
     Door,
+    Lane,
     Person,
     PersonUtterance,
     Place,
@@ -117,6 +118,11 @@ def read_door(table: Table) -> Door:
     if start == end:
         raise table.problem("to", "a door needs two different points")
     return table.finish(Door(name, start, end, table.flag("open", True)))
+
+
+def read_lane(table: Table) -> Lane:
+    """Read an entry of `lanes`. Raises Problem."""
+    return table.finish(Lane(_point(table, "from"), _point(table, "to"), table.flag("one_way", False)))
 
 
 def _optional(table: Table, key: str) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from btlang.robots.worlds.world import Door, Person, Stop, Visits, World, WorldFault, WorldObject
+from btlang.robots.worlds.world import Door, Lane, Person, Stop, Visits, World, WorldFault, WorldObject
 from btlang.robots.worlds.world_tables import ANYWHERE
 from btlang.support.record import Record
 from btlang.text.time_of_day import USUAL_START, WEEKDAYS, shown
@@ -17,11 +17,12 @@ if TYPE_CHECKING:
 _KEYS: dict[type, dict[str, str]] = {
     WorldFault: {"start": "from", "end": "until"},
     Door: {"start": "from", "end": "to"},
+    Lane: {"start": "from", "end": "to"},
     WorldObject: {"having": "has"},
 }
 """The keys of fields whose key in the file differs."""
 _MONDAY = 5  # of January 2026
-_LISTS = ("boxes", "docks", "places", "objects", "people", "zones", "doors", "faults")
+_LISTS = ("boxes", "docks", "places", "objects", "people", "zones", "doors", "lanes", "faults")
 
 
 def as_data(world: World) -> dict[str, Any]:

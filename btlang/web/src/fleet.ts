@@ -20,6 +20,7 @@ export interface WorldMap {
   people: { name: string; x: number; y: number; radius: number; walks?: Point[] }[];
   zones?: Zone[];
   doors?: Door[];
+  lanes?: Lane[];
   dock: { x: number; y: number } | null;
 }
 
@@ -28,6 +29,13 @@ export interface Zone {
   name: string;
   kind: string;
   points: Point[];
+}
+
+/** A straight piece of the ways that the robot keeps to. */
+export interface Lane {
+  start: Point;
+  end: Point;
+  one_way: boolean;
 }
 
 export interface Door {

@@ -204,3 +204,8 @@ def test_limits_that_say_nothing(tmp_path: Path) -> None:
     assert read_urdf(Source(endless, "arm.urdf")).joints[0].high == 180.0
     rigid = read_urdf(Source(ARM.replace(LIMIT, '<limit effort="1" velocity="2"/>'), "arm.urdf"))
     assert (rigid.joints, rigid.notes[0]) == ((), 'the joint "shoulder_lift" has no room to move, so it is rigid')
+
+
+def test_a_joint_that_another_one_should_move_is_named() -> None:
+    follows = read_urdf(Source(ARM.replace(LIMIT, f'{LIMIT}<mimic joint="elbow" multiplier="-1"/>'), "arm.urdf"))
+    assert follows.notes[0] == 'the joint "shoulder_lift" moves by itself here, and not with "elbow"'

@@ -18,7 +18,7 @@ from btlang.tree.catalogue import SEQUENCE, SUBTREE
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.node_forms import NodeForm, node_details, node_forms, node_forms_by_start, opposite_script
-from btlang.vocabulary.node_words import ends_id, is_port, read_id, role_end, subtree_named
+from btlang.vocabulary.node_words import ends_id, is_port, is_tree_name, read_id, role_end, subtree_named
 from btlang.vocabulary.trie import TrieNode
 
 _MOST_WORDS = 12  # of the name of a port
@@ -63,7 +63,7 @@ def read_node(
             return None
         node_id, at, way = found
         is_named = meaning.role == "do" and way != "node"
-        if is_named and " " in node_id and node_id not in subtrees:  # no tag of XML has such a name
+        if is_named and not way and is_tree_name(node_id, vocabulary) and node_id not in subtrees:
             call, end = _details(reader, at, SUBTREE, {"ID": node_id})
             return (call, end) if text.words[end] != ":" else _details(reader, at, node_id, ports)
         subtree = subtree_named(node_id, subtrees, in_words=way == "words") if is_named else ""

@@ -3,7 +3,7 @@ import { h, oncePerFrame, set } from "../dom";
 import type { Point, Robot } from "../fleet";
 import { t } from "../texts";
 import { Pen } from "./pen";
-import { drawDoors, drawRoutes, drawZones, nameDoors, nameZones, objectsOf, peopleOf, zonesOf } from "./surroundings";
+import { drawDoors, drawLanes, drawRoutes, drawZones, nameDoors, nameZones, objectsOf, peopleOf, zonesOf } from "./surroundings";
 
 const EDGE = 0.6; // metres around what is drawn
 const ROBOT = 0.28; // metres: robots don't say how large they are
@@ -103,6 +103,7 @@ function drawMap(pen: Pen, robot: Robot, marked: readonly string[]): void {
     context.fillRect(x, y, box.width * scale, box.height * scale);
   }
   for (const wall of map?.walls ?? []) pen.line(wall, colour("wall"), 2.5);
+  drawLanes(pen, map?.lanes ?? []);
   drawDoors(pen, map?.doors ?? []);
   drawRoutes(pen, robot);
   for (const [index, range] of scan?.ranges.entries() ?? []) {

@@ -1,7 +1,8 @@
 // What is around the robot on its map: zones, doors, the routes of people, and who is where.
-import type { Door, Point, Robot, Zone } from "../fleet";
+import type { Door, Lane, Point, Robot, Zone } from "../fleet";
 import type { Pen } from "./pen";
 
+const ARROW = 0.12; // metres
 const GUEST = 0.25; // metres of the radius of somebody whom the world doesn't name
 
 /** Somebody or something at a place; `seen` is whether the robot sees it, or knows it by its world. */
@@ -54,6 +55,19 @@ export function nameZones(pen: Pen, zones: Zone[]): void {
   for (const { name, kind, points } of zones) {
     const middle: Point = [0, 1].map((axis) => points.reduce((sum, point) => sum + point[axis]!, 0) / points.length) as Point;
     pen.name(name, middle, pen.colour(kind === "keep out" ? "failure" : kind === "slow" ? "skipped" : "muted"), -7);
+  }
+}
+
+/** Thin lines, with an arrow in the middle of those that lead one way. */
+export function drawLanes(pen: Pen, lanes: Lane[]): void {
+  const paint = pen.colour("muted");
+  for (const { start, end, one_way } of lanes) {
+    pen.line([start, end], paint, 0.5);
+    const length = Math.hypot(end[0] - start[0], end[1] - start[1]);
+    if (!one_way || !length) continue;
+    const [along, up] = [(end[0] - start[0]) / length, (end[1] - start[1]) / length].map((part) => part * ARROW) as Point;
+    const tip: Point = [(start[0] + end[0]) / 2, (start[1] + end[1]) / 2];
+    pen.line([[tip[0] - along - up, tip[1] - up + along], tip, [tip[0] - along + up, tip[1] - up - along]], paint, 1);
   }
 }
 
