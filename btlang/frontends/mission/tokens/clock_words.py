@@ -22,6 +22,7 @@ from btlang.frontends.mission.token import (
     run_start,
     statement_start,
 )
+from btlang.frontends.mission.tokens.ended_rules import comes
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.frontends.mission.tokens.settling import STAYS, first_word
 from btlang.frontends.mission.tokens.silent_words import BEGINS
@@ -85,17 +86,24 @@ class ClockWords(SentenceReader):
         return (times, last) if times and is_whole else ([], at)
 
     def until_both(self, match: Match, at: int) -> int:
-        """`wait until 4 pm and nobody is in the lab`: until it is later than that, and the other is so, too."""
-        text, entry = self._text, self._vocabulary.entry(DAYTIME)
-        joins = text.words[match.last] in self._vocabulary.roles["and"] and not match.values[0].more
-        behind = self._phrase(match.last + 1) if joins else None
+        """`wait until 4 pm and nobody is in the lab`: until it is later than that, and the other is so, too.
+
+        `wait until 4 pm or nobody is in the lab` waits for the next such time.
+        """
+        text, entry, roles = self._text, self._vocabulary.entry(DAYTIME), self._vocabulary.roles
+        is_either = text.words[match.last] in roles["or"]
+        joins = (is_either or text.words[match.last] in roles["and"]) and not match.values[0].more
+        again = joins and is_either and text.words[match.last + 1] in self._vocabulary.firsts["until"]
+        behind = self._phrase(match.last + 1 + again) if joins else None
         if entry is None or behind is None or behind.meaning.role not in ("condition", "negated"):
             return 0
         start, end = text.starts[at], text.ends[match.last - 1]
         kind = "wait_until" if match.meaning.role == "wait_time" else "until"
-        asked = Called(entry, (("at_least", match.values[0].text),))
+        time = match.values[0].text
+        asked = comes(time, entry) if is_either else Called(entry, (("at_least", time),))
         self._tokens += [Token(kind, start, start), Token("condition", start, end, asked)]
-        return match.last
+        self._tokens += [Token("or", start, end)] if again else []
+        return match.last + 2 if again else match.last
 
     def _not_then(self, at: int) -> int:
         """`every hour, go to the lab, but not between 10 pm and 7 am`: unless it is then."""

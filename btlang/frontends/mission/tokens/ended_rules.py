@@ -78,7 +78,7 @@ def with_ends(tokens: list[Token], vocabulary: Lexicon, span: Callable[[int, int
         elif constraint is not None and constraint.kind == "keep in" and until.kind in WAITING:
             _wait(tokens, at, vocabulary)
         elif is_timed and opening is not None and clock is not None and (begins or _is_headed(tokens, at)):
-            then = Token("condition", until.start, until.end, _comes(str(until.value), clock))
+            then = Token("condition", until.start, until.end, comes(str(until.value), clock))
             tokens[at + 1 : at + 2] = [Token("until", until.start, until.start), then]
             _open_again(tokens, at, opening)
         elif constraint is not None and until.kind != "until":
@@ -104,7 +104,7 @@ def with_ends(tokens: list[Token], vocabulary: Lexicon, span: Callable[[int, int
     return problems
 
 
-def _comes(time: str, clock: Entry) -> Called:
+def comes(time: str, clock: Entry) -> Called:
     """The condition that it has just become a time of day: `after 6 am` would hold in the evening before."""
     over = shown(seconds_of(time) + _MOMENT)
     return Called(clock, (("at_least", time), ("at_most", over)))
