@@ -165,6 +165,8 @@ class Lexicon:
         """The words for all days, from which some may be left out: `every day`."""
         self.entering = tree_of((words, True) for words in self.asking["entering"])
         """The words behind which a place is left out: `go in`."""
+        self.outside = tree_of((words, True) for words in self.asking["outside"])
+        """The words before a room at whose door something is done."""
         self.until_none = tree_of((words, True) for words in self.asking["until_none"])
         """The words that say nothing behind all things of a kind: `until none are left`."""
         self.and_back = tree_of((words, True) for words in self.asking["and_back"])

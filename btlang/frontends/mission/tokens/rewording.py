@@ -13,7 +13,7 @@ from btlang.text.words import Words
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.pattern import ways
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.value_type import OBJECT, PERSON, PLACE, TEXT, WORLD, ZONE
+from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE, TEXT, WORLD, ZONE
 from btlang.vocabulary.word_tree import find
 
 _MOST_ADJECTIVES = 3
@@ -24,6 +24,7 @@ _LONGEST_TRY = 6  # words
 def reworded(text: Words, vocabulary: Lexicon) -> list[Diagnostic]:
     """Change the words of a text to those that are read. Returns notes about what is left out."""
     _say_plainly(text, vocabulary)
+    _say_at_door(text, vocabulary)
     _drop_words_of_turns(text, vocabulary)
     _drop_still(text, vocabulary)
     _drop_left(text, vocabulary)
@@ -58,6 +59,26 @@ def _say_plainly(text: Words, vocabulary: Lexicon) -> None:
             text.drop(at + 1, found[1])
             text.replace(at, found[0].split())
         at += 1
+
+
+def _say_at_door(text: Words, vocabulary: Lexicon) -> None:
+    """Say the one door that is called like a room: `wait outside the lab` as `wait at the lab door`."""
+    words, rooms = text.words, vocabulary.values.names_tree(PLACE)
+    if text.distinct.isdisjoint(vocabulary.outside):
+        return  # as nearly always
+    stays, moves = vocabulary.opening_words("StayInZone", "AvoidZone"), vocabulary.opening_words("Take", "PutDown")
+    for at in reversed([at for at, word in enumerate(words) if word in vocabulary.outside]):
+        found = find(vocabulary.outside, words, at)
+        room = find(rooms, words, found[1]) if found is not None else None
+        is_verb = at > 0 and (words[at - 1] in stays or words[at - 1] in vocabulary.forms_of_be)
+        if found is None or room is None or is_verb or not moves.isdisjoint(words[text.earlier(at)[1] : at]):
+            continue  # `stay outside the lab`, `put the sign outside the lab`
+        said = set(words[found[1] : room[1]])
+        doors = [vocabulary.orthography.words(name) for name in vocabulary.values.listed(DOOR)]
+        doors = [door for door in doors if said.issubset(door) and len(door) == len(said) + 1]
+        if len(doors) == 1:
+            text.drop(at + 1, room[1])
+            text.replace(at, [vocabulary.asking["located"][-1], *doors[0]])
 
 
 def _drop_words_of_turns(text: Words, vocabulary: Lexicon) -> None:
