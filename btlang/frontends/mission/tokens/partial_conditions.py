@@ -155,7 +155,7 @@ class PartialConditions(PartialCommands):
         if PERSON in kinds and isinstance(before.value, Called):
             if before.value.entry.given(PERSON, before.value.arguments) != [self._context.latest.get(PERSON)]:
                 return 0
-            tokens += [Token("not", text.starts[at], text.starts[at])] if be[text.words[verb]] else []
+            tokens += [Token("not", text.starts[verb], text.ends[verb])] if be[text.words[verb]] else []
             tokens.append(Token("condition", text.starts[at], text.ends[verb], before.value))
             return verb + 1
         asked = next((place for place in said if text.words[place] in be), None)

@@ -135,9 +135,12 @@ def _replace(tokens: list[Token], at: int, vocabulary: Lexicon, source: Source) 
     if form is None or last <= 0 or any(token.kind not in _PLAIN for token in tokens[begin:last]):
         return False
     command, done = tokens[last - 1], last - 1
+    _say_where([command], form[0], vocabulary, source)
     if not _is_state(form[0]):
         return False
-    is_joined = begin < done and tokens[done - 1].kind == "and"
+    moved = _moved(command)
+    is_other = not moved or not any(moved & _moved(token) for token in form[1])
+    is_joined = begin < done and tokens[done - 1].kind == "and" and is_other
     if command.kind != "command" or is_joined or not _are_alike(command, form[1][0]):
         return False
     tokens[done:end] = [
@@ -168,6 +171,8 @@ def _either(
     here = before[0].start
     kind = "unless" if form.kind == "if" else "if"
     _say_where(before, condition, vocabulary, source)
+    for token in done:
+        token.role = "" if token.role == INSTEAD else token.role
     comma, otherwise = Token("comma", here, here), Token("otherwise", form.start, form.end)
     return [Token(kind, here, here), *condition, comma, *before, Token("stop", here, here), otherwise, *done]
 
