@@ -213,6 +213,8 @@ def _drop_again(text: Words, vocabulary: Lexicon) -> None:
 def _drop_back(text: Words, vocabulary: Lexicon) -> None:
     """Leave out `back` before from whom something is taken: `take the book back from Bob`."""
     words, values = text.words, vocabulary.values
+    if text.distinct.isdisjoint(vocabulary.and_back):
+        return  # as nearly always
     sources = {phrase[0] for phrase in values.role_words.introducing.get("source", ())}
     for at in reversed([at for at in range(1, len(words) - 2) if words[at] in vocabulary.and_back]):
         person = find(values.names_tree(PERSON), words, at + 2)
