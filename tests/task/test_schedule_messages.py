@@ -59,7 +59,7 @@ REFUSED_RULES = (
     "every huor", "evry day at 9:00", "every 2 hours on Mondys", "every Mondai and Fridai at 9:00",
     "on the frist of every month at 9:00", "every day at", "every day at 9:00 and", "every day at 9:00 and 11",
     "every day at 9:00, 11", "every day at 9.30", "every day at 9 : 30", "every day at 25:00", "every day at 13 pm",
-    "every day at 9 a.m.", "every day at half past nine", "every other day at 9:00", "every other hour",
+    "every day at half past nine", "every other day at 9:00", "every other hour",
     "every second hour", "every second", "every third of an hour", "every 36 hours", "every -5 minutes",
     "every 0 minutes", "every 61.5 seconds", "every 5 metres", "every 1e9 hours", "every day at 9:00 every Monday",
     "every day at 9:00 on weekdays at 10:00", "every hour every 2 hours",
@@ -89,6 +89,10 @@ def test_refused_rules() -> None:
         assert {problem.code for problem in refused.value.diagnostics} == {"BT194"}
         told.append(str(refused.value))
     matches_golden("\n\n".join(told) + "\n", HERE / "refused_rules.out")
+
+
+def test_half_of_day_with_dots() -> None:
+    assert read_rule("every day at 9 a.m.", BERLIN) == read_rule("every day at 9 am", BERLIN)
 
 
 @pytest.mark.parametrize(
