@@ -52,13 +52,14 @@ def _say_plainly(text: Words, vocabulary: Lexicon) -> None:
     """Put plain words in the place of idioms: `it is past 10 am` as `it is after 10 am`."""
     if text.distinct.isdisjoint(vocabulary.idioms):
         return
-    at = 0
-    while at < len(text.words) - 1:
-        found = find(vocabulary.idioms, text.words, at) if text.words[at] in vocabulary.idioms else None
-        if found is not None:
-            text.drop(at + 1, found[1])
-            text.replace(at, found[0].split())
-        at += 1
+    said = list[tuple[int, int, str]]()
+    for at in [at for at, word in enumerate(text.words) if word in vocabulary.idioms]:
+        found = find(vocabulary.idioms, text.words, at)
+        if found is not None and (not said or at >= said[-1][1]):
+            said.append((at, found[1], found[0]))
+    for at, end, plain in reversed(said):
+        text.drop(at + 1, end)
+        text.replace(at, plain.split())
 
 
 def _say_at_door(text: Words, vocabulary: Lexicon) -> None:

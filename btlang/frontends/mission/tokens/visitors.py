@@ -95,10 +95,12 @@ class Visitors(SentenceReader):
 
     def in_each(self) -> None:
         """`go to the lab and the hall and greet everybody there`: in each of them."""
-        said, several = self._tokens[-1], choice_of(self._context.listed.get(PLACE, ""))
+        if PLACE not in self._context.listed:
+            return  # as nearly always
+        said, several = self._tokens[-1], choice_of(self._context.listed[PLACE])
         choices = map(choice_of, texts_of(said.value)) if several is not None and isinstance(said.value, Called) else ()
         if several is None or all(one is None or ("inside", f"{{{several.key}}}") not in one.parts for one in choices):
-            return  # as nearly always
+            return
         journey = self._journey(self._tokens[:-1])
         if journey is None or self._tokens[-2].kind != "and" or not self._calls.make_round(journey, several.text):
             words, joint = Span(self._text.source, said.start, said.end), self._vocabulary.word("each_in")
