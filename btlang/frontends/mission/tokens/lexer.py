@@ -82,6 +82,7 @@ class Lexer:
         self.tokens: list[Token] = []
         self._words = WordReader(self.text, self.names, self.context, self.tokens, self.problems, explain)
         self._lines()
+        self._words.finish()
         self.problems += with_repeats_apart(self.tokens, source)
         with_counted_answers(self.tokens, self.vocabulary)
         self.problems += with_replacements(self.tokens, self.vocabulary, source)

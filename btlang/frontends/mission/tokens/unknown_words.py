@@ -22,6 +22,10 @@ from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import OBJECT, PERSON, PLACE, WORLD
 from btlang.vocabulary.word_tree import find
 
+_MOST_TOLD = 5
+"""So many statements are explained before a text of which nothing is understood is taken for no mission."""
+_UNDERSTOOD = frozenset(("command", "condition", "name", "wait", "wait_time", "node"))
+
 
 class UnknownWords:
     """Those of one text, while its `tokens` are read. `verb_forms` are the words that may be forms of verbs."""
@@ -39,11 +43,39 @@ class UnknownWords:
     ) -> None:
         self._text, self._vocabulary, self._context, self._definitions = text, vocabulary, context, definitions
         self._partial, self._tokens, self._problems, self._verb_forms = partial, tokens, problems, verb_forms
+        self._told, self._untold = 0, list[tuple[int, int, Match | None]]()
         self.before_doing = {phrase.split()[0] for phrase in vocabulary.roles["without_entering"]}
         """The words before the forms of verbs that a constraint forbids."""
 
     def report(self, at: int, end: int, match: Match | None) -> None:
-        """Adds why words aren't understood to the problems, unless these tell it already."""
+        """Adds why words aren't understood to the problems, unless these tell it already.
+
+        Of a text of which nothing is understood so far only the first ones are told.
+        """
+        if self._told >= _MOST_TOLD and self._is_all_unknown():
+            self._untold.append((at, end, match))
+            return
+        self._told += 1
+        self._tell_rest()
+        self._tell(at, end, match)
+
+    def finish(self) -> None:
+        """Tell the rest at the end of a text, or one problem alone where nothing of it is understood."""
+        if self._untold and self._is_all_unknown():
+            del self._problems[1:]
+        else:
+            self._tell_rest()
+
+    def _is_all_unknown(self) -> bool:
+        """Whether nothing has been understood but words that join others."""
+        return not any(token.kind in _UNDERSTOOD for token in self._tokens)
+
+    def _tell_rest(self) -> None:
+        for at, end, match in self._untold:
+            self._tell(at, end, match)
+        self._untold.clear()
+
+    def _tell(self, at: int, end: int, match: Match | None) -> None:
         start, stop = self._text.starts[at], self._text.ends[end - 1]
         latest = self._problems[-1].span if self._problems else None
         if latest is not None and latest.source is self._text.source and latest.start <= start and stop <= latest.end:

@@ -131,6 +131,10 @@ class WordReader:
             else:
                 at = self._phrase(at, last)
 
+    def finish(self) -> None:
+        """Say what is left to say at the end of a text."""
+        self._unknown.finish()
+
     def end_statement(self) -> None:
         """Pronouns reach back to earlier statements, but not out of a definition or a standing rule."""
         self._calls.end_statement()
