@@ -61,6 +61,7 @@ def _put_into_time(tokens: list[Token], vocabulary: Lexicon) -> None:
         at, rules = end, list[Token]()
         while tokens[at : at + 1] and tokens[at].kind == "semi" and _meets_others(tokens[at + 1 :], vocabulary):
             last = statement_of(tokens, at + 1)[1]
+            tokens[at + 1].kind = "first_time" if tokens[at + 1].kind == "as_soon_as" else tokens[at + 1].kind
             rules += [*tokens[at + 1 : last], Token("newline", tokens[at].start, tokens[at].start)]
             at = last
         if rules:
@@ -71,7 +72,7 @@ def _put_into_time(tokens: list[Token], vocabulary: Lexicon) -> None:
 
 def _meets_others(statement: Sequence[Token], vocabulary: Lexicon) -> bool:
     """Whether a statement is a rule about somebody or something that the robot meets."""
-    if not statement or statement[0].kind not in RULES:
+    if not statement or statement[0].kind not in (*RULES, "as_soon_as"):
         return False
     asked = [token.value for token in statement[1 : _behind(statement)]]
     entries = [value.entry for value in asked if isinstance(value, Called | Listed)]

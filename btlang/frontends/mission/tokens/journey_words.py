@@ -214,6 +214,8 @@ class JourneyWords(SentenceReader):
             return journey.last
         joint = self._text.ends[journey.last - 1]
         self._tokens.append(Token("then", joint, joint))
+        if waiting.meaning.role == "wait_time" and (end := self.until_both(waiting, journey.last)):
+            return end
         if waiting.meaning.role == "wait_for":
             self._tokens.append(Token("wait_for", self._text.starts[journey.last], self._text.ends[waiting.last - 1]))
             return waiting.last
@@ -222,6 +224,10 @@ class JourneyWords(SentenceReader):
             return end
         self._partial.append(self.for_anybody(waiting), journey.last)
         return waiting.last
+
+    def until_both(self, match: Match, at: int) -> int:
+        """Where a time with a condition beside it ends, 0 for others; see ClockWords."""
+        raise NotImplementedError
 
     def _wait_for(self, at: int) -> int:
         """`wait for Bob`, `wait up to 5 min for Bob`: until he comes."""

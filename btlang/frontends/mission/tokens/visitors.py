@@ -194,11 +194,18 @@ def with_meetings(tokens: list[Token], vocabulary: Lexicon) -> None:
 def with_sightings(tokens: list[Token], vocabulary: Lexicon, source: Source) -> None:
     """Make `go to the lab and wave at anyone you see` a rule for the journey, which holds on the way and at its end.
 
-    Elsewhere, and at one place with `there`, it is done if somebody is in view then.
+    Elsewhere, and at one place with `there`, it is done if somebody is in view then. `wave at the first person you see`
+    waits for somebody.
     """
     seen = vocabulary.entry(_SEEN)
     for at in reversed(range(len(tokens)) if seen is not None else ()):
-        if seen is None or not _is_whoever(tokens[at]):
+        if seen is not None and _is_whoever(tokens[at], "1"):
+            token, start, end = tokens[at], tokens[at].start, tokens[at].end
+            awaited = [Token("wait_until", start, start), Token("condition", start, start, Called(seen, ()))]
+            opening, then, closing = Token("open", start, start), Token("then", start, start), Token("close", end, end)
+            tokens[at : at + 1] = [opening, *awaited, then, token, closing]
+            continue
+        if seen is None or not _is_whoever(tokens[at], "seen", ALL):
             continue  # as nearly always
         end = tokens[at + 1].start if at + 1 < len(tokens) else len(source.text)
         said = source.text[tokens[at].start : end].lower().replace(",", " ").replace(".", " ").split()
@@ -238,11 +245,11 @@ def _is_behind_journey(tokens: Sequence[Token], joint: int, at: int, behind: int
     return (is_last or goes_on) and is_plain and any(drives(token.value) for token in before)
 
 
-def _is_whoever(token: Token) -> bool:
-    """Whether a command is about whoever the robot sees: anyone, or everyone."""
+def _is_whoever(token: Token, *ways: str) -> bool:
+    """Whether a command is about whoever the robot sees, in one of some ways: anyone, everyone, or the first."""
     value = token.value
     if token.kind != "command" or not isinstance(value, Called) or not value.arguments:
         return False
     people = value.entry.given(PERSON, value.arguments)
     choice = choice_of(people[0]) if people else None
-    return choice is not None and dict(choice.parts) == {"seen_by": "robot"} and choice.how in ("seen", ALL)
+    return choice is not None and dict(choice.parts) == {"seen_by": "robot"} and choice.how in ways
