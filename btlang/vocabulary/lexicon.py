@@ -165,6 +165,8 @@ class Lexicon:
         """The words for all days, from which some may be left out: `every day`."""
         self.entering = tree_of((words, True) for words in self.asking["entering"])
         """The words behind which a place is left out: `go in`."""
+        self.at_once = tree_of((words, True) for words in self.asking["at_once"])
+        """The words for soon behind whom somebody tells something: `right away`."""
         self.outside = tree_of((words, True) for words in self.asking["outside"])
         """The words before a room at whose door something is done."""
         self.until_none = tree_of((words, True) for words in self.asking["until_none"])

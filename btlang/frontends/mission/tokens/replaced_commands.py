@@ -63,7 +63,8 @@ def _find_moved_again(tokens: Sequence[Token], vocabulary: Lexicon, source: Sour
             continue
         end = statement_of(tokens, at)[1]
         form = _form(tokens[at:end])
-        if form is None or not _is_state(form[0]) or any(token.role == INSTEAD for token in form[1]):
+        replaces = form is not None and any(token.role == INSTEAD for token in form[1])
+        if form is None or replaces or not _is_state(form[0], vocabulary, source):
             continue
         moved = _moved(tokens[at - 2])
         if moved and any(moved & _moved(token) for token in form[1]):
@@ -115,7 +116,7 @@ def _turn(tokens: list[Token], but: int, vocabulary: Lexicon, source: Source) ->
         tokens[first:end] = [*front, *before]
         return
     tokens[first:end] = _either(before, tokens[but + 1], condition, done, vocabulary, source)
-    if not _is_state(condition):
+    if not _is_state(condition, vocabulary, source):
         whole = Span(source, before[0].start, done[-1].end)
         parts = ((before[0], before[-1]), (condition[0], condition[-1]), (done[0], done[-1]))
         usual, asked, other = (source.text[start.start : last.end] for start, last in parts)
@@ -136,7 +137,7 @@ def _replace(tokens: list[Token], at: int, vocabulary: Lexicon, source: Source) 
         return False
     command, done = tokens[last - 1], last - 1
     _say_where([command], form[0], vocabulary, source)
-    if not _is_state(form[0]):
+    if not _is_state(form[0], vocabulary, source):
         return False
     moved = _moved(command)
     is_other = not moved or not any(moved & _moved(token) for token in form[1])
@@ -196,8 +197,10 @@ def _asks_of_outcome(condition: Sequence[Token]) -> bool:
     return any(value.entry.id in ABOUT_ANSWERS or value.entry.id == COMPARED for value in said)
 
 
-def _is_state(condition: Sequence[Token]) -> bool:
+def _is_state(condition: Sequence[Token], vocabulary: Lexicon, source: Source) -> bool:
     """Whether a condition is about a place, a door or a time, and not about what the robot meets on its way."""
+    if any(vocabulary.says_event(source.text[token.start : token.end]) for token in condition):
+        return False
     said = [token.value for token in condition if isinstance(token.value, Called | Listed)]
     return all(not _STATES.isdisjoint(slot.type for slot in value.entry.slots) for value in said)
 

@@ -39,6 +39,7 @@ def reworded(text: Words, vocabulary: Lexicon) -> list[Diagnostic]:
     _say_again(text, vocabulary)
     _count_again(text, vocabulary)
     _tell_again(text, vocabulary)
+    _tell_at_once(text, vocabulary)
     _tell_each(text, vocabulary)
     _say_so(text, vocabulary)
     _wait_to_try(text, vocabulary)
@@ -279,6 +280,22 @@ def _tell_again(text: Words, vocabulary: Lexicon) -> None:
         person = find(vocabulary.values.names_tree(PERSON), words, at + 1)
         if words[at + 2 if person is None else person[1]] in again:
             text.replace(at, asking["informing"][:1])
+
+
+def _tell_at_once(text: Words, vocabulary: Lexicon) -> None:
+    """Leave out what says nothing before what somebody is told: `tell Bob right away that tea is ready`."""
+    words, people = text.words, vocabulary.values.names_tree(PERSON)
+    if text.distinct.isdisjoint(vocabulary.at_once):
+        return  # as nearly always
+    telling = vocabulary.opening_words("TellPerson", "Ask")
+    for at in reversed([at for at in range(2, len(words) - 1) if words[at] in vocabulary.at_once]):
+        first, found = text.earlier(at)[1], find(vocabulary.at_once, words, at)
+        told = (find(people, words, i + 1) for i in range(first, at) if words[i] in telling)
+        if found is None or not any(who is not None and who[1] == at for who in told):
+            continue
+        after = words[found[1]]
+        if after[0] not in ENDING and after not in vocabulary.joining:
+            text.drop(at, found[1])
 
 
 def _tell_each(text: Words, vocabulary: Lexicon) -> None:
