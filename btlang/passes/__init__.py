@@ -12,6 +12,7 @@ from btlang.passes.checks import check_goals, check_resources, check_size, check
 from btlang.passes.compilation import Compilation, Pass
 from btlang.passes.lint.allow import apply_allow, apply_allow_in_xml
 from btlang.passes.lint.asked_once import find_asked_once
+from btlang.passes.lint.chosen_in_a_branch import find_chosen_in_a_branch
 from btlang.passes.lint.definitions import find_line_ends, find_rules_only, find_unused
 from btlang.passes.lint.tree_lints import (
     find_busy_loops,
@@ -72,6 +73,7 @@ PASSES = (
     Pass("never runs", find_unreachable),
     Pass("no rounds", find_empty_loops),
     Pass("busy loop", find_busy_loops),
+    Pass("chosen in a branch", find_chosen_in_a_branch),
     Pass("cut off", find_cut_off),
     Pass("undeclared nodes", find_undeclared, needs_text=True),
     Pass("line end", find_line_ends, needs_text=True),

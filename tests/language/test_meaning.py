@@ -205,3 +205,18 @@ def test_what_is_permitted_after_a_condition_is_left_out(text: str) -> None:
 def test_what_describes_a_thing_is_no_definition() -> None:
     english = str(btlang.parse_tree("bring me a cup that isn't red; nod").to("english"))
     assert english.splitlines()[0] == "bring me cup that is not red"
+
+
+@pytest.mark.parametrize(
+    ("text", "warned"),
+    [
+        ("If the lab door is open, bring a cup to the lab. Put it in the hall.", ["Put it in the hall"]),
+        ("Give Bob a cup, but only if he is in the lab. If he isn't, put it in the hall.", ["put it in the hall"]),
+        ("If the lab door is open, bring a cup to the lab and put it in the hall.", []),
+        ("If the lab door is open, bring a cup to the lab. Otherwise, put it in the hall.", []),
+        ("Bring a cup to the lab. If the lab door is open, put it in the hall.", []),
+    ],
+)
+def test_what_is_chosen_in_one_branch_only_is_warned_of(text: str, warned: list[str]) -> None:
+    warnings = btlang.parse_tree(text, world=WORLD).warnings
+    assert [warning.span.text for warning in warnings if warning.code == "BT069"] == warned

@@ -79,7 +79,8 @@ def _say_at_door(text: Words, vocabulary: Lexicon) -> None:
         doors = [vocabulary.orthography.words(name) for name in vocabulary.values.listed(DOOR)]
         doors = [door for door in doors if said.issubset(door) and len(door) == len(said) + 1]
         if len(doors) == 1:
-            text.drop(at + 1, room[1])
+            named = find(vocabulary.values.names_tree(DOOR), words, found[1])
+            text.drop(at + 1, max(room[1], named[1] if named is not None else 0))  # `in front of the lab door`
             text.replace(at, [vocabulary.asking["located"][-1], *doors[0]])
 
 
