@@ -51,7 +51,9 @@ def _add_named_or_text(options: argparse.Namespace, command: messages.Submit | m
         answer = client.send(command if is_named else command.replace(text=command.name, name=""))
         if not answer.ok and not is_named:
             if " " in command.name:
-                _note(f"There's no mission '{one_line(command.name)}' in the library. As a mission it has mistakes:")
+                is_of_time, name = answer.code == "BT194", one_line(command.name)
+                if not is_of_time:
+                    _note(f"There's no mission '{name}' in the library. As a mission it has mistakes:")
             else:
                 answer = client.send(command)  # which says that there's none of this name
         return print_answer(answer, options.json)

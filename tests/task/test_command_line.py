@@ -294,6 +294,24 @@ def test_a_mission_in_quotes_is_a_task_unless_it_is_a_name(robot: TaskLayer, btc
     assert 'put the mission in quotes: btc task add "go to the lab"' in btc("task", "add", "go", "to", "the", "lab")[1]
 
 
+def test_what_a_queued_mission_is_warned_of_is_shown(robot: TaskLayer, btc: Btc) -> None:
+    ask(robot, "pause")
+    code, text = btc("task", "add", "every minute say hello. go to the lab")
+    assert (code, text.partition("\n\n")[0]) == (0, "Task 1 is queued.")
+    assert "warning BT052" in text
+    assert [each["code"] for each in data(btc, "task", "add", "when bumped, stop")["messages"]] == ["BT068"]
+    assert "warning BT068" in btc("task", "schedule", "when bumped, stop", "--every", "every hour")[1]
+    assert "messages" not in data(btc, "task", "add", "wave")
+    assert "warning" not in btc("task", "trail")[1]
+
+
+def test_a_wrong_time_is_no_mistake_of_the_mission(robot: TaskLayer, btc: Btc) -> None:
+    for words in (["task", "schedule", "wave and nod", "--every", "in 5 minutes"],
+                  ["task", "add", "wave and nod", "--at", "tomorrow"]):  # fmt: skip
+        code, text = btc(*words)
+        assert (code, "BT194" in text, "it has mistakes" in text) == (1, True, False), text
+
+
 def test_a_token_that_is_not_given_is_asked_for(robot: TaskLayer, btc: Btc) -> None:
     ask(robot, "resume")
     number = submit(robot, "wait 10 h")

@@ -9,7 +9,7 @@ from datetime import date, timedelta
 from difflib import unified_diff
 from itertools import takewhile
 
-from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, render
 from btlang.task.commands.checks import refusal_error
 from btlang.task.messages import Answer, Put
 from btlang.task.schedule.calendar import format_duration, format_moment
@@ -57,7 +57,7 @@ def _cut(text: str, longest: int = _LONGEST) -> str:
 def act_line(act: Act, now: float) -> str:
     """Return an entry of the audit trail in one line: when, who, which command, and what came of it."""
     refused = _REFUSED.match(act.outcome)
-    outcome = f"refused ({refused[1]}): {refused[2]}" if refused else _TOKEN.sub("", act.outcome)
+    outcome = f"refused ({refused[1]}): {refused[2]}" if refused else _TOKEN.sub("", act.outcome.partition("\n\n")[0])
     what = ", ".join(_command_parts(json.loads(act.details)))
     by = one_line(act.person) or "nobody"
     return f"{format_moment(act.time, now)}  {by}: {act.command.replace('_', ' ')} {what}".rstrip() + (
@@ -214,13 +214,22 @@ _MOST_MESSAGES = 20
 
 
 def refusal_data(error: MissionError) -> dict[str, Any]:
-    """Return the data of a refusal: its `messages`, each with `code`, `message`, `hint` and `line` (0: of no text)."""
-    return {
-        "messages": [
-            {
-                "code": problem.code, "message": problem.message, "hint": problem.hint,
-                "line": problem.span.source.position(problem.span.start)[0] if problem.span.source.text else 0,
-            }
-            for problem in error.diagnostics[:_MOST_MESSAGES]
-        ]
-    }  # fmt: skip
+    """Return the data of a refusal: its `messages`."""
+    return messages_data(error.diagnostics)
+
+
+def messages_data(problems: Sequence[Diagnostic]) -> dict[str, Any]:
+    """Return `messages`, each with `code`, `message`, `hint` and `line` (0: of no text); nothing for none."""
+    found = [
+        {
+            "code": problem.code, "message": problem.message, "hint": problem.hint,
+            "line": problem.span.source.position(problem.span.start)[0] if problem.span.source.text else 0,
+        }
+        for problem in problems[:_MOST_MESSAGES]
+    ]  # fmt: skip
+    return {"messages": found} if found else {}
+
+
+def with_warnings(text: str, warnings: Sequence[Diagnostic]) -> str:
+    """Add what a mission that was taken is warned of, so that whoever gave it can still take it back."""
+    return "\n\n".join([text, *(render(problem) for problem in warnings[:_MOST_MESSAGES])])

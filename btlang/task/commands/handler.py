@@ -13,7 +13,7 @@ from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.diagnostics.report import report_crash
 from btlang.speech.marks import without_marks
 from btlang.task import messages
-from btlang.task.commands.answers import describe_times, refusal_data, task_data
+from btlang.task.commands.answers import describe_times, messages_data, refusal_data, task_data, with_warnings
 from btlang.task.commands.checks import (
     check_labels,
     check_priority,
@@ -42,6 +42,7 @@ if TYPE_CHECKING:
 
     from btlang.run.world_input import WorldInput
     from btlang.session import Session
+    from btlang.task.commands.store_handlers import Warned
 
 _BEGINNING = 3.0  # seconds of real time that a task may take from its claim to its first tick
 _MOMENT = 0.01
@@ -128,13 +129,14 @@ class Handler:
 
     def _submit(self, command: messages.Submit, person: str) -> Answer:
         earliest, deadline = task_times(command, self._now())
+        mission, warnings = self._mission(command)
         task = self.add(
-            self._mission(command), person, priority=check_priority(command.priority, command.tag),
+            mission, person, priority=check_priority(command.priority, command.tag),
             labels=check_labels(command.labels, command.tag), earliest=earliest, deadline=deadline,
             restart=choose_member(Restart, command.restart, "restart", command.tag),
         )  # fmt: skip
         text = " ".join((f"Task {task.id} is queued.", *describe_times(earliest, deadline, self._now())))
-        return Answer(True, text, {"task": task_data(task)})
+        return Answer(True, with_warnings(text, warnings), {"task": task_data(task), **messages_data(warnings)})
 
     def _end(self, state: TaskState, command: messages.Cancel | messages.Kill, person: str) -> Answer:
         task = self._open(command.task)
@@ -325,8 +327,8 @@ class Handler:
         lines.append(f"{data['waiting']} waiting." if data["waiting"] else "Nothing waits.")
         return Answer(True, "\n".join(lines), data)
 
-    def _mission(self, command: messages.Submit | messages.AddSchedule) -> MissionText:
-        """Return the mission of a command, which this robot can do."""
+    def _mission(self, command: messages.Submit | messages.AddSchedule) -> Warned:
+        """Return the mission of a command, which this robot can do, and what it is warned of."""
         text, name, revision = command.text, command.name, 0
         if not text:
             if not name:
@@ -336,8 +338,9 @@ class Handler:
                 raise unknown_text_error(name)
             text, revision = found.text, found.number
         mission = MissionText(text, name, revision, dict(command.values), command.keywords)
-        check_values(self._admit(mission), mission.values)
-        return mission
+        admitted = self._admit(mission)
+        check_values(admitted, mission.values)
+        return mission, admitted.warnings
 
     def _open(self, number: int) -> Task:
         task = self._reader.known(number)

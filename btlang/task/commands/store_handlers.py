@@ -9,7 +9,15 @@ from btlang.api import Mission
 from btlang.robots.bodies.body_file import read_body
 from btlang.robots.worlds.world_file import read_world
 from btlang.task import messages
-from btlang.task.commands.answers import describe_deletion, outdated_error, revision_data, schedule_data, schedule_line
+from btlang.task.commands.answers import (
+    describe_deletion,
+    messages_data,
+    outdated_error,
+    revision_data,
+    schedule_data,
+    schedule_line,
+    with_warnings,
+)
 from btlang.task.commands.checks import (
     HIGHEST,
     check_labels,
@@ -28,11 +36,14 @@ from btlang.text.source import Source
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.diagnostics.diagnostic import MissionError
+    from typing import TypeAlias
+
+    from btlang.diagnostics.diagnostic import Diagnostic, MissionError
     from btlang.robots.bodies.body import Body
     from btlang.task.store.records import Revision
 
-
+Warned: TypeAlias = "tuple[MissionText, Sequence[Diagnostic]]"
+"""A mission that the robot takes, and what it is warned of."""
 MOST_CHARACTERS = 200_000
 """The limit of a text from others that isn't a mission; a world or robot file takes some seconds to read at most."""
 _LONGEST_NAME = 200
@@ -151,7 +162,7 @@ class ScheduleHandler:
         self,
         store: TaskStore,
         wake: Callable[[], object],
-        mission_of: Callable[[messages.AddSchedule], MissionText],
+        mission_of: Callable[[messages.AddSchedule], Warned],
         now: Callable[[], float],
     ) -> None:
         self._store, self._wake, self._mission_of, self._now = store, wake, mission_of, now
@@ -159,7 +170,7 @@ class ScheduleHandler:
     def add(self, command: messages.AddSchedule, person: str) -> Answer:
         """Add a schedule."""
         recurrence, now = read_rule(command.rule, command.zone), self._now()
-        mission = self._mission_of(command)
+        mission, warnings = self._mission_of(command)
         first = recurrence.next(now)
         if first is None:
             raise refusal_error(f"The schedule '{recurrence}'", "would never be due: its time has passed")
@@ -174,7 +185,8 @@ class ScheduleHandler:
         )  # fmt: skip
         self._wake()
         text = f"Schedule {made.id}: {made.rule}; next at {format_moment(first, now)}."
-        return Answer(True, text, {"schedule": schedule_data(made)})
+        data = {"schedule": schedule_data(made), **messages_data(warnings)}
+        return Answer(True, with_warnings(text, warnings), data)
 
     def remove(self, command: messages.RemoveSchedule, person: str) -> Answer:
         """Remove a schedule."""
