@@ -51,6 +51,10 @@ class Likenesses:
         part = DENIED.get(part, part)
         if part not in ("size", "state") and (part != "color" or type != PLACE):
             return True
+        return self.says(type, part)
+
+    def says(self, type: str, part: str) -> bool:
+        """Whether the world says this part of any name of a type."""
         return any(name == part for _, parts in self.features.get(type, ()) for name, _ in parts)
 
     def is_ever_told(self, part: str) -> bool:

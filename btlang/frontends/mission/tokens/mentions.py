@@ -162,19 +162,31 @@ class Mentions:
         return tuple(dict.fromkeys(self._themes[1]))
 
     def _note_owners(self, value: SlotValue) -> None:
-        """BT177 for each owner of whom it isn't known what they own: `my cup`, but not the cup called "my cup"."""
+        """BT177 for each owner of whom it isn't known what they own: `my cup`, but not the cup called "my cup".
+
+        BT178 for a place that is chosen by its owner: `Alice's room`.
+        """
         known = self._vocabulary.values
         named = choice_of(value.group or value.text)
         names = [*value.texts, *(text for _, text in (named.parts if named is not None else ()))]
         said = {word for name in names for word in name.lower().split()}
         if value.type not in WORLD:
             return
+        listed = known.listed(PLACE)
         for first, last in known.adjectives.nobody_known(self._text, value.first, value.last, known.names_tree):
             if self._text.words[first] not in said and not any(word.endswith(known.adjectives.ending) for word in said):
-                span = self._text.span(first, last)
-                self.problems.append(diagnostic("BT177", span, words=span.text))
                 name = self._text.words[first].removesuffix(known.adjectives.ending)
                 owner = find(known.names_tree(PERSON), [name, END_OF_TEXT], 0)
+                if value.type == PLACE and value.text not in listed and not known.likenesses.says(PLACE, OWNER):
+                    span, line = (
+                        self._text.span(first, value.last),
+                        f'{OWNER} = "{"me" if owner is None else owner[0]}"',
+                    )
+                    problem = diagnostic("BT178", span, words=span.text, part=OWNER, type=PLACE, line=line)
+                else:
+                    span = self._text.span(first, last)
+                    problem = diagnostic("BT177", span, words=span.text)
+                self.problems.append(problem)
                 if owner is not None:  # `find Bob's book and bring it to him`
                     self._context.latest[PERSON] = owner[0]
 
