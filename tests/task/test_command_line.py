@@ -209,6 +209,7 @@ def test_the_status_of_a_task_that_waits_for_an_answer_says_how_to_answer(robot:
     wait_until(lambda: robot.world_input.question)
     assert 'It waits for an answer to "Coffee?". To answer: btc task answer TEXT\n' in btc("robot", "status")[1]
     assert data(btc, "robot", "status")["question"] == "Coffee?"
+    assert '[it waits for an answer to "Coffee?"]\n' in btc("task", "list")[1]
     btc("task", "answer", "yes")
     wait_until(lambda: not robot.world_input.question)
     assert "answer" not in btc("robot", "status")[1]

@@ -72,7 +72,8 @@ class Handler:
     ) -> None:
         self._store, self._manager, self._executor, self._emergency = store, manager, executor, emergency
         self._session, self._admit, self._now, self._down, self._needs = session, admit, now, down, needs
-        self._reader, self._world_input = StoreReader(store, manager, now, executor.hindrance), world_input
+        self._reader = StoreReader(store, manager, now, executor.hindrance, lambda: world_input.question)
+        self._world_input = world_input
         self._interrupted: tuple[str, ...] = ()  # the words of the commands at which the latest pause came
         schedules = ScheduleHandler(store, executor.wake, self._mission, now)
         library = LibraryHandler(store, admit, now, getattr(session.robot, "body", None), overs)

@@ -22,13 +22,19 @@ if TYPE_CHECKING:
 class StoreReader:
     """A handler of the commands about tasks that change nothing, with methods like those of Handler (handler.py).
 
-    `hindrance` gives why no task may begin now, "" if one may.
+    `hindrance` gives why no task may begin now, "" if one may; `question` what the task under way asks, "" if nothing.
     """
 
     def __init__(
-        self, store: TaskStore, manager: TaskManager, now: Callable[[], float], hindrance: Callable[[], str]
+        self,
+        store: TaskStore,
+        manager: TaskManager,
+        now: Callable[[], float],
+        hindrance: Callable[[], str],
+        question: Callable[[], str] = str,
     ) -> None:
-        self._store, self._manager, self._now, self._hindrance = store, manager, now, hindrance
+        self._store, self._manager, self._now = store, manager, now
+        self._hindrance, self._question = hindrance, question
 
     def list(self, command: messages.List, person: str) -> Answer:
         """List tasks in some states, by default those that aren't over."""
@@ -40,7 +46,7 @@ class StoreReader:
         more = max(self._store.count_tasks(states, label=command.label) - len(found), 0) if is_cut else 0
         hindrance, now = self._hindrance(), self._now()
         first = self._manager.first(now)
-        tasks = [task_data(task, self._manager.why_waiting(task, now, hindrance, first)) for task in found]
+        tasks = [task_data(task, self._why_waiting(task, now, hindrance, first)) for task in found]
         lines = [task_line(task) for task in tasks] or ["There are no tasks."]
         lines += [f"and {more} more: --limit N lists so many, --all every one"] if more else []
         return Answer(True, "\n".join(lines), {"tasks": tasks, "more": more, "hindrance": hindrance})
@@ -89,4 +95,10 @@ class StoreReader:
 
     def data(self, task: Task) -> dict[str, Any]:
         """Return a task as answers have it."""
-        return task_data(task, self._manager.why_waiting(task, self._now(), self._hindrance()))
+        return task_data(task, self._why_waiting(task, self._now(), self._hindrance()))
+
+    def _why_waiting(self, task: Task, now: float, hindrance: str, first: int | None = None) -> str:
+        question = self._question() if task.state is TaskState.UNDERWAY else ""
+        if question:
+            return f'it waits for an answer to "{one_line(question)}"'
+        return self._manager.why_waiting(task, now, hindrance, first)
