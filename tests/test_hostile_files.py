@@ -87,7 +87,7 @@ def test_missions_and_trees(text: str, tmp_path: Path, capsys: pytest.CaptureFix
 @pytest.mark.long
 def test_a_line_full_of_mistakes_takes_no_time_of_its_square(capsys: pytest.CaptureFixture[str]) -> None:
     count = amount(4_000, 15_000)  # which took half a minute, when each looked for its sentence
-    assert main(["check", "-c", "wave. " + "frob. " * count]) == 2  # of which something is understood, so that each is told
+    assert main(["check", "-c", "wave. " + "frob. " * count]) == 2  # where nothing is understood, only some are told
     assert capsys.readouterr().err.count("error BT010") == count
 
 
