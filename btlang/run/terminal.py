@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import sys
+import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext, suppress
 
@@ -73,6 +74,7 @@ EMERGENCY_STOPPED = 131
 """The exit code after an emergency stop, as 130 is that after Ctrl-C: 128 and the signal of the keys."""
 STILL_MOVING = 3
 """The exit code where the robot goes on moving at the end, whatever the mission came to."""
+_AGAIN = 0.01  # seconds after which a signal that was lost is sent again
 _LEAST_SIZE = os.terminal_size((30, 10))  # of a terminal in which the live view is of use
 
 
@@ -201,7 +203,17 @@ def interrupted_by_signals() -> Iterator[list[int]]:
     if handler is not None:
         yield handler.came
         return
-    handler = _Interrupt()
+    handler, before = _Interrupt(), sys.unraisablehook
+
+    def send_again(lost: sys.UnraisableHookArgs) -> None:
+        """Python drops what is raised in a callback of its own, such as that of an import: then nothing would end."""
+        if isinstance(lost.exc_value, KeyboardInterrupt):
+            number = next(iter(lost.exc_value.args), signal.SIGINT)
+            threading.Timer(_AGAIN, os.kill, (os.getpid(), number)).start()
+        else:
+            before(lost)
+
+    sys.unraisablehook = send_again
     taken = [number for number in ENDING_SIGNALS if signal.getsignal(number) == signal.SIG_DFL]
     for number in taken:
         signal.signal(number, handler)
@@ -210,6 +222,7 @@ def interrupted_by_signals() -> Iterator[list[int]]:
     finally:
         for number in taken:
             signal.signal(number, signal.SIG_DFL)
+        sys.unraisablehook = before
 
 
 def live_view(
