@@ -50,12 +50,11 @@ def _add_named_or_text(options: argparse.Namespace, command: messages.Submit | m
         is_named = client.send(messages.Library(command.name)).ok
         answer = client.send(command if is_named else command.replace(text=command.name, name=""))
         if not answer.ok and not is_named:
-            if " " in command.name:
-                is_of_time, name = answer.code == "BT194", one_line(command.name)
-                if not is_of_time:
-                    _note(f"There's no mission '{name}' in the library. As a mission it has mistakes:")
-            else:
+            if " " not in command.name:
                 answer = client.send(command)  # which says that there's none of this name
+            elif answer.code != "BT194":  # of its time, which is no mistake of the mission
+                name = one_line(command.name)
+                _note(f"There's no mission '{name}' in the library. As a mission it has mistakes:")
         return print_answer(answer, options.json)
 
 

@@ -161,7 +161,7 @@ def _brings_about(body: ast.Ast, condition: ast.Ast) -> bool:
 def _is_tried(node: ast.Try, vocabulary: Lexicon) -> bool:
     """Whether it begins with a word for `try`, not with `if possible`."""
     first = _WORD.match(node.span.text)
-    return first is not None and first[0].lower() in {phrase.split()[0] for phrase in vocabulary.roles["try"]}
+    return first is not None and first[0].lower() in vocabulary.firsts["try"]
 
 
 def _is_joined_by_then(body: ast.Ast, vocabulary: Lexicon) -> bool:

@@ -282,9 +282,10 @@ class AddressedTexts(Hearers):
         self._calls.note_asked([*self._text.words[at:last], END_OF_TEXT])
         doors = self._vocabulary.values.names_tree(DOOR)
         found = {found[0] for place in range(at, last) if (found := find(doors, self._text.words, place))}
-        self._context.latest.pop(DOOR, None) if found else None
         if len(found) == 1:
             self._context.latest[DOOR] = found.pop()
+        elif found:
+            self._context.latest.pop(DOOR, None)
 
     def _say_too(self, entry: Entry, value: SlotValue, command: Token) -> int:
         """`ask Bob "Tea?". If he says no, ask Alice`, `tell Bob lunch is ready, then tell Alice too`: to somebody else.

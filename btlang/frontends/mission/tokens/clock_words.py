@@ -123,7 +123,7 @@ class ClockWords(SentenceReader):
         """`at noon, wave, except on Mondays`: unless it is one of these days."""
         text, entry = self._text, self._vocabulary.entry(_TODAY)
         behind = self._context.values.exception(text, at)
-        on = {phrase.split()[0] for phrase in self._vocabulary.roles["on_days"]}
+        on = self._vocabulary.firsts["on_days"]
         last, asked = behind + 1, list[Token]()
         while behind and entry is not None and self._tokens and text.words[behind] in on:
             days = self._context.read(_DAYS, text, last)

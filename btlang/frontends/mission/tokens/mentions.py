@@ -178,11 +178,9 @@ class Mentions:
                 name = self._text.words[first].removesuffix(known.adjectives.ending)
                 owner = find(known.names_tree(PERSON), [name, END_OF_TEXT], 0)
                 if value.type == PLACE and value.text not in listed and not known.likenesses.says(PLACE, OWNER):
-                    span, line = (
-                        self._text.span(first, value.last),
-                        f'{OWNER} = "{"me" if owner is None else owner[0]}"',
-                    )
-                    problem = diagnostic("BT178", span, words=span.text, part=OWNER, type=PLACE, line=line)
+                    span = self._text.span(first, value.last)
+                    whose = f'{OWNER} = "{"me" if owner is None else owner[0]}"'
+                    problem = diagnostic("BT178", span, words=span.text, part=OWNER, type=PLACE, line=whose)
                 else:
                     span = self._text.span(first, last)
                     problem = diagnostic("BT177", span, words=span.text)

@@ -67,7 +67,7 @@ def _find_moved_again(tokens: Sequence[Token], vocabulary: Lexicon, source: Sour
         if form is None or replaces or not _is_state(form[0], vocabulary, source):
             continue
         moved = _moved(tokens[at - 2])
-        if moved and any(moved & _moved(token) for token in form[1]):
+        if any(moved & _moved(token) for token in form[1]):
             whole, first = Span(source, tokens[at].start, form[1][-1].end), form[1][0].start
             asked, said = source.text[tokens[at].start : first], source.text[first : whole.end]
             then, instead = vocabulary.word("then"), vocabulary.word("instead")
@@ -140,7 +140,7 @@ def _replace(tokens: list[Token], at: int, vocabulary: Lexicon, source: Source) 
     if not _is_state(form[0], vocabulary, source):
         return False
     moved = _moved(command)
-    is_other = not moved or not any(moved & _moved(token) for token in form[1])
+    is_other = not any(moved & _moved(token) for token in form[1])
     is_joined = begin < done and tokens[done - 1].kind == "and" and is_other
     if command.kind != "command" or is_joined or not _are_alike(command, form[1][0]):
         return False
@@ -188,7 +188,7 @@ def _say_where(before: Sequence[Token], condition: Sequence[Token], vocabulary: 
     }
     for token in condition:
         if token.kind == "condition" and len(goals) == 1:
-            say_there(token, [], vocabulary, source.text[token.start : token.end], goals.copy().pop())
+            say_there(token, [], vocabulary, source.text[token.start : token.end], next(iter(goals)))
 
 
 def _asks_of_outcome(condition: Sequence[Token]) -> bool:

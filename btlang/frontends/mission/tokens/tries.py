@@ -263,7 +263,7 @@ class Tries(SentenceReader):
     @cached_property
     def _trying(self) -> frozenset[str]:
         """The verbs for what is to work, not for what is to be asked: `try again`, not `check again`."""
-        return frozenset(phrase.split()[0] for role in ("try", "retry") for phrase in self._vocabulary.roles[role])
+        return self._vocabulary.firsts["try"] | self._vocabulary.firsts["retry"]
 
     def _doubt_what(self, match: Match, at: int) -> int:
         """BT150 for `go to the lab. If bumped, wait 5 s and try again`: what is tried again isn't clear."""
