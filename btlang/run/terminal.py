@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 import signal
 import sys
-import threading
+import time
+from _thread import start_new_thread
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext, suppress
 
@@ -74,7 +75,7 @@ EMERGENCY_STOPPED = 131
 """The exit code after an emergency stop, as 130 is that after Ctrl-C: 128 and the signal of the keys."""
 STILL_MOVING = 3
 """The exit code where the robot goes on moving at the end, whatever the mission came to."""
-_AGAIN = 0.01  # seconds after which a signal that was lost is sent again
+_AGAIN = 0.05  # seconds after which a signal that was lost is sent again; Python has long left its callback by then
 _LEAST_SIZE = os.terminal_size((30, 10))  # of a terminal in which the live view is of use
 
 
@@ -193,6 +194,11 @@ class _Interrupt:
         raise KeyboardInterrupt(number)
 
 
+def _send_later(number: int) -> None:
+    time.sleep(_AGAIN)
+    os.kill(os.getpid(), number)
+
+
 @contextmanager
 def interrupted_by_signals() -> Iterator[list[int]]:
     """Let a signal to end, or that the terminal is gone, interrupt as Ctrl-C does; a caller's own handler stays.
@@ -208,8 +214,8 @@ def interrupted_by_signals() -> Iterator[list[int]]:
     def send_again(lost: sys.UnraisableHookArgs) -> None:
         """Python drops what is raised in a callback of its own, such as that of an import: then nothing would end."""
         if isinstance(lost.exc_value, KeyboardInterrupt):
-            number = next(iter(lost.exc_value.args), signal.SIGINT)
-            threading.Timer(_AGAIN, os.kill, (os.getpid(), number)).start()
+            # A `threading.Thread` would wait here until it runs, and the signal would be lost again in that wait.
+            start_new_thread(_send_later, (next(iter(lost.exc_value.args), signal.SIGINT),))
         else:
             before(lost)
 
