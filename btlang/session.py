@@ -176,7 +176,9 @@ class Session:
         """
         found = self._mission_of(mission)
         if self.current is not None and self.current.is_under_way:
-            raise RuntimeError("another run is active; a session has one run at a time")
+            raise RuntimeError(
+                "another run is active; a session has one run at a time (`halt` ends one that is ticked)"
+            )
         factor = {"real": 1.0, "max": math.inf}.get(speed) if isinstance(speed, str) else speed
         if factor is None or not factor >= SLOWEST:
             raise ValueError(f'speed must be "real", "max" or a number from {SLOWEST} on, not {speed!r}')
@@ -188,6 +190,8 @@ class Session:
         chance = self.world.seed if seed is None else seed
         if isinstance(values, Mapping):
             values = Blackboard(values={key_of(name.lower().split()): value for name, value in values.items()})
+        if self.current is not None:
+            self.current._is_replaced = True
         self.current = Run(found, self.connection, factor, rate, time_limit, sinks, values, controls, chance, hooks)
         return self.current
 
@@ -292,6 +296,7 @@ class Run:
         self._thread: threading.Thread | None = None
         self._error: BaseException | None = None
         self._under_way = False
+        self._is_replaced = False
         self._engine = self._bound(connection, sinks, values, hooks, timed=speed < math.inf)
         self._story = FailureHistory(self._engine)
         self.follower = RunFollower(self._engine)
@@ -334,7 +339,11 @@ class Run:
         return self._under_way
 
     def execute(self) -> Outcome:
-        """Run to the end, in this thread, and bring the robot to rest. Once for each run."""
+        """Run to the end, in this thread, and bring the robot to rest. Once for each run.
+
+        Raises RuntimeError if its session has prepared another run since.
+        """
+        self._check_is_latest()
         self._under_way = True
         try:
             self.outcome = outcome = self._explained(self._runner.run())
@@ -347,6 +356,7 @@ class Run:
 
     def start(self) -> None:
         """Run as `execute` does, but in a separate thread; return at once."""
+        self._check_is_latest()
         self._under_way = True
         self._thread = threading.Thread(target=self._work, name="btlang run", daemon=True)
         self._thread.start()
@@ -376,9 +386,12 @@ class Run:
 
         By default it is one period of the rate. Mission time, and so a simulated world, only goes on by that: pass the
         time since the last tick on a robot that moves by itself. Once the tree completes there is an `outcome`; another
-        tick starts it again. Raises ValueError for a time that isn't positive.
+        tick starts it again. Raises ValueError for a time that isn't positive, and RuntimeError if the session has
+        prepared another run since.
         """
+        self._check_is_latest()
         status = Status(self._runner.tick(seconds))
+        self._under_way = status is Status.RUNNING
         is_over = status not in (Status.RUNNING, Status.IDLE)
         self.outcome = self._explained(self._runner.completed(status)) if is_over else None
         return status
@@ -386,6 +399,7 @@ class Run:
     def halt(self) -> None:
         """Halt every running leaf and stop the robot; the next tick starts over."""
         self._runner.halt()
+        self._under_way = False
 
     def pause(self) -> None:
         """Bring the robot to rest, and stop the mission time."""
@@ -425,6 +439,10 @@ class Run:
     def after_ticks(self, call: Callable[[], object]) -> None:
         """Call a function after each tick, in the thread of the run; what it raises ends the run."""
         self._runner.after_tick = call
+
+    def _check_is_latest(self) -> None:
+        if self._is_replaced:
+            raise RuntimeError("its session has prepared another run since; prepare this one again")
 
     def _restore(self, saved: Mapping[str, Any]) -> None:
         try:

@@ -192,3 +192,22 @@ def test_the_words_of_the_robot_are_known_to_its_session() -> None:
         assert session.run("applaud", speed="max").outcome.succeeded  # type: ignore[union-attr]
     with pytest.raises(btlang.MissionError, match="BT010"), btlang.Session() as session:
         session.run("applaud", speed="max")
+
+
+def test_a_session_has_one_run_at_a_time_also_where_runs_are_ticked() -> None:
+    with btlang.Session() as session:
+        earlier, run = session.prepare("wave"), session.prepare("wave")
+        for begin in (earlier.tick, earlier.execute, earlier.start):
+            with pytest.raises(RuntimeError, match="prepared another run"):
+                begin()
+        assert run.tick() is btlang.Status.RUNNING
+        with pytest.raises(RuntimeError, match="another run is active"):
+            session.prepare("wave")
+        run.halt()
+        assert not run.is_under_way
+        assert session.run("wave", speed="max").succeeded
+
+
+def test_a_status_is_printed_by_its_name_and_equals_its_number() -> None:
+    assert f"{btlang.Status.RUNNING} {btlang.Status.SUCCESS!s}" == "RUNNING SUCCESS"
+    assert btlang.Status.RUNNING == 2
