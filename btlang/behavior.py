@@ -193,9 +193,6 @@ def built(
     for child in own:
         if not isinstance(child, Behavior | str | Source | Node | Tree | Mission):
             _entry(child)
-    for script in scripts:
-        if script not in (*PRE_CONDITIONS, *POST_CONDITIONS) and not kind.any_ports:
-            raise TypeError(f"{kind.id} has no port {script!r}")
     given = {**ports, **scripts}
     return Behavior(kind.id, own, _ports(given), name, span=find_calling_line(), numbers=_numbers(given))
 

@@ -11,7 +11,7 @@ from keyword import iskeyword
 
 from btlang.behavior import Behavior, built
 from btlang.behavior import leaf as leaf
-from btlang.tree.catalogue import CATALOGUE, NodeKind
+from btlang.tree.catalogue import CATALOGUE, POST_CONDITIONS, PRE_CONDITIONS, NodeKind
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -41,20 +41,24 @@ def builder_of(kind: NodeKind) -> Callable[..., Behavior]:
         port: parameter(port, Parameter.KEYWORD_ONLY, found.default is not None) for port, found in kind.ports.items()
     }
     several = [Parameter("children", Parameter.VAR_POSITIONAL)] if kind.most and not children else []
+    known = {"name", *(each.name for each in (*children, *ports.values())), *PRE_CONDITIONS, *POST_CONDITIONS}
     name = Parameter("name", Parameter.KEYWORD_ONLY, default="")
     scripts = Parameter("scripts", Parameter.VAR_KEYWORD)
     signature = Signature([*children, *several, *ports.values(), name, scripts])
 
     def build(*arguments: Any, **named: Any) -> Behavior:
+        for given in named:
+            if given not in known and not kind.any_ports:
+                raise TypeError(f"{kind.id} has no port {given!r}, but {', '.join(ports) or 'none'}")
         try:
             bound = signature.bind(*arguments, **named)
         except TypeError as problem:
             raise TypeError(f"{kind.id}: {problem}") from None
         bound.apply_defaults()
-        given = bound.arguments
-        own = given["children"] if several else tuple(given[each.name] for each in children)
-        values = {port: given[each.name] for port, each in ports.items()}
-        return built(kind, own, values, given["name"], given["scripts"])
+        found = bound.arguments
+        own = found["children"] if several else tuple(found[each.name] for each in children)
+        values = {port: found[each.name] for port, each in ports.items()}
+        return built(kind, own, values, found["name"], found["scripts"])
 
     build.__signature__ = signature  # type: ignore[attr-defined]
     build.__doc__ = f"Make the node {kind.id} of {kind.origin}. {kind.text}".strip()

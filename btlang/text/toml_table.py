@@ -123,14 +123,14 @@ class Table:
             raise self.problem(key, f'"{key}" must be true or false')
         return value
 
-    def choice(self, key: str, values: tuple[str, ...], default: str | None = None) -> str:
-        """Return one of the values. Raises Problem."""
+    def choice(self, key: str, values: tuple[str, ...], default: str | None = None, hint: str = "") -> str:
+        """Return one of the values. Raises Problem, which ends with the hint."""
         if not self.has(key) and default is not None:
             return default
         value = self._require(key, "a text")
         if value not in values:
             listed = ", ".join(f'"{known}"' for known in values) or "nothing, because there is none"
-            raise self.problem(key, f'"{key}" must be one of {listed}')
+            raise self.problem(key, f'"{key}" must be one of {listed}{hint and f"; {hint}"}')
         return str(value)
 
     def texts(self, key: str) -> tuple[str, ...]:

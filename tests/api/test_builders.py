@@ -159,7 +159,8 @@ async def listen(text: str) -> None:
         (lambda: sequence("wave", None), "None can't be a part of a tree"),  # type: ignore[arg-type]
         (lambda: builders.if_then_else(None, "wave", "nod"), "None can't be a part of a tree"),  # type: ignore[arg-type]
         (lambda: sequence(["wave"]), r"a list can't be a part of a tree; .* sequence\(\*children\)"),  # type: ignore[arg-type]
-        (lambda: repeat("wave", times=3, num_cycles=1), "Repeat has no port 'times'"),
+        (lambda: repeat("wave", times=3, num_cycles=1), "Repeat has no port 'times', but num_cycles$"),
+        (lambda: repeat("wave", times=3), "Repeat has no port 'times'"),
         (lambda: repeat("wave", num_cycles=[]), "num_cycles is a text, a number or a bool, not a list"),
         (lambda: leaf(cheer, "Bob", number=3), "CheerFor takes person, count, not 'number'"),
         (lambda: leaf(shout, 1), "Shout takes no values, not 1 values"),

@@ -234,7 +234,10 @@ def _hand(table: Table) -> HandPart:
 
 
 def _sensor(table: Table) -> Sensor:
-    kind, frame = table.choice("kind", _SENSORS), table.text("frame")
+    kind, frame = (
+        table.choice("kind", _SENSORS, hint='what measures something else is a device: [[device]], kind = "gauge"'),
+        table.text("frame"),
+    )
     if kind == "bumper":
         return table.finish(Sensor(kind, frame))
     reach, view = table.number("range", low=_LEAST), table.number("view", 360.0, low=1.0, high=360.0)
