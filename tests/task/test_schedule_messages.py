@@ -55,6 +55,7 @@ def test_refused_past_moments() -> None:
 
 
 REFUSED_RULES = (
+    "in 5 minutes", "tomorrow at 9:00", "14:30",
     "", ",", "every", "on", "at 9:00", "between 10 and 18", "every day between 9:00 and 11:00", "every 5",
     "every huor", "evry day at 9:00", "every 2 hours on Mondys", "every Mondai and Fridai at 9:00",
     "on the frist of every month at 9:00", "every day at", "every day at 9:00 and", "every day at 9:00 and 11",

@@ -8,13 +8,17 @@ a window are in it; a window may cross midnight, and then belongs to the day on 
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
+from contextlib import suppress
 from datetime import date, datetime, timedelta
 
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.support.record import Record
 from btlang.task.schedule.calendar import Days, Rule, day_of, moment_of, read_zone
 from btlang.task.schedule.rules import EXAMPLE, read_rule_in
 from btlang.task.schedule.words import ScheduleWords, Unread, read_length, read_text
+from btlang.text.source import Span
 from btlang.text.time_of_day import DAY
 
 TYPE_CHECKING = False
@@ -36,7 +40,23 @@ def read_rule(text: str, zone: str = "") -> Recurrence:
     computer. docs/schedules.md has all forms. Raises MissionError (BT194) for another text, and for an unknown zone.
     """
     read_zone(zone)
-    return Recurrence(read_text(text, "<schedule>", EXAMPLE, read_rule_in), zone)
+    try:
+        return Recurrence(read_text(text, "<schedule>", EXAMPLE, read_rule_in), zone)
+    except MissionError as refused:
+        span = refused.diagnostics[0].span
+        if span.text == text or not _is_moment(text, zone):  # `14:30` lacks its days
+            raise
+        problem = "is a single time, not a schedule"
+        advice = f'A task that begins once has a time: btc task add MISSION --at "{text}"'
+        whole = Span(span.source, 0, len(span.source.text))
+        raise MissionError([diagnostic("BT194", whole, what=f"'{text}'", problem=problem, advice=advice)]) from None
+
+
+def _is_moment(text: str, zone: str) -> bool:
+    with suppress(MissionError):
+        read_moment(text, time.time(), zone)
+        return True
+    return False
 
 
 class Recurrence(Record):
