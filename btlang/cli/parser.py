@@ -291,13 +291,15 @@ def check_act(options: argparse.Namespace) -> set[str]:
 
     Returns the destinations of the options that were given. Only for verbs whose acts say what they take.
     """
-    act, found = VERBS[options.verb].acts[options.act], _take_given(options)
+    acts, found = VERBS[options.verb].acts, _take_given(options)
+    act = acts[options.act]
     if act.options is not None and options.act != "stop":  # whatever else is typed: it stops
         for each, flag in options.flags.items():
             if each in found and each not in act.options and each != "name":
                 from btlang.task.messages import wrong
 
-                raise wrong(options.act, f"{flag} doesn't apply to it")
+                theirs = ", ".join(f"'{name}'" for name, other in acts.items() if each in (other.options or ()))
+                raise wrong(options.act, f"{flag} doesn't apply to it{theirs and f', but to {theirs}'}")
     return found
 
 
