@@ -37,6 +37,7 @@ from btlang.passes.lint.unlikely_meanings import (
     find_restarts,
     find_uncounted,
     find_unused_answers,
+    find_vain_waits,
 )
 from btlang.passes.lower import lower_names
 from btlang.passes.scope import order_names
@@ -67,6 +68,7 @@ PASSES = (
     Pass("asks from afar", find_distant_questions, needs_text=True),
     Pass("picked up only", find_picked_up_only, needs_text=True),
     Pass("nothing counted", find_uncounted, needs_text=True),
+    Pass("nothing changes", find_vain_waits, needs_text=True),
     Pass("unused answers", find_unused_answers, needs_text=True),
     Pass("only rules", find_rules_only, needs_text=True),
     Pass("unused", find_unused, needs_text=True),

@@ -103,7 +103,10 @@ def find_in_sentences(chain: ast.Chain, vocabulary: Lexicon) -> Iterator[Attachm
     if chain.operator != "sequence":
         return
     then = vocabulary.word("then").capitalize()
-    for first, second in pairwise(chain.items):
+    for earlier, second in pairwise(chain.items):
+        first = earlier
+        if isinstance(first, ast.IfWorks):  # `check whether C. If it is, A`
+            first = ast.If(False, first.tried, first.body, first.otherwise, first.span)
         if not isinstance(first, ast.If) or not isinstance(second, ast.If) or first.otherwise is not None:
             continue
         if second.negated or not (_is_before(first) and _is_before(second)):
@@ -112,12 +115,13 @@ def find_in_sentences(chain: ast.Chain, vocabulary: Lexicon) -> Iterator[Attachm
             continue
         if second.otherwise is None:
             if _brings_about(first.body, second.condition) or _denies(first, second):
-                gap = Span(first.span.source, first.span.end, second.span.start)
-                yield Attachment(SENTENCES, first.span.start, partial(_as_otherwise, first, second, gap, f". {then} "))
+                gap = Span(first.span.source, first.span.end, second.span.start + 1)
+                words = f". {then} {second.span.text[0].lower()}"
+                yield Attachment(SENTENCES, first.span.start, partial(_as_otherwise, earlier, second, gap, words))
         elif _SENTENCE_END.search(_between(second.body, second.otherwise)):
             gap = Span(first.span.source, second.body.span.end, second.otherwise.span.start)
             words = f", {_WORD.findall(gap.text)[0].lower()} " if _WORD.search(gap.text) else gap.text
-            yield Attachment(SENTENCES, first.span.start, partial(_as_otherwise, first, second, gap, words))
+            yield Attachment(SENTENCES, first.span.start, partial(_as_otherwise, earlier, second, gap, words))
 
 
 def _denies(first: ast.If, second: ast.If) -> bool:
@@ -263,7 +267,7 @@ def _once_at_most(node: ast.For, repeat: str) -> Readings:
     return Readings(node, ast.Within(node.seconds, node.body, node.span), node.span, fix)
 
 
-def _as_otherwise(first: ast.If, second: ast.If, gap: Span, words: str) -> Readings:
+def _as_otherwise(first: ast.Ast, second: ast.If, gap: Span, words: str) -> Readings:
     """Read `if C, A. If D, B` as: if C, A, otherwise if D, B."""
     span = Span(first.span.source, first.span.start, second.span.end)
     taken = ast.Chain("sequence", (first, second), True, span)

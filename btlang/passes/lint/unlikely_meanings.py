@@ -1,5 +1,5 @@
-"""Lints on commands that mean something else than most people expect (BT050, BT146 to BT149, BT163, BT169, BT170,
-BT175).
+"""Lints on commands that mean something else than most people expect (BT050, BT139, BT146 to BT149, BT163, BT169,
+BT170, BT175).
 
 - `turn around three times` are half turns, as most people mean whole turns;
 - `turn around and drive back 1 m`: backwards, or the way back that the robot faces then;
@@ -8,6 +8,7 @@ BT175).
 - `every 10 min, go to the lab` ends when a round fails;
 - `ask Bob "Tea?". If he says no, ask again` does nothing with the second answer;
 - `if there are more than 3 people, A` where nothing is counted;
+- `wait until he says yes` where nothing asks again;
 - `fetch the cup` only picks it up;
 - `ask Bob "Tea?"` asks from where the robot is.
 """
@@ -274,9 +275,28 @@ def find_uncounted(compilation: Compilation) -> Iterator[Diagnostic]:
         return  # as nearly always
     if not any(each.entry.id in COUNTING for each in _phrases(nodes)):
         yield diagnostic("BT146", asked.span, words=asked.span.text, example=_COUNTED)
-    for wait in nodes:
-        if isinstance(wait, ast.WaitUntil) and asks(wait.condition, (COMPARED,)):
-            yield diagnostic("BT139", wait.span, words=wait.span.text, example=_COUNTED_AGAIN)
+
+
+def find_vain_waits(compilation: Compilation) -> Iterator[Diagnostic]:
+    """Report a wait for another number or answer that nothing beside it changes, so that it ends at once or never."""
+    for body in ast.bodies(compilation.mission):
+        waits = [node for node in compilation.syntax(body) if isinstance(node, ast.WaitUntil)]
+        for wait in waits:
+            if asks(wait.condition, (COMPARED,)):
+                yield diagnostic(
+                    "BT139", wait.span, words=wait.span.text, result="number", act="counts", example=_COUNTED_AGAIN
+                )
+            elif asks(wait.condition) and not any(asks(rule, (ASK,)) for rule in _beside(body)):
+                yield diagnostic(
+                    "BT139", wait.span, words=wait.span.text, result="answer", act="asks", example=_KEEP_ASKING
+                )
+
+
+def _beside(body: ast.Ast) -> Iterator[ast.Ast]:
+    """Yield what is done while other commands are."""
+    for node in ast.parents_first(body):
+        if isinstance(node, ast.Whenever) or (isinstance(node, ast.Chain) and node.operator == "parallel"):
+            yield node
 
 
 def _phrases(nodes: Iterable[ast.Ast]) -> list[ast.Phrase]:

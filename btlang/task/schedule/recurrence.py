@@ -12,13 +12,13 @@ import time
 from collections.abc import Iterator
 from contextlib import suppress
 from datetime import date, datetime, timedelta
+from functools import partial
 
-from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.diagnostics.diagnostic import MissionError
 from btlang.support.record import Record
 from btlang.task.schedule.calendar import Days, Rule, day_of, moment_of, read_zone
 from btlang.task.schedule.rules import EXAMPLE, read_rule_in
-from btlang.task.schedule.words import ScheduleWords, Unread, read_length, read_text
-from btlang.text.source import Span
+from btlang.task.schedule.words import UNKNOWN, ScheduleWords, Unread, read_length, read_text
 from btlang.text.time_of_day import DAY
 
 TYPE_CHECKING = False
@@ -40,16 +40,17 @@ def read_rule(text: str, zone: str = "") -> Recurrence:
     computer. docs/schedules.md has all forms. Raises MissionError (BT194) for another text, and for an unknown zone.
     """
     read_zone(zone)
+    return Recurrence(read_text(text, "<schedule>", EXAMPLE, partial(_read_rule, zone)), zone)
+
+
+def _read_rule(zone: str, words: ScheduleWords) -> Rule:
     try:
-        return Recurrence(read_text(text, "<schedule>", EXAMPLE, read_rule_in), zone)
-    except MissionError as refused:
-        span = refused.diagnostics[0].span
-        if span.text == text or not _is_moment(text, zone):  # `14:30` lacks its days
+        return read_rule_in(words)
+    except Unread as unread:
+        text = words.source.text
+        if unread.problem != UNKNOWN or not _is_moment(text, zone):
             raise
-        problem = "is a single time, not a schedule"
-        advice = f'A task that begins once has a time: btc task add MISSION --at "{text}"'
-        whole = Span(span.source, 0, len(span.source.text))
-        raise MissionError([diagnostic("BT194", whole, what=f"'{text}'", problem=problem, advice=advice)]) from None
+    raise words.whole("is a single time, not a schedule", f'btc task add MISSION --at "{text}"')
 
 
 def _is_moment(text: str, zone: str) -> bool:

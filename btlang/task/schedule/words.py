@@ -41,7 +41,7 @@ _MONTHS = {
     "sept": 9,
 }
 _DATES = "24 December 2026, or 2026-12-24"
-_UNKNOWN = "isn't understood here"
+UNKNOWN = "isn't understood here"
 _LONGEST_HINT = 60  # characters of a text to which a hint adds words
 
 
@@ -84,7 +84,7 @@ class ScheduleWords:
         self._value_words = frozenset(word for tree in self._values.word_trees() for word in tree if word.isalpha())
         lost = sorted((*self._text.unreadable, *self._text.comments), key=lambda span: span.start)
         if lost:
-            raise Unread(lost[0], _UNKNOWN, 0)
+            raise Unread(lost[0], UNKNOWN, 0)
 
     @property
     def is_over(self) -> bool:
@@ -333,7 +333,7 @@ class ScheduleWords:
             return self.incomplete("isn't complete")
         farthest = max((at for at in self._asked if at < self._last), default=self.at)
         at = max(self.at, farthest)  # in `of evry month` the mistake isn't `of`
-        unread = Unread(self._text.span(at, at + 1), _UNKNOWN, at, example)
+        unread = Unread(self._text.span(at, at + 1), UNKNOWN, at, example)
         if self._text.words[at] not in self._value_words:  # `every hundred hours` has no misspelt word
             unread.expected = self._asked.get(at, ())
         return unread
