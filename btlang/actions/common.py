@@ -7,13 +7,24 @@ from typing import Protocol
 
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.geometry import Point
-from btlang.robots.robot import Base, Machine, Power, RobotError, Sensors
+from btlang.robots.robot import Base, Listening, Machine, Navigation, Perception, Power, RobotError, Sensors
 
 _SHARES = {"slowly": 0.5, "carefully": 0.5, "quietly": 0.4}
 """Shares of the normal speed. "Quickly" is as fast as the robot can."""
 COUNTABLE = ("object", "person")
 """The types of things that have a kind and can be seen."""
 STUCK = "the wheels turn but the robot doesn't move"
+
+
+class MeetingRobot(Perception, Listening, Navigation, Protocol):
+    """A robot that goes to people whom it sees or hears."""
+
+
+def speaker(robot: MeetingRobot) -> str | None:
+    """Return who "me" is: the last speaker, else the nearest person in view; None if there is nobody."""
+    heard = robot.ears.since(0) if robot.body.has("ears") else []
+    spoken = next((each.who for each in reversed(heard) if each.who), None)
+    return spoken or next(iter(robot.seen("person")), None)
 
 
 def where(robot: Base, place: str | None, x: float | None, y: float | None) -> Point:

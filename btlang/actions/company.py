@@ -6,14 +6,14 @@ from collections.abc import Generator
 from math import dist, inf
 from typing import Any, Protocol
 
-from btlang.actions.common import DrivingRobot, Watch, keep_pace, where
+from btlang.actions.common import DrivingRobot, MeetingRobot, Watch, keep_pace, speaker, where
 from btlang.actions.gestures import AimingRobot, wave
 from btlang.actions.motion import Steps, turn
 from btlang.actions.navigation import go_to, travel
 from btlang.actions.speech import PresentingRobot, say
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.geometry import Point
-from btlang.robots.robot import Leading, Listening, Navigation, Operation, Perception
+from btlang.robots.robot import Leading, Navigation, Operation, Perception
 from btlang.robots.worlds.world import said
 
 LOST = 5.0
@@ -32,10 +32,6 @@ _ARRIVED, _MOVED = 2.0, 0.2  # metres
 _TRIES, _PAUSE = 3, 1.0  # journeys that fail one after the other, and the seconds between them
 
 
-class MeetingRobot(Perception, Listening, Navigation, Protocol):
-    """A robot that goes to people whom it sees or hears."""
-
-
 class FollowingRobot(MeetingRobot, DrivingRobot, Protocol):
     """A robot that follows people."""
 
@@ -50,13 +46,6 @@ class GreetingRobot(Navigation, PresentingRobot, AimingRobot, Protocol):
 
 class TellingRobot(Navigation, PresentingRobot, Protocol):
     """A robot that goes to people and speaks."""
-
-
-def speaker(robot: MeetingRobot) -> str | None:
-    """Return who "me" is: the last speaker, else the nearest person in view; None if there is nobody."""
-    heard = robot.ears.since(0) if robot.body.has("ears") else []
-    spoken = next((each.who for each in reversed(heard) if each.who), None)
-    return spoken or next(iter(robot.seen("person")), None)
 
 
 def _somebody(robot: MeetingRobot, person: str | None) -> str:

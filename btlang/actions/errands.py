@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Generator
 from typing import Protocol
 
-from btlang.actions.common import DrivingRobot, keep_pace
-from btlang.actions.company import MeetingRobot, speaker
+from btlang.actions.common import DrivingRobot, MeetingRobot, keep_pace, speaker
 from btlang.actions.joints import take
 from btlang.actions.manipulation import FetchingRobot, hand_with, pick_up, put_down
 from btlang.actions.motion import Steps, turn

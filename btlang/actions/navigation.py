@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from math import dist
 
-from btlang.actions.common import keep_pace, where
+from btlang.actions.common import MeetingRobot, keep_pace, speaker, where
 from btlang.actions.motion import Steps
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.geometry import Point, Pose, centre_of
@@ -16,6 +16,7 @@ from btlang.robots.worlds.world import said
 
 PASSED = 0.5
 """Metres from a place within which the robot has passed it."""
+_SPEAKING = "speaking"  # how the person is chosen who spoke last
 _SPOTS = 12  # that are tried to get in or out of a zone
 _BESIDE = 1.0
 """Metres from a thing at which a robot that goes to a side of it stops."""
@@ -101,7 +102,7 @@ def travel(robot: Navigation, name: str) -> Steps:
 
 
 def choose(
-    robot: Base,
+    robot: MeetingRobot,
     type: str,
     how: str,
     output: Callable[[str], object],
@@ -109,9 +110,14 @@ def choose(
 ) -> None:
     """Write the "nearest", a "random" name and so on of a type. Fails if there is none with these parts.
 
-    The parts are those of a description: what it is like, what it isn't, and its relations.
+    The parts are those of a description: what it is like, what it isn't, and its relations. "speaking" is the person
+    who spoke last, else the nearest one in view.
     """
-    output(robot.choose(type, how, {name: text for name, text in parts.items() if text}))
+    wanted = {name: text for name, text in parts.items() if text}
+    chosen = speaker(robot) if how == _SPEAKING else robot.choose(type, how, wanted)
+    if chosen is None or (how == _SPEAKING and wanted and chosen not in robot.described(type, wanted)):
+        raise ActionFailed(unseen(type, wanted, describe_relations(wanted)))
+    output(chosen)
 
 
 def choose_all(robot: Base, type: str, output: Callable[[str], object], count: str = "", **parts: str) -> None:

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 ASK, ANSWERED, UNANSWERED = "Ask", "AnswerIs", "NobodyAnswered"
 """The ids of the question, and of the conditions about its answer."""
+PERSON_SAYS, SOMEBODY_SAYS = "PersonSays", "SomebodySays"
+"""The ids of the conditions that are true for the moment in which something is said."""
 ABOUT_ANSWERS = frozenset((ANSWERED, UNANSWERED))
 _ONCE = (
     ast.Retry, ast.Try, ast.Within, ast.ByTime, ast.UpTo, ast.StopWhen, ast.Constrained, ast.Delay, ast.Provided,

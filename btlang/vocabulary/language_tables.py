@@ -28,7 +28,7 @@ NO_PHRASES = frozenset((
     "define_strong", "define", "fact", "facing", "set_to", "by", "add_to", "subtract_from", "remember_as", "each_in",
     "called", "with", "giving", "node", "newline", "character", "main_name", "given", "here",
     "needs_world", "needs_words", "needs_robot", "all_names", "except", "nearest", "random", "largest",
-    "smallest", "furthest",
+    "smallest", "furthest", "speaking",
     "leftmost", "rightmost",
     "without_entering", "without_leaving", "may", "or_stay",
 ))  # fmt: skip
@@ -88,7 +88,7 @@ _NO_SLOT = (
     "remember", "remember_as", "each", "each_in", "include",
     "do", "test", "called", "with", "giving", "node", "newline", "character", "main_name", "given",
     "needs_world", "needs_words", "needs_robot", "all_names", "except", "nearest", "random", "largest",
-    "smallest", "furthest",
+    "smallest", "furthest", "speaking",
     "leftmost", "rightmost",
 )  # fmt: skip
 ROLES = {

@@ -9,7 +9,7 @@ from btlang.support.record import Record
 from btlang.text.words import Words
 from btlang.vocabulary.adjectives import UNSLOTTED, Adjectives
 from btlang.vocabulary.pattern import Form, Slot, forms
-from btlang.vocabulary.references import ALL, CHOICES, COUNT, DENIED, PLACED, SIZED, Parts, ordinal
+from btlang.vocabulary.references import ALL, CHOICES, COUNT, DENIED, PLACED, SIZED, SPEAKING, Parts, ordinal
 from btlang.vocabulary.value_type import OBJECT, PERSON, PLACE, WORLD
 from btlang.vocabulary.word_tree import END, SLOTS, WordTree, find, insert
 
@@ -256,6 +256,8 @@ def _may_choose(kind: str, how: str) -> bool:
     """Whether names of a type can be chosen so: objects alone have a size, and not every type has a point to see."""
     if how in SIZED:
         return kind == OBJECT
+    if how == SPEAKING:
+        return kind == PERSON
     return kind in (WORLD if not (how in PLACED or ordinal(how)) else (OBJECT, PLACE, PERSON))
 
 

@@ -13,9 +13,10 @@ from btlang.vocabulary.entry import POINT
 
 SIZED = ("largest", "smallest")
 PLACED = ("furthest", "leftmost", "rightmost")
-CHOICES = ("nearest", "seen", "random", *SIZED, *PLACED)
-"""The ways to choose a name; "seen" is the nearest in view, else the nearest known. A number is one more: "2" is the
-second one, "-1" the last.
+SPEAKING = "speaking"
+CHOICES = ("nearest", "seen", "random", SPEAKING, *SIZED, *PLACED)
+"""The ways to choose a name; "seen" is the nearest in view, else the nearest known; "speaking" is who spoke last. A
+number is one more: "2" is the second one, "-1" the last.
 """
 ALL = "all"
 """In place of such a way: all names that are meant, one after the other. The part "count" says how many."""

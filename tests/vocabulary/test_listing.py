@@ -33,6 +33,7 @@ NEEDS = {
     "WaitForSomeone": ("nobody came", "go to Alice"),
     "TakePictureOfPerson": ("I don't see Alice", "go to Alice"),
     "TakePictureOfObject": ("I don't see the cup", "approach the cup"),
+    "speaking": ("I don't see anybody", "go to Alice"),
     "Ask": ("Alice didn't answer", "go to Alice"),
     "ComeToMe": ("I see nobody", "go to Alice"),
     "LookAtObject": ("the cup is behind the robot; the head can't turn that far", "face the cup"),

@@ -19,6 +19,7 @@ from btlang.vocabulary.word_tree import find
 
 TELL = "TellPerson"
 _NO_QUESTION = "begins no question that I know"
+_QUOTED = "has quotes of its own"
 _MATTER = "begins what it is about, but not what to say"
 _PERSON = "is a person, and the question is missing"
 _BEHIND_PERSON = frozenset(("instead", "politeness", "until", "every"))
@@ -211,6 +212,9 @@ class AddressedTexts(Hearers):
             if at not in text.articles and find(values.names_tree("person"), text.words, at) is not None:
                 self._doubt(entry, at, _PERSON)
             return 0
+        quote = next((place for place in range(at, value.last) if text.words[place][0] == '"'), 0)
+        if self._doubt(entry, quote, _QUOTED):
+            return 0
         end = self._end_before_command(at, value.last, is_told=False)
         end = end or self._note_form(command, at, value.last)
         last = end or value.last
@@ -258,24 +262,6 @@ class AddressedTexts(Hearers):
             at for at, match in found if match is not None and match.meaning.role in _MEASURES and match.last == last
         )
         return next(ends, 0)
-
-    def _with_thing(self, text: Words, first: int, last: int) -> Words:
-        """`look for the cup. If that fails, ask Bob where it is`: the words with the cup, which he can't know."""
-        names, pronouns = self._vocabulary.values.names_tree(OBJECT), self._context.pronouns
-        asking = self._vocabulary.asking
-        for at in range(first, last):
-            if OBJECT not in pronouns.get(text.words[at], ()) or text.words[at] in self._vocabulary.values.ones:
-                continue
-            is_somewhere = text.words[at + 1] in asking["asking_be"] and text.words[at + 2] in asking["located"]
-            is_where = text.words[at - 1] in self._vocabulary.roles["ask_where"]
-            if not (is_where or is_somewhere or at == last - 1):
-                continue  # `if it is raining`
-            meant = self._context.latest.get(OBJECT)
-            named = ((place, find(names, text.words, place)) for place in reversed(range(first)))
-            thing = next(((place, found[1]) for place, found in named if found is not None and found[0] == meant), None)
-            if thing is not None:
-                text = text.with_word(at, " ".join(map(self._written, range(*thing))))
-        return text
 
     def _note_asked(self, at: int, last: int) -> None:
         """Make `it` what a question is about: `ask Bob if he wants the cup. If so, bring it`; of several, none."""

@@ -20,22 +20,30 @@ from btlang.frontends.mission.tokens.sentence_reader import is_answer, is_questi
 from btlang.frontends.mission.tokens.silent_words import begins
 from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of
 from btlang.text.source import Span
-from btlang.tree.answers import ABOUT_ANSWERS, ANSWERED, ASK, EXAMPLE, OF_WHICH, UNANSWERED, asking_verbs
+from btlang.tree.answers import (
+    ABOUT_ANSWERS,
+    ANSWERED,
+    ASK,
+    EXAMPLE,
+    OF_WHICH,
+    PERSON_SAYS,
+    SOMEBODY_SAYS,
+    UNANSWERED,
+    asking_verbs,
+)
 from btlang.vocabulary.antecedents import pronouns_for
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.references import choice_of
 from btlang.vocabulary.value_type import PERSON, TEXT
 from btlang.vocabulary.word_tree import find
 
-_PERSON_SAYS, _SOMEBODY_SAYS = "PersonSays", "SomebodySays"
 _LIMITS = frozenset(("within", "up_to"))
 _BEFORE_NAME = 3  # words: `and if Bob`
-_REPLIES = (_PERSON_SAYS, _SOMEBODY_SAYS, ANSWERED)
+_REPLIES = (PERSON_SAYS, SOMEBODY_SAYS, ANSWERED)
 _BEFORE_REPLY = BEFORE_CONDITIONS | {"semi", "newline", "stop", "comma", "and", "then", "or"}
 _OF_REPLY = frozenset(("if", "unless", "until", "not", "condition", "or", "and", "comma", "then"))
 _STOPS = frozenset(("semi", "newline"))
-_GO_AHEAD = "go ahead"
-_WHILE = ["while", "condition"]
+_GO_AHEAD, _WHILE = "go ahead", ["while", "condition"]
 
 
 class Answers(AddressedTexts):
@@ -206,7 +214,7 @@ class Answers(AddressedTexts):
         if is_question(command):
             self._met = self._context.latest.get(PERSON, "")
             if not self._met and self._calls.speaks_of_people:
-                self._calls.note_nearest()  # `ask the visitor "Tea?" and wave at them`
+                self._calls.note_somebody()  # `ask the visitor "Tea?" and wave at them`
 
     def note_answerer(self) -> None:
         """Make pronouns stand for who answers, whatever is done for another answer; else for the nearest person.
@@ -224,7 +232,7 @@ class Answers(AddressedTexts):
         if asked:
             self._context.latest[PERSON] = asked if choice is None else f"{{{choice.key}}}"
         else:
-            self._calls.note_nearest()
+            self._calls.note_somebody()
 
     def _end_reply(self, token: Token, is_denied: bool = False) -> None:
         """`if he says yes, A, and if he says no, B`: the second answer ends what is done for the first."""
@@ -251,7 +259,7 @@ class Answers(AddressedTexts):
     def _hear(self, token: Token, at: int) -> None:
         """`wait until she says stop` where nobody is asked is what is heard; `she says nothing` is silence."""
         value, may_ask = token.value, self._may_ask and not self._is_done_until()
-        if isinstance(value, Called) and value.entry.id in (_PERSON_SAYS, _SOMEBODY_SAYS) and may_ask:
+        if isinstance(value, Called) and value.entry.id in (PERSON_SAYS, SOMEBODY_SAYS) and may_ask:
             value = token.value = self._answer_of_asked(value)
         if not isinstance(value, Called) or value.entry.id != ANSWERED:
             return
@@ -262,7 +270,7 @@ class Answers(AddressedTexts):
         if find(self._vocabulary.values.pronoun_words, self._text.words, at) is None:
             return
         words, person = value.arguments[0][1], self._context.latest.get(PERSON, "")
-        heard = self._vocabulary.entry(_PERSON_SAYS if person else _SOMEBODY_SAYS)
+        heard = self._vocabulary.entry(PERSON_SAYS if person else SOMEBODY_SAYS)
         if heard is not None:
             by_type = {PERSON: person, TEXT: words}
             token.value = Called(heard, tuple((slot.name, by_type[slot.type]) for slot in heard.slots))

@@ -33,6 +33,7 @@ from btlang.frontends.mission.token import (
 )
 from btlang.text.source import Span
 from btlang.text.time_of_day import seconds_of, shown
+from btlang.tree.answers import PERSON_SAYS, SOMEBODY_SAYS
 from btlang.vocabulary.antecedents import says_there
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
@@ -40,7 +41,7 @@ from btlang.vocabulary.value_type import PLACE
 
 _DAYTIME, _MOMENT = "TimeOfDay", 600.0  # seconds in which a rule notices that it has become a time
 _EXAMPLE = "6 pm"
-_MOMENTARY, _MOMENT_ONLY = ("PersonSays", "SomebodySays"), "it is so for a moment only"
+_MOMENT_ONLY = "it is so for a moment only"
 _HEADS = frozenset(("every", "every_day", "at", "delay"))
 _OPEN, GO = "OpenZone", "GoTo"
 _NOT_DONE = "a definition is done once, and this holds all the time"
@@ -202,7 +203,7 @@ def _otherwise_behind(tokens: list[Token], at: int) -> Token | None:
 def _is_momentary(tokens: list[Token], at: int) -> bool:
     """Whether a condition at a place is so for a moment alone: somebody says something."""
     asked = (token.value for token in tokens[at : _condition_end(tokens, at)[0]])
-    return any(isinstance(value, Called) and value.entry.id in _MOMENTARY for value in asked)
+    return any(isinstance(value, Called) and value.entry.id in (PERSON_SAYS, SOMEBODY_SAYS) for value in asked)
 
 
 def _only_then(tokens: list[Token], at: int, vocabulary: Lexicon, span: Callable[[int, int], Span]) -> Diagnostic:

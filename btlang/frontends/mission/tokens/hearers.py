@@ -13,7 +13,7 @@ from btlang.text.source import Span
 from btlang.text.words import Words
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
-from btlang.vocabulary.value_type import PERSON
+from btlang.vocabulary.value_type import OBJECT, PERSON
 from btlang.vocabulary.word_tree import find
 
 _SOMEBODY = "may be somebody else for whoever hears it"
@@ -148,6 +148,35 @@ class Hearers(ToldWords):
         if not isinstance(said, Called | Listed):
             return set()
         return {text for arguments in arguments_of(said) for text in said.entry.given(PERSON, arguments) if text}
+
+    def _with_thing(self, text: Words, first: int, last: int) -> Words:
+        """`look for the cup. If that fails, ask Bob where it is`: the words with the cup, which he can't know."""
+        pronouns, asking = self._context.pronouns, self._vocabulary.asking
+        for at in range(first, last):
+            if OBJECT not in pronouns.get(text.words[at], ()) or text.words[at] in self._vocabulary.values.ones:
+                continue
+            is_somewhere = text.words[at + 1] in asking["asking_be"] and text.words[at + 2] in asking["located"]
+            is_where = text.words[at - 1] in self._vocabulary.roles["ask_where"]
+            if not (is_where or is_somewhere or at == last - 1):
+                continue  # `if it is raining`
+            thing = self._meant_thing(first)
+            if thing is not None:
+                text = text.with_word(at, " ".join(map(self._written, range(*thing))))
+        return text
+
+    def _meant_thing(self, last: int) -> tuple[int, int] | None:
+        """Where the thing is named or described, before a word, that the latest value stands for."""
+        text, names, meant = (
+            self._text,
+            self._vocabulary.values.names_tree(OBJECT),
+            self._context.latest.get(OBJECT, ""),
+        )
+        for at in reversed(range(last)):
+            is_noun = at in text.articles and meant[:1] == "{"
+            found = self._context.read(OBJECT, text, at) if is_noun else find(names, text.words, at)
+            if found is not None and (is_noun or found[0] == meant):
+                return at, found[1]
+        return None
 
 
 def person_of(word: str, vocabulary: Lexicon) -> str:

@@ -9,7 +9,7 @@ from btlang.frontends.mission.token import Token
 from btlang.frontends.mission.tokens.counted_things import COUNTED
 from btlang.text.source import Source
 from btlang.text.words import END_OF_TEXT, Words, split
-from btlang.tree.answers import ASK
+from btlang.tree.answers import ASK, SOMEBODY_SAYS
 from btlang.vocabulary.adjectives import OWNER
 from btlang.vocabulary.antecedents import pronouns_for
 from btlang.vocabulary.capabilities import MOVES
@@ -18,7 +18,7 @@ from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.reading_context import ReadingContext
-from btlang.vocabulary.references import ALL, NAMES, SELF, Choice, choice_of, free_key
+from btlang.vocabulary.references import ALL, NAMES, SELF, SPEAKING, Choice, choice_of, free_key
 from btlang.vocabulary.value_type import DOOR, KINDS, OBJECT, PERSON, PLACE, TEXT, WORLD, ZONE
 from btlang.vocabulary.word_tree import find
 
@@ -66,12 +66,13 @@ class Mentions:
         is_somebody = entry.phrases and not somebody.isdisjoint(entry.phrases[0].split())
         if names_none and (is_somebody or _MEETS in entry.achieves):
             places = [value for value in match.values if value.type == PLACE and not value.more]
-            self.note_nearest(tuple(("at", value.text) for value in places if value.text[:1] not in ODD))
+            parts = tuple(("at", value.text) for value in places if value.text[:1] not in ODD)
+            self.note_somebody(parts, SPEAKING if entry.id == SOMEBODY_SAYS else "nearest")
 
-    def note_nearest(self, parts: tuple[tuple[str, str], ...] = ()) -> None:
-        """Make pronouns stand for the nearest person of whom these parts are true."""
+    def note_somebody(self, parts: tuple[tuple[str, str], ...] = (), how: str = "nearest") -> None:
+        """Make pronouns stand for the nearest person of whom these parts are true, or for who spoke last."""
         key = self._context.keys.get(PERSON, PERSON)
-        self._context.latest[PERSON] = Choice("nearest", PERSON, key, parts).text
+        self._context.latest[PERSON] = Choice(how, PERSON, key, parts).text
         self._context.listed.pop(PERSON, None)
 
     def _note_counted(self, entry: Entry, match: Match) -> None:

@@ -24,7 +24,7 @@ from btlang.text.words import Words
 from btlang.vocabulary.antecedents import says_there
 from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.lexicon import Lexicon
-from btlang.vocabulary.references import ALL, COUNT, NAMES, RELATIONS, Choice, choice_of
+from btlang.vocabulary.references import ALL, COUNT, NAMES, RELATIONS, Choice, Parts, choice_of
 from btlang.vocabulary.value_type import OBJECT, PLACE
 
 TYPE_CHECKING = False
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 Arguments: TypeAlias = "tuple[tuple[str, str], ...]"
 _TAKING, _PLACED = ("PickUp", "Take", "Bring"), {NAMES, *RELATIONS}
-_NEAREST, _OTHER = "nearest", "other_than"
+_NEAREST, _OTHER, _KIND = "nearest", "other_than", "kind"
 _ALL_OR_ONE = (ALL, _NEAREST)
 _REASON = "it may be one that was meant before"
 _SIMPLE = frozenset(("command", "name", "open", "close", *JOINTS, *STATEMENT_ENDS))
@@ -60,8 +60,8 @@ def with_other_things(tokens: list[Token], vocabulary: Lexicon, text: Words) -> 
         value = token.value = _in_rows(token, tokens, vocabulary)
         if token.kind != "command" or not isinstance(value, Called | Listed):
             continue
-        if all(slot.type != OBJECT for slot in value.entry.slots):
-            continue  # as nearly always
+        if value.entry.first or all(slot.type != OBJECT for slot in value.entry.slots):
+            continue  # as nearly always; a search in several places is for one thing
         is_list = isinstance(value, Listed)
         meant = [] if is_list else before.setdefault(value.entry.id, [])
         rows, unclear = list[Arguments](), None
@@ -84,9 +84,14 @@ def with_other_things(tokens: list[Token], vocabulary: Lexicon, text: Words) -> 
         if rows != [*arguments_of(value)]:
             token.value = with_arguments(value, rows)
         if unclear is not None:
-            words, names = Span(text.source, token.start, token.end), vocabulary.values.likenesses.members(unclear)
-            example = next(iter(names or ()), words.text)
+            words, of_kind = Span(text.source, token.start, token.end), unclear.replace(parts=_kind_in(unclear.parts))
+            members = vocabulary.values.likenesses.members
+            example = next(iter(members(unclear) or members(of_kind) or ()), words.text)
             yield diagnostic("BT150", words, words=words.text, reason=_REASON, example=example)
+
+
+def _kind_in(parts: Parts) -> Parts:
+    return tuple(part for part in parts if part[0] == _KIND)
 
 
 def _in_rows(token: Token, tokens: Sequence[Token], vocabulary: Lexicon) -> Value:

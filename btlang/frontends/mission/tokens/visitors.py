@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import (
@@ -18,6 +19,7 @@ from btlang.frontends.mission.token import (
     statement_start,
     texts_of,
 )
+from btlang.frontends.mission.tokens.addressed_texts import TELL
 from btlang.frontends.mission.tokens.ended_rules import GO, journey_to
 from btlang.frontends.mission.tokens.journey_words import ANYBODY_COMES, COMES
 from btlang.frontends.mission.tokens.rules_inside import ON_WAY
@@ -25,34 +27,76 @@ from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, is_q
 from btlang.frontends.mission.tokens.settling import STAYS
 from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of, words_of
 from btlang.text.source import Source, Span
-from btlang.tree.answers import ANSWERED
+from btlang.tree.answers import ANSWERED, ASK, SOMEBODY_SAYS
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match
-from btlang.vocabulary.references import ALL, NAMES, Choice, choice_of, ordinal
+from btlang.vocabulary.references import ALL, NAMES, SPEAKING, Choice, choice_of, ordinal
 from btlang.vocabulary.value_type import PERSON, PLACE, TEXT
 
-_SEEN, _SAYS, _COMMANDS = "SeesSomeone", "SomebodySays", ("command", "name")
+_SEEN, _COMMANDS = "SeesSomeone", ("command", "name")
 _PACES = ("every_day", "at", "every")
+_MOST_IN_NAME = 4  # words of those who are told something
 _SIMPLE = frozenset(("command", "name", "wait", "wait_time", "for", "until_time", "count", *JOINTS))
 
 
 class Visitors(SentenceReader):
     """Those of one text."""
 
+    _met = 0
+    """Where the event begins that stands inside the phrase being read; 0 for none."""
+
+    @cached_property
+    def _hearing(self) -> frozenset[str]:
+        """The verbs behind which a person is told or asked something; none in a text without words for an event."""
+        asking = self._vocabulary.asking
+        if self._text.distinct.isdisjoint({*asking["who"], *self._vocabulary.subjects}):
+            return frozenset()
+        return self._vocabulary.opening_words(TELL, ASK)
+
+    def with_event(self, match: Match | None, at: int) -> Match | None:
+        """The phrase at a word; `ask everyone you meet "Tea?"` is `ask everyone "Tea?"` and an event."""
+        text = self._text
+        if text.words[at] not in self._hearing:
+            return match  # as nearly always
+        somebody = next(iter(self._vocabulary.asking["somebody"]), "")
+        for behind in range(at + 2, min(at + 2 + _MOST_IN_NAME, self._end_of_statement(at))):
+            event = self._event(behind, somebody)
+            if event is None or text.words[event.last][0] != '"':
+                continue
+            places = [*range(at, behind), *rest_of(text, event.last)]
+            found = match_of(text, places, {}, (self._vocabulary.trie,), self._context)
+            if found is not None and found.meaning.entry is not None and found.last == behind - at + 1:
+                self._met = behind
+                return relocated(found, places)
+        return match
+
+    def read_met(self, last: int) -> int:
+        """Make a rule of the command that is read up to a word, if an event was in it. Return where to go on."""
+        met, self._met = self._met, 0
+        end = self._rule(met, last) if met else 0
+        if met and not end:
+            words = self._text.span(met, last - 1)
+            reason, example = "it isn't clear who is meant", f"{self._vocabulary.word('whenever')} ..., ask them ..."
+            self._calls.problems.append(diagnostic("BT150", words, words=words.text, reason=reason, example=example))
+        return end
+
     def read(self, at: int) -> int:
         """`say hi to anyone who comes near`: whenever somebody comes near, say hi to them.
 
         Behind other commands it is a rule for the time of these.
         """
+        return self._rule(at, 0) if self._tokens else 0
+
+    def _rule(self, at: int, last: int) -> int:
         tokens = self._tokens
-        said = tokens[-1].value if tokens else None
+        said = tokens[-1].value
         if not isinstance(said, Called):
             return 0
         kind, is_first = _kind_of(said)
         event = self._event(at, kind or next(iter(self._vocabulary.asking["somebody"]), ""))
         if event is None:
             return 0
-        last = event.last
+        last = last or event.last
         if not self._is_end(last):  # `greet everyone who comes in with "Hello"`
             whole = self._partial.in_order([*words_of(self._text, tokens[-1]), *rest_of(self._text, last)])
             if whole is None or whole.meaning.entry is not said.entry or whole.last <= last:
@@ -67,11 +111,12 @@ class Visitors(SentenceReader):
         is_plain = all(token.kind in _SIMPLE or (is_first and token.kind in _PACES) for token in tokens[first:])
         if choice is None or (choice.parts and not kind) or (ordinal(choice.how) and not is_first) or not is_plain:
             return 0
-        if is_first and event.meaning.entry is not None and event.meaning.entry.id == _SAYS:
+        if is_first and event.meaning.entry is not None and event.meaning.entry.id == SOMEBODY_SAYS:
             return 0  # `the first person who says yes` is somebody known by then
         if self._of_those_asked(event, said, everyone, joint):
             return last
-        self._calls.note(event) if kind else self._calls.note_nearest()
+        spoke = event.meaning.entry is not None and event.meaning.entry.id == SOMEBODY_SAYS
+        self._calls.note(event) if kind else self._calls.note_somebody(how=SPEAKING if spoke else "nearest")
         nearest = self._context.latest[PERSON]
         start, end = tokens[-1].start, self._text.ends[last - 1]
         condition = self._calls.token(event, at)
@@ -112,7 +157,7 @@ class Visitors(SentenceReader):
         tokens, entry = self._tokens, event.meaning.entry
         end = run_start(tokens, joint, JOINTS | STATEMENT_ENDS)
         asked, answered = tokens[end - 1] if end else None, self._vocabulary.entry(ANSWERED)
-        if entry is None or entry.id != _SAYS or answered is None:
+        if entry is None or entry.id != SOMEBODY_SAYS or answered is None:
             return False
         if asked is None or not is_question(asked) or not isinstance(asked.value, Called | Listed):
             return False

@@ -159,6 +159,7 @@ class WordReader:
         if form := self._form(at) or (self._label(at) if self._text.words[at][0] == '"' else 0):
             return form
         match = self._requests.with_time(self._requests.with_name(self._match(at), at), at)
+        match = self._visitors.with_event(match, at)
         match = self._without_measure(match, at)
         if match is not None and match.meaning.role in NODE_ROLES:
             if end := self._node(match, at):
@@ -455,6 +456,8 @@ class WordReader:
             tokens[-1].end = said.end
             return match.last
         tokens.append(said)
+        if end := self._visitors.read_met(match.last):
+            return end
         self._requests.note_question(said)
         self._outcomes.give_up(match.last)
         self._places.search_there(match)
