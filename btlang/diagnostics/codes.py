@@ -130,6 +130,8 @@ _ALL = (
     Code("BT074", "'{words}' goes into the {zone}, where the robot may not go.", "Leave it out, or open the zone first: open the {zone}"),
     Code("BT075", "No world can be made from this: {reason}."),
     Code("BT076", "This gesture can't be used: {reason}."),
+    Code("BT078", "'{words}' never ends, so the round in which it stands is the only one.", "{advice}", "warning",
+         "only round"),
     Code("BT077", "The gesture '{name}' takes {slower} times as long as it says: a joint can't move that fast.",
          "Give this key frame more time."),
     Code("BT080", "The command '{id}' can't run: {reason}."),

@@ -256,8 +256,11 @@ def _problem(made: Sequence[ast.Ast], at: int, form: Sequence[Any], item: ast.As
         return ""
     inner = form[-1][0]
     text = item.span.source.text[made[at].span.end : item.span.start]
-    if getattr(inner, "otherwise", None) is not None or len(form) > 1:
-        return "could be about several questions"
+    sometimes = [node for node, _ in form if not isinstance(node, _ONCE)]
+    is_last = all(part is ast.parts(node)[-1] for node, part in form if isinstance(node, ast.Chain))
+    if getattr(inner, "otherwise", None) is not None or len(sometimes) > 1 or not is_last:
+        several = len({each.arguments for each in asked}) > 1
+        return "could be about several questions" if several else "is about a question that is asked only sometimes"
     if _depends(inner):
         return "" if _same(inner, item) else OF_WHICH
     return "stands on another line than what asks only sometimes" if "\n" in text else ""

@@ -141,7 +141,7 @@ def test_explain_lists_all_codes(capsys: pytest.CaptureFixture[str]) -> None:
 @pytest.mark.parametrize(
     ("written", "told"),
     [
-        ("BT079", "Similar: BT080, BT077"),
+        ("BT079", "Similar: BT078, BT080"),
         ("BT9999999999999", "Similar: BT"),
         ("BT" + "9" * 6000, "Similar: "),
         ("BT", "A code is BT and three digits"),

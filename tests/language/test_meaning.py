@@ -214,7 +214,7 @@ def test_what_describes_a_thing_is_no_definition() -> None:
         ("Give Bob a cup, but only if he is in the lab. If he isn't, put it in the hall.", ["put it in the hall"]),
         ("If the lab door is open, bring a cup to the lab and put it in the hall.", []),
         ("If the lab door is open, bring a cup to the lab. Otherwise, put it in the hall.", []),
-        ("Bring a cup to the lab. If the lab door is open, put it in the hall.", []),
+        ("Bring a cup to the lab, then if the lab door is open, put it in the hall.", []),
     ],
 )
 def test_what_is_chosen_in_one_branch_only_is_warned_of(text: str, warned: list[str]) -> None:

@@ -40,9 +40,12 @@ def find_asked_once(compilation: Compilation) -> Iterator[Diagnostic]:
     vocabulary = compilation.vocabulary
     for body in ast.bodies(compilation.mission):
         before: dict[int, tuple[Sequence[ast.Ast], int]] = {}
+        kept: set[int] = set()  # what is done while the robot keeps in somewhere: `stay in the lab, and when C, A`
         for node in compilation.syntax(body):
             if type(node) is ast.Chain and node.operator == "sequence":
                 before.update((id(item), (node.items, at)) for at, item in enumerate(node.items))
+            if type(node) is ast.Constrained:
+                kept.add(id(node.body))
             if type(node) is ast.If:
                 yield from _too_early(node, vocabulary)
             if type(node) is ast.If and node.otherwise is not None:
@@ -57,10 +60,12 @@ def find_asked_once(compilation: Compilation) -> Iterator[Diagnostic]:
                     is_first = not sentence and at + 1 < len(items)
                     warnings = list(_warn(node, sentence[-1] if sentence else None, vocabulary, is_first))
                     yield from warnings or _too_late(node, sentence, vocabulary)
-                elif sentence and "\n" not in node.span.text:
-                    before_it = sentence[-1] if type(node.body) is ast.Fail else None  # `A, and abort if C`
+                elif (sentence or id(node) in kept) and "\n" not in node.span.text:
+                    before_it = (
+                        sentence[-1] if sentence and type(node.body) is ast.Fail else None
+                    )  # `A, and abort if C`
                     warnings = list(_warn(node, before_it, vocabulary))  # `A, and when C, B`
-                    between = node.span.source.text[sentence[-1].span.end : node.span.start]
+                    between = node.span.source.text[sentence[-1].span.end : node.span.start] if sentence else ""
                     yield from warnings or ([] if "\n" in between else _too_late(node, sentence, vocabulary))
 
 

@@ -52,6 +52,44 @@ def find_unreachable(compilation: Compilation) -> list[Diagnostic]:
     return found
 
 
+def find_only_rounds(compilation: Compilation) -> list[Diagnostic]:
+    """Report rounds that never end inside others: `every day at 9 am, wave. Then every hour, nod` waves once."""
+    found: list[Diagnostic] = []
+    inside: dict[int, Node] = {}  # by the command whose last part they are
+
+    def combine(node: Node, children: Sequence[Ends], named: dict[str, Ends]) -> Ends:
+        kind = CATALOGUE.get(node.id)
+        last = node.children[-1] if len(children) > 1 and kind is not None and kind.goes_on == ON_SUCCESS else None
+        if last is not None and children[-1] & (NEVER | SUCCESS) == NEVER:
+            if _is_endless(last) and _stand_apart(node.children[-2].span, last.span):
+                inside[id(node)] = last
+        rounds = inside.get(id(node.children[0])) if _is_endless(node) else None
+        if rounds is not None and rounds.span is not None and node.span is not None:
+            outer = node.span.source.text[node.span.start : rounds.span.start].rstrip(" ,.;\n")
+            said = (compilation.vocabulary.word(each) for each in ("then", "and"))
+            outer = next((outer[: -len(word)].rstrip(" ,.;\n") for word in said if outer.lower().endswith(word)), outer)
+            advice = _both(outer, rounds.span.text, compilation.vocabulary)
+            found.append(diagnostic("BT078", rounds.span, words=rounds.span.text, advice=advice))
+        return find_ends(node, children, named)
+
+    compilation.fold(combine)
+    return found
+
+
+def _is_endless(node: Node) -> bool:
+    return node.port("num_cycles") == "-1"
+
+
+def _stand_apart(first: Span | None, second: Span | None) -> bool:
+    return first is not None and second is not None and not _overlap(first, second)
+
+
+def _both(rounds: str, others: str, vocabulary: Lexicon) -> str:
+    """Say how rounds without end go on beside others."""
+    beside = f"{others[:1].lower()}{others[1:]}"
+    return f"To do both, write: {rounds}. {vocabulary.word('meanwhile').capitalize()}, {beside}"
+
+
 def _warnings(parent: NodeKind, before: Node, ends: Ends, behind: Node, compilation: Compilation) -> list[Diagnostic]:
     """Make a warning, none if both stand for the same words: then a form has put one of them there."""
     if before.span is None or behind.span is None or _overlap(before.span, behind.span):
@@ -75,9 +113,12 @@ def _ways_out(rounds: str, behind: str, may_end: bool, vocabulary: Lexicon) -> s
     may_end = may_end and rounds.split()[-1].lower() not in vocabulary.counts  # but `wave forever`
     ways = [f"To do it in the end, say when that comes, for example: {rounds} {until}"] if may_end else []
     paces = vocabulary.firsts["every"] | vocabulary.firsts["every_day"] | vocabulary.firsts["weekly"]
-    if rounds.split()[0].lower() in paces:
-        then, behind = vocabulary.word("then"), f"{behind[:1].lower()}{behind[1:]}"
-        ways.append(f"To do it in each round, write: {rounds}, {then} {behind}")
+    has_pace = [said.split()[0].lower() in paces for said in (rounds, behind)]
+    if all(has_pace):
+        ways.append(_both(rounds, behind, vocabulary))
+    elif has_pace[0]:
+        behind = f"{behind[:1].lower()}{behind[1:]}"
+        ways.append(f"To do it in each round, write: {rounds}, {vocabulary.word('then')} {behind}")
     return "\n".join(ways)
 
 

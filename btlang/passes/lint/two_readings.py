@@ -182,8 +182,13 @@ def find_rules_at_goals(compilation: Compilation) -> Iterator[Diagnostic]:
 
     The same for `go to the door and wave whenever somebody comes near`.
     """
-    body, vocabulary = compilation.mission.body, compilation.vocabulary
-    items = sort_by_place(body.items) if isinstance(body, ast.Chain) else ()
+    body = compilation.mission.body
+    for node in compilation.syntax(body) if body is not None else ():
+        if isinstance(node, ast.Chain):
+            yield from _rules_at_goal(sort_by_place(node.items), compilation.vocabulary)
+
+
+def _rules_at_goal(items: Sequence[ast.Ast], vocabulary: Lexicon) -> Iterator[Diagnostic]:
     rule = next((item for item in reversed(items) if isinstance(item, ast.Whenever)), None)
     journey = next((item for item in reversed(items) if not isinstance(item, ast.Whenever | ast.If)), None)
     if rule is None or not isinstance(journey, ast.Phrase) or rule.span.start < journey.span.start:

@@ -26,6 +26,7 @@ _BEHIND_PERSON = frozenset(("instead", "politeness", "until", "every"))
 """What may stand behind who is asked the same: `keep asking him until he says yes`."""
 _MEASURES = frozenset(("count", "at_most", "up_to_times", "tries", "within", "by_time", "for", "up_to", "every"))
 _MOST_IN_NAME = 4  # words
+_PACES = ("every", "every_day")
 _BEFORE_TIME = frozenset((*BEGINS, "and"))
 
 
@@ -35,7 +36,7 @@ class AddressedTexts(Hearers):
     @cached_property
     def _addressing(self) -> frozenset[str]:
         """The verbs behind which a person is told or asked something; none in a text without times or polite words."""
-        between = self._vocabulary.firsts["at"]
+        between = self._vocabulary.firsts["at"].union(*(self._vocabulary.firsts[role] for role in _PACES))
         if self._text.distinct.isdisjoint(between.union(self._vocabulary.asking["politely"])):
             return frozenset()
         return self._vocabulary.opening_words(TELL, ASK).union(self._vocabulary.asking["reminding"])
@@ -50,7 +51,7 @@ class AddressedTexts(Hearers):
             return match  # as nearly always
         person = self._context.read(PERSON, text, at + 1)
         begins = not self._tokens or self._tokens[-1].kind in _BEFORE_TIME
-        times = self._times(person[1]) if person is not None and begins else []
+        times = self._times(person[1]) or self._pace(person[1]) if person is not None and begins else []
         is_polite = person is not None and text.words[person[1]] in self._vocabulary.asking["politely"]
         if person is None or not (times or is_polite):
             return match
@@ -60,8 +61,11 @@ class AddressedTexts(Hearers):
         entry = found.meaning.entry if found is not None else None
         if found is None or entry is None or entry.id not in (TELL, ASK) or found.last <= person[1] - at:
             return match
-        said = ";".join(text for time in times for text in time.values[0].texts)
-        self._tokens += [Token("at", text.starts[person[1]], text.ends[last - 1], said)] if times else []
+        if times and times[0].meaning.role == "at":
+            said = ";".join(text for time in times for text in time.values[0].texts)
+            self._tokens.append(Token("at", text.starts[person[1]], text.ends[last - 1], said))
+        elif times:
+            self._tokens.append(self._calls.token(times[0], person[1]))
         return relocated(found, places)
 
     def _times(self, at: int) -> list[Match]:
@@ -72,6 +76,11 @@ class AddressedTexts(Hearers):
             at = time.last + 1 if words[time.last] in roles["and"] else time.last
             at += words[at] in roles["again"]
         return found
+
+    def _pace(self, at: int) -> list[Match]:
+        """How often something is asked, at a word: `ask Bob every hour "Tea?"`."""
+        pace = self._phrase(at)
+        return [pace] if pace is not None and pace.meaning.role in _PACES else []
 
     def _tell(self, entry: Entry, value: SlotValue, command: Token) -> int:
         """`tell Bob dinner is ready`: a clause without a word before it."""
@@ -216,7 +225,7 @@ class AddressedTexts(Hearers):
         if self._doubt(entry, quote, _QUOTED):
             return 0
         end = self._end_before_command(at, value.last, is_told=False)
-        end = end or self._note_form(command, at, value.last)
+        end = end or self._end_before_answer(at, value.last) or self._note_form(command, at, value.last)
         last = end or value.last
         is_speaker = text.words[at - 2] in values.role_words.speaker
         asked = self._of_speaker(at, last) if is_speaker else self._to_hearer(command, at, last, is_asked=True)

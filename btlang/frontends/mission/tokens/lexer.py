@@ -21,6 +21,7 @@ from btlang.frontends.mission.tokens.repeated_statements import (
     with_questions_each_time,
     with_questions_once,
     with_repeats_apart,
+    with_rounds_beside,
     with_times_first,
 )
 from btlang.frontends.mission.tokens.replaced_commands import with_replacements
@@ -87,6 +88,7 @@ class Lexer:
         with_counted_answers(self.tokens, self.vocabulary)
         self.problems += with_replacements(self.tokens, self.vocabulary, source)
         with_times_first(self.tokens)
+        with_rounds_beside(self.tokens)
         self.problems += with_questions_once(self.tokens, source)
         with_questions_each_time(self.tokens)
         turn_branches(self.tokens)

@@ -26,6 +26,7 @@ from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import ALL, COUNT, NAMES, RELATIONS, Choice, Parts, choice_of
 from btlang.vocabulary.value_type import OBJECT, PLACE
+from btlang.vocabulary.word_tree import find
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -37,6 +38,7 @@ Arguments: TypeAlias = "tuple[tuple[str, str], ...]"
 _TAKING, _PLACED = ("PickUp", "Take", "Bring"), {NAMES, *RELATIONS}
 _NEAREST, _OTHER, _KIND = "nearest", "other_than", "kind"
 _ALL_OR_ONE = (ALL, _NEAREST)
+_ONE = "bring the book to Alice"
 _REASON = "it may be one that was meant before"
 _SIMPLE = frozenset(("command", "name", "open", "close", *JOINTS, *STATEMENT_ENDS))
 
@@ -79,7 +81,13 @@ def with_other_things(tokens: list[Token], vocabulary: Lexicon, text: Words) -> 
                     unclear = unclear or (thing if len(same) > 1 or not is_known else None)
                 meant.append(one)
             elif is_list or len(arguments) > 1:
-                meant += _named_in(value, [arguments])
+                named = _named_in(value, [arguments])
+                if any(one in meant for one in named) and any(
+                    _is_any(text, at, vocabulary) for at in words_of(text, token)
+                ):
+                    words, reason = Span(text.source, token.start, token.end), f"there is only one {named[0].other}"
+                    yield diagnostic("BT150", words, words=words.text, reason=reason, example=_ONE)
+                meant += named
             rows.append(arguments)
         if rows != [*arguments_of(value)]:
             token.value = with_arguments(value, rows)
@@ -88,6 +96,13 @@ def with_other_things(tokens: list[Token], vocabulary: Lexicon, text: Words) -> 
             members = vocabulary.values.likenesses.members
             example = next(iter(members(unclear) or members(of_kind) or ()), words.text)
             yield diagnostic("BT150", words, words=words.text, reason=_REASON, example=example)
+
+
+def _is_any(text: Words, at: int, vocabulary: Lexicon) -> bool:
+    """Whether an object is named at a word behind an indefinite article: `a book`."""
+    if find(vocabulary.values.names_tree(OBJECT), text.words, at) is None or at not in text.articles:
+        return False
+    return text.source.text[slice(*text.articles[at])].lower() in vocabulary.asking["indefinite"]
 
 
 def _kind_in(parts: Parts) -> Parts:

@@ -114,7 +114,8 @@ class PartialCommands:
         before.kind = {"if": "if_doing", "while": "while_doing", "followed_by": "then"}.get(before.kind, before.kind)
         token = self._token_of(match, at)
         token.role = "doing"
-        return max(end, self._place(match, at, token))
+        placed = self._place(match, at, token)
+        return placed if end == match.last else end  # a text may end before its phrase
 
     def add(self, at: int) -> int:
         """The same where nothing before it is changed: `would you mind waving`."""

@@ -35,6 +35,7 @@ ELSEWHERE = "elsewhere"
 """The role of a journey that says where something is done again."""
 _TIMES, _CONDITIONAL = ("at", "delay"), ("if", "unless")
 _LATER = (*_TIMES, *_CONDITIONAL)
+_ROUNDS = frozenset(("every", "every_day"))
 _DONE = ("command", "name", "close")
 _AMOUNTS = ("every", "until_time", "for")
 _UNTIL = ["until", "condition"]
@@ -94,6 +95,18 @@ def _joined(tokens: list[Token], at: int) -> int:
         return at
     tokens[begin:at] = [Token("stop", tokens[at].start, tokens[at].start)]
     return begin + 1
+
+
+def with_rounds_beside(tokens: list[Token]) -> None:
+    """Put rounds in brackets that go on beside others: `every hour, A. Meanwhile, every day at 5 pm, B`."""
+    for at in reversed(range(1, len(tokens) - 2)):
+        if [token.kind for token in tokens[at : at + 2]] != ["stop", "meanwhile"]:
+            continue
+        first, other = statement_start(tokens, at), at + 2 + (tokens[at + 2].kind == "comma")
+        if other < len(tokens) and {tokens[first].kind, tokens[other].kind} <= _ROUNDS:
+            opening, closing = tokens[first], tokens[at]
+            closing.kind = "close"
+            tokens.insert(first, Token("open", opening.start, opening.start))
 
 
 def with_questions_once(tokens: list[Token], source: Source) -> Iterator[Diagnostic]:

@@ -26,6 +26,7 @@ from btlang.text.source import Source, Span
 from btlang.tree.answers import ABOUT_ANSWERS
 from btlang.tree.sums import COMPARED
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.references import choice_of
 from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE, ZONE
 
 INSTEAD = "instead"
@@ -76,13 +77,15 @@ def _find_moved_again(tokens: Sequence[Token], vocabulary: Lexicon, source: Sour
 
 
 def _moved(command: Token) -> set[str]:
-    """The things that a command brings to a place or a person."""
+    """The things that a command brings to a place or a person, who speaks where none is named."""
     value = command.value
-    if not isinstance(value, Called) or {slot.type for slot in value.entry.slots}.isdisjoint((PLACE, PERSON)):
+    if not isinstance(value, Called):
         return set()
-    goals = (*value.entry.given(PLACE, value.arguments), *value.entry.given(PERSON, value.arguments))
-    things = set(value.entry.given(OBJECT, value.arguments))
-    return things if goals and drives(value) else set()
+    named = ((text, choice_of(text)) for text in value.entry.given(OBJECT, value.arguments))
+    things = {text if choice is None else f"{{{choice.key}}}" for text, choice in named}
+    is_for_somebody = any(slot.type == PERSON for slot in value.entry.slots)
+    has_goal = is_for_somebody or any(value.entry.given(PLACE, value.arguments))
+    return things if has_goal and drives(value) else set()
 
 
 def _follows(tokens: Sequence[Token], at: int) -> bool:

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.tokens.counted_things import COUNTED
+from btlang.frontends.mission.tokens.days import list_days, say_hour_first
 from btlang.frontends.mission.tokens.each_and_any import ENDING, STOPS, end_of_condition, say_each
 from btlang.frontends.mission.tokens.parted import part_each
-from btlang.text.time_of_day import WEEKDAYS, WEEKEND, WORKDAYS
 from btlang.text.words import Words
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.pattern import ways
@@ -17,7 +17,6 @@ from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE, TEXT, WORL
 from btlang.vocabulary.word_tree import find
 
 _MOST_ADJECTIVES = 3
-_GROUPS = {"weekdays": [WEEKDAYS[day] for day in WORKDAYS], "weekends": [WEEKDAYS[day] for day in WEEKEND]}
 _LONGEST_TRY = 6  # words
 
 
@@ -31,7 +30,8 @@ def reworded(text: Words, vocabulary: Lexicon) -> list[Diagnostic]:
     _say_there(text, vocabulary)
     say_each(text, vocabulary)
     part_each(text, vocabulary)
-    _list_days(text, vocabulary)
+    list_days(text, vocabulary)
+    say_hour_first(text, vocabulary)
     _say_as_soon_as(text, vocabulary)
     _drop_again(text, vocabulary)
     _drop_back(text, vocabulary)
@@ -131,14 +131,15 @@ def _drop_left(text: Words, vocabulary: Lexicon) -> None:
     be, things = vocabulary.asking["asking_be"], (OBJECT, "kind", "kinds")
     for at in reversed([at for at in range(1, len(words) - 1) if words[at] == remaining[0]]):
         ends, before = not words[at + 1][0].isalpha(), words[at - 1]
-        asks = (i for i in reversed(range(text.earlier(at)[1], at)) if words[i] in vocabulary.before_conditions)
+        asking = vocabulary.before_conditions | vocabulary.firsts["ask_how_many"]
+        asks = (i for i in reversed(range(text.earlier(at)[1], at)) if words[i] in asking)
         first = next(asks, at)
         is_thing = before in vocabulary.quantifiers or any(values.takes_word(kind, before) for kind in things)
         is_thing = is_thing or values.is_number([before])
         if before in be and ends and first < at:
             text.replace(at, [remaining[1]])
         elif (before in be or is_thing) and any(word in be for word in words[first:at]):
-            if ends or words[at + 1] in prepositions:
+            if ends or words[at + 1] in (*prepositions, remaining[-1]):
                 text.drop(at, at + 1)
 
 
@@ -151,38 +152,6 @@ def _say_there(text: Words, vocabulary: Lexicon) -> None:
         found = find(vocabulary.entering, words, at)
         if found is not None and (words[found[1]][0] in ENDING or words[found[1]] in vocabulary.joining):
             text.replace(found[1] - 1, [words[found[1] - 1], *there])
-
-
-def _list_days(text: Words, vocabulary: Lexicon) -> None:
-    """Say days as one list: `on Mondays and on Fridays`, and `every day except Sunday` by the names of the others."""
-    words, values, tree = text.words, vocabulary.values, vocabulary.values.names_tree("days")
-    if text.distinct.isdisjoint(tree):
-        return  # as nearly always
-    on, joints = vocabulary.firsts["on_days"], {",", *vocabulary.roles["and"]}
-    times = {phrase.split()[0] for phrase in vocabulary.roles["at"]}
-    for at in reversed([at for at in range(2, len(words) - 1) if words[at] in on and words[at - 1] in joints]):
-        is_listed = find(tree, words, at - 2 - (words[at - 2] == ",")) is not None
-        if is_listed and find(tree, words, at + 1) is not None:
-            text.drop(at, at + 1)
-    for at in reversed([at for at in range(len(words)) if words[at] in vocabulary.any_day]):
-        found = find(vocabulary.any_day, words, at)
-        first = found[1] if found is not None else at
-        if words[first] in times:  # `every day at 9 am except on Sundays`
-            until = next(i for i in range(first, len(words)) if words[i] in ENDING)
-            first = next((i for i in range(first, until) if values.exception(text, i)), first)
-        end = values.exception(text, first) if found is not None else 0
-        left_out, last = set[str](), 0
-        end += bool(end) and words[end] in on
-        while end and (day := find(tree, words, end)) is not None:
-            left_out.update(_GROUPS.get(day[0], day[:1]))
-            last, end = day[1], day[1] + (words[day[1]] in joints)
-        others = [day for day in WEEKDAYS if day not in left_out]
-        if found is not None and left_out and len(others) > 1:
-            text.drop(first, last)
-            text.drop(at, found[1] - 1)
-            listed = [word for day in others for word in (",", day.lower())]
-            every = vocabulary.asking["any_day"][0].split()[:1]
-            text.replace(at, [*every, *listed[1:-2], vocabulary.word("and"), listed[-1]])
 
 
 def _say_as_soon_as(text: Words, vocabulary: Lexicon) -> None:

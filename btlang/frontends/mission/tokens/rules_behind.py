@@ -49,12 +49,13 @@ def find_counted_rules(tokens: Sequence[Token], source: Source) -> Iterator[Diag
 
 
 def find_ended_rounds(tokens: Sequence[Token], vocabulary: Lexicon, source: Source) -> Iterator[Diagnostic]:
-    """BT151 for `A every hour until 5 pm and B`: is B done each time, or once behind the last?"""
-    for every in [at for at, token in enumerate(tokens[:-1]) if token.kind == "every" and at > 0]:
+    """BT151 for `A every hour until 5 pm and B`, and `A at 8:00 and 9:00 and B`: is B done each time, or once?"""
+    for every in [at for at, token in enumerate(tokens[:-1]) if token.kind in ("every", "at") and at > 0]:
         until = tokens[every + 1]
-        if until.kind not in _ENDING or tokens[every - 1].kind not in _DONE:
+        is_listed = tokens[every].kind == "at" and ";" in str(tokens[every].value)
+        if not (is_listed or until.kind in _ENDING) or tokens[every - 1].kind not in _DONE:
             continue
-        ended = every + 2 if until.kind == "until_time" else _behind(tokens, every + 1)
+        ended = every + 1 if is_listed else every + 2 if until.kind == "until_time" else _behind(tokens, every + 1)
         joint = run_end(tokens, ended, ("comma",))
         first, last = statement_of(tokens, every)
         if joint + 1 < last and tokens[joint].kind == "and" and tokens[joint + 1].kind in _DONE:

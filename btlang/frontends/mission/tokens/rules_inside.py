@@ -67,8 +67,12 @@ def _front(tokens: list[Token], rule: int) -> None:
     first, end = statement_start(tokens, rule), statement_end(tokens, rule)
     joint = run_start(tokens, rule - 1, JOINTS)
     first = _last_then(tokens, first, joint)
+    if tokens[first].kind == "at":  # `at noon, go to the lab and wave whenever C`
+        first += 1 + (tokens[first + 1].kind == "comma")
     condition = tokens[rule + 1 : run_start(tokens, end, STATEMENT_ENDS)]
-    is_command = rule > 0 and tokens[rule - 1].kind in ("command", "wait") and tokens[first].kind not in _LATER
+    lasts = tokens[first].kind == "wait_time" and joint == first + 1  # `stay there until noon and wave whenever C`
+    is_later = tokens[first].kind in _LATER and not lasts
+    is_command = rule > 0 and tokens[rule - 1].kind in ("command", "wait") and not is_later
     if not is_command or not first < joint < rule - 1 or any(each.kind not in _IN_CONDITIONS for each in condition):
         return
     if all(_accompanies(token) for token in tokens[first:joint]):  # `wave and nod whenever C` may mean both each time

@@ -21,6 +21,7 @@ from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, is_q
 from btlang.frontends.mission.tokens.settling import FAILS, WORKS, is_about
 from btlang.frontends.mission.tokens.word_matches import words_of
 from btlang.tree.answers import ABOUT_ANSWERS, ANSWERED
+from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE, TEXT, WORLD
@@ -92,6 +93,17 @@ class ToldWords(SentenceReader):
                 asked = longest(self._vocabulary.trie, self._text, form.last, context)
                 if asked is not None and asked.meaning.role in ("condition", "negated"):
                     return at
+        return 0
+
+    def _end_before_answer(self, first: int, last: int) -> int:
+        """Where a question ends that is asked until an answer comes: `ask Bob if he is ready until he says yes`."""
+        words, context = self._text.words, self._context.with_references()
+        context.latest = dict.fromkeys(context.types, "")
+        for at in (at for at in range(first + 1, last) if words[at] in self._vocabulary.firsts["until"]):
+            until = longest(self._vocabulary.trie, self._text, at + 1, context)
+            if until is not None and until.meaning.entry is not None and until.meaning.entry.id in ABOUT_ANSWERS:
+                paces = ((before, self._phrase(before)) for before in range(first + 1, at))
+                return next((before for before, pace in paces if pace is not None and _is_pace(pace, at)), at)
         return 0
 
     def _asks_for_answer(self, at: int, context: ReadingContext) -> bool:
@@ -295,6 +307,10 @@ class ToldWords(SentenceReader):
         text = self._text
         whole = text.source.text[text.begin(at) : text.ends[at]]
         return whole if whole.lower().endswith(text.words[at]) else text.words[at]
+
+
+def _is_pace(match: Match, last: int) -> bool:
+    return match.meaning.role == "every" and match.last == last
 
 
 def _sentence(said: str, front: str = "") -> str:

@@ -108,7 +108,8 @@ class Visitors(SentenceReader):
         choice = choice_of(everyone)
         first = statement_start(tokens, len(tokens))
         joint = run_start(tokens, len(tokens) - 1, JOINTS)
-        is_plain = all(token.kind in _SIMPLE or (is_first and token.kind in _PACES) for token in tokens[first:])
+        timed = first + (tokens[first].kind == "at" and joint > first + 1)  # `at noon, go there and greet everyone`
+        is_plain = all(token.kind in _SIMPLE or (is_first and token.kind in _PACES) for token in tokens[timed:])
         if choice is None or (choice.parts and not kind) or (ordinal(choice.how) and not is_first) or not is_plain:
             return 0
         if is_first and event.meaning.entry is not None and event.meaning.entry.id == SOMEBODY_SAYS:
