@@ -18,7 +18,6 @@ from btlang.passes.lint.tree_lints import (
     find_busy_loops,
     find_cut_off,
     find_empty_loops,
-    find_only_rounds,
     find_undeclared,
     find_unreachable,
 )
@@ -74,7 +73,6 @@ PASSES = (
     Pass("only rules", find_rules_only, needs_text=True),
     Pass("unused", find_unused, needs_text=True),
     Pass("never runs", find_unreachable),
-    Pass("only round", find_only_rounds),
     Pass("no rounds", find_empty_loops),
     Pass("busy loop", find_busy_loops),
     Pass("chosen in a branch", find_chosen_in_a_branch),

@@ -29,14 +29,16 @@ UNDECLARED = "BT248"
 ASKS, INSTANT, TAKES_TIME = range(3)
 """What the leaves below a node are at most: conditions, things that end in the tick they start, others."""
 Found: TypeAlias = "Exposed | None"
+_JOINTS = " ,.;\n"
 _TIME = "when the time is over"
 _USUAL_END = "6 pm"
 _WHEN = {ON_SUCCESS: "as soon as the condition is false", ON_FAILURE: "as soon as the condition is true"}
 
 
 def find_unreachable(compilation: Compilation) -> list[Diagnostic]:
-    """Report the first unreachable command of each node whose children follow in order."""
+    """Report the first unreachable command of each node whose children follow in order, and rounds without a next."""
     found: list[Diagnostic] = []
+    inside: dict[int, Node] = {}  # rounds that never end, by the command whose last part they are
 
     def combine(node: Node, children: Sequence[Ends], named: dict[str, Ends]) -> Ends:
         kind = CATALOGUE.get(node.id)
@@ -46,42 +48,35 @@ def find_unreachable(compilation: Compilation) -> list[Diagnostic]:
                 if not children[at] & wanted:
                     found.extend(_warnings(kind, node.children[at], children[at], node.children[at + 1], compilation))
                     break
+            if kind.goes_on == ON_SUCCESS and len(children) > 1 and children[-1] & (NEVER | SUCCESS) == NEVER:
+                if _is_endless(node.children[-1]) and _stand_apart(*node.children[-2:]):
+                    inside[id(node)] = node.children[-1]
+        if inside and _is_endless(node) and id(node.children[0]) in inside:
+            warning = _only_round(node, inside[id(node.children[0])], compilation.vocabulary)
+            found.extend([warning] if warning is not None else [])
         return find_ends(node, children, named)
 
     compilation.fold(combine)
     return found
 
 
-def find_only_rounds(compilation: Compilation) -> list[Diagnostic]:
-    """Report rounds that never end inside others: `every day at 9 am, wave. Then every hour, nod` waves once."""
-    found: list[Diagnostic] = []
-    inside: dict[int, Node] = {}  # by the command whose last part they are
-
-    def combine(node: Node, children: Sequence[Ends], named: dict[str, Ends]) -> Ends:
-        kind = CATALOGUE.get(node.id)
-        last = node.children[-1] if len(children) > 1 and kind is not None and kind.goes_on == ON_SUCCESS else None
-        if last is not None and children[-1] & (NEVER | SUCCESS) == NEVER:
-            if _is_endless(last) and _stand_apart(node.children[-2].span, last.span):
-                inside[id(node)] = last
-        rounds = inside.get(id(node.children[0])) if _is_endless(node) else None
-        if rounds is not None and rounds.span is not None and node.span is not None:
-            outer = node.span.source.text[node.span.start : rounds.span.start].rstrip(" ,.;\n")
-            said = (compilation.vocabulary.word(each) for each in ("then", "and"))
-            outer = next((outer[: -len(word)].rstrip(" ,.;\n") for word in said if outer.lower().endswith(word)), outer)
-            advice = _both(outer, rounds.span.text, compilation.vocabulary)
-            found.append(diagnostic("BT078", rounds.span, words=rounds.span.text, advice=advice))
-        return find_ends(node, children, named)
-
-    compilation.fold(combine)
-    return found
+def _only_round(outer: Node, rounds: Node, vocabulary: Lexicon) -> Diagnostic | None:
+    """Make a warning of rounds that never end at the end of others: `every day at 9 am, wave. Then every hour, nod`."""
+    if outer.span is None or rounds.span is None:
+        return None
+    said = outer.span.source.text[outer.span.start : rounds.span.start].rstrip(_JOINTS)
+    words = (vocabulary.word(role) for role in ("then", "and"))
+    said = next((said[: -len(word)].rstrip(_JOINTS) for word in words if said.lower().endswith(word)), said)
+    advice = _both(said, rounds.span.text, vocabulary)
+    return diagnostic("BT078", rounds.span, words=rounds.span.text, advice=advice)
 
 
 def _is_endless(node: Node) -> bool:
     return node.port("num_cycles") == "-1"
 
 
-def _stand_apart(first: Span | None, second: Span | None) -> bool:
-    return first is not None and second is not None and not _overlap(first, second)
+def _stand_apart(first: Node, second: Node) -> bool:
+    return first.span is not None and second.span is not None and not _overlap(first.span, second.span)
 
 
 def _both(rounds: str, others: str, vocabulary: Lexicon) -> str:

@@ -36,10 +36,15 @@ class AddressedTexts(Hearers):
     @cached_property
     def _addressing(self) -> frozenset[str]:
         """The verbs behind which a person is told or asked something; none in a text without times or polite words."""
-        between = self._vocabulary.firsts["at"].union(*(self._vocabulary.firsts[role] for role in _PACES))
+        between = self._vocabulary.firsts["at"] | self._addressing_pace
         if self._text.distinct.isdisjoint(between.union(self._vocabulary.asking["politely"])):
             return frozenset()
         return self._vocabulary.opening_words(TELL, ASK).union(self._vocabulary.asking["reminding"])
+
+    @cached_property
+    def _addressing_pace(self) -> frozenset[str]:
+        """The words with which it begins how often somebody is told or asked something."""
+        return frozenset().union(*(self._vocabulary.firsts[role] for role in _PACES))
 
     def with_time(self, match: Match | None, at: int) -> Match | None:
         """The phrase at a word; `remind Bob at 3 pm to rest` is `at 3 pm, remind Bob to rest`.
@@ -79,7 +84,7 @@ class AddressedTexts(Hearers):
 
     def _pace(self, at: int) -> list[Match]:
         """How often something is asked, at a word: `ask Bob every hour "Tea?"`."""
-        pace = self._phrase(at)
+        pace = self._phrase(at) if self._text.words[at] in self._addressing_pace else None
         return [pace] if pace is not None and pace.meaning.role in _PACES else []
 
     def _tell(self, entry: Entry, value: SlotValue, command: Token) -> int:

@@ -48,8 +48,10 @@ def say_hour_first(text: Words, vocabulary: Lexicon) -> None:
     """Put the hour of a first command behind the days: `on Mondays wave at 9 am`, `every day wave at noon`."""
     if text.distinct.isdisjoint((*vocabulary.values.names_tree("days"), *vocabulary.any_day)):
         return  # as nearly always
-    words = text.words
-    for first in reversed([at for at in range(len(words)) if at == 0 or words[at - 1] in STOPS]):
+    words, fronts = text.words, _fronts(vocabulary)
+    for first in reversed(
+        [at for at, word in enumerate(words) if word in fronts and (not at or words[at - 1] in STOPS)]
+    ):
         last = _end_of_days(text, first, vocabulary)
         begin = last + (words[last] == ",")
         ends = (at for at in range(begin, len(words)) if words[at] in ENDING or words[at] in vocabulary.joining)
@@ -69,17 +71,17 @@ def _end_of_days(text: Words, first: int, vocabulary: Lexicon) -> int:
     any_day = find(vocabulary.any_day, words, first)
     if any_day is not None:
         return any_day[1] if _role(text, first, vocabulary) != "every_day" else 0
-    fronts = {phrase.split()[0] for role in ("on_days", "weekly") for phrase in vocabulary.roles[role]}
-    last, at = 0, first + 1
-    while words[first] in {word for front in fronts for word in front.split("/")}:
-        day = find(tree, words, at)
-        if day is None:
-            break
+    last, day = 0, find(tree, words, first + 1)
+    while day is not None:
         last = day[1]
-        at = last + 1 if words[last] in joints else last + (words[last] == ",")
-        if at == last:
-            break
+        day = find(tree, words, last + 1) if words[last] in joints else None
     return last if last and _role(text, first, vocabulary) not in ("on_days", "weekly") else 0
+
+
+def _fronts(vocabulary: Lexicon) -> set[str]:
+    """The words with which days begin a statement."""
+    phrases = (phrase for role in ("on_days", "weekly") for phrase in vocabulary.roles[role])
+    return {*vocabulary.any_day, *(word for phrase in phrases for word in phrase.split()[0].split("/"))}
 
 
 def _role(text: Words, at: int, vocabulary: Lexicon) -> str:

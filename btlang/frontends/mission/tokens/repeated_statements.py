@@ -99,8 +99,8 @@ def _joined(tokens: list[Token], at: int) -> int:
 
 def with_rounds_beside(tokens: list[Token]) -> None:
     """Put rounds in brackets that go on beside others: `every hour, A. Meanwhile, every day at 5 pm, B`."""
-    for at in reversed(range(1, len(tokens) - 2)):
-        if [token.kind for token in tokens[at : at + 2]] != ["stop", "meanwhile"]:
+    for at in reversed([at for at, token in enumerate(tokens[1:-1]) if token.kind == "meanwhile"]):
+        if tokens[at].kind != "stop":
             continue
         first, other = statement_start(tokens, at), at + 2 + (tokens[at + 2].kind == "comma")
         if other < len(tokens) and {tokens[first].kind, tokens[other].kind} <= _ROUNDS:
