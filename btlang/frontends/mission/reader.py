@@ -134,7 +134,9 @@ class _Reader:
             from btlang.frontends.mission.corrections import corrected  # most missions need none
 
             errors_of = self._errors if self._errors_of is not None else None
-            problems = corrected(lexer, problems, errors_of)
+            from btlang.frontends.mission.explanations.times import without_misled_times
+
+            problems = without_misled_times(corrected(lexer, problems, errors_of))
             if lexer.text.unreadable:
                 from btlang.frontends.mission.comparison_signs import explain_signs
 

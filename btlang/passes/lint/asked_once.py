@@ -30,6 +30,8 @@ _QUOTED_ENDS = ('."', '!"', '?"')
 ON_THE_WAY = ("SomeoneInTheWay", "SomethingInTheWay")
 _BUMPED = "Bumped"
 _WHILE_DRIVING = (_BUMPED, "WallInFront", "ObstacleWithin")
+_WHERE = ("at", "inside")
+"""The parts of a description that say at which place somebody or something is."""
 _IN_VIEW = ("SeesSomeone", "SeesPerson", "SeesObject", "SomeoneNear", "PersonNear")
 _CLOSED = "DoorClosed"
 _FREE, _BATTERY, _LOW = "PathClear", "Battery", "BatteryLow"
@@ -118,6 +120,7 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
         or (is_front and asked.entry.id == _BUMPED and asked.entry not in entries)
     )
     is_seen = isinstance(asked, ast.Phrase) and asked.entry.id in _IN_VIEW and _is_tour(journeys)
+    is_seen = is_seen and not _is_at_goal(asked, journeys[-1])
     if is_timed or is_driving or (is_seen and is_front):
         each = f"{vocabulary.word('whenever')} {node.span.text[len(words.split(maxsplit=1)[0]) :].lstrip()}"
         place, each = _as_sentence(node, each, vocabulary)
@@ -170,6 +173,13 @@ def _is_tour(journeys: Sequence[ast.Phrase]) -> bool:
     choices = [choice_of(goal) for goal in goals]
     is_set = any(choice is not None and choice.how == ALL for choice in choices)
     return is_set or (len(goals) > 1 and len({each.entry.id for each in journeys}) == 1)
+
+
+def _is_at_goal(asked: ast.Ast, journey: ast.Phrase) -> bool:
+    """Return whether a condition is about somebody or something where a journey ends: `anyone in the hall`."""
+    choices = map(choice_of, (text for _, text in asked.arguments)) if isinstance(asked, ast.Phrase) else ()
+    places = {text for choice in choices if choice is not None for part, text in choice.parts if part in _WHERE}
+    return not places.isdisjoint([*journey.entry.given(PLACE, journey.arguments)][-1:])
 
 
 def _asked(node: ast.If) -> ast.Ast:

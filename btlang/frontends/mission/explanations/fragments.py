@@ -57,9 +57,11 @@ def explain_fragment(
         examples = (f"{head} {words} {rest}".strip() for words in wanted)
         return diagnostic("BT012", text.span(at, place), words=head, wanted=listed, example=", or: ".join(examples))
     ways = Counter(gap.entry.id for gap, _ in found)  # what can be said in most ways is what people say most
-    first = {gap.entry.id: " ".join(gap.missing) for gap, _ in reversed(found)}
-    offered = sorted(first, key=lambda node_id: -ways[node_id])[:_MOST_OFFERED]
-    example = ", or: ".join(f"{first[node_id]} {whole.text}" for node_id in offered)
+    gaps = [gap for gap, _ in found]
+    of_entry = {each: [gap.missing for gap in gaps if gap.entry.id == each] for each in ways}
+    shortest = {each: min(words, key=len) for each, words in of_entry.items()}
+    offered = sorted(shortest, key=lambda node_id: -ways[node_id])[:_MOST_OFFERED]
+    example = ", or: ".join(f"{' '.join(shortest[node_id])} {whole.text}" for node_id in offered)
     is_value = all(not isinstance(part, str) for part in found[0][0].said)
     return diagnostic("BT019" if is_value else "BT154", span, words=span.text, example=example)
 

@@ -56,8 +56,10 @@ def _ending(node: TrieNode) -> str:
     """Return the first words that lead from there to the end of a phrase, "" if none are needed or a slot follows."""
     words: list[str] = []
     while not NO_WORDS & node.keys():
-        word, node = next(iter(node.items()))
+        word = next(iter(node))
+        word = f"{word}s" if f"{word}s" in node else word  # `3 attempts`
         words.append(word)
+        node = node[word]
     return " ".join(words) if END in node else ""
 
 

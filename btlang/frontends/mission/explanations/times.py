@@ -16,6 +16,8 @@ from btlang.vocabulary.match import SlotValue
 _TIME, _DAYS = "time_of_day", "days"
 DAYTIME, MIDNIGHT = "TimeOfDay", "00:00"
 """The condition that the time of day is within bounds, and where a day begins."""
+_NOWHERE = "is a time of day, and none can stand here"
+_SENTENCE_END = re.compile(r"[.!?;](?=\s)|\n")
 _USUAL = "6:30 pm, or 18:30"
 _BESIDE_MARK = re.compile(r"(?<=\d)\s*[:.]\s*(?=\d)")
 
@@ -29,7 +31,7 @@ def explain_time(text: Words, at: int, wanted: bool, vocabulary: Lexicon) -> Dia
             return None  # `noon` is also a plain word
         span = text.span(at, time[1])
         example = f"{vocabulary.word('at')} {span.text}, wave"
-        return _problem(span, "is a time of day, and none can stand here", example)
+        return _problem(span, _NOWHERE, example)
     if ":" in words[at] and words[at][0].isdecimal():
         half = values.half_of_day(text, at + 1)
         return _problem(text.span(at, half[1] if half else at + 1), "isn't a time of day", _USUAL)
@@ -55,6 +57,20 @@ def explain_time(text: Words, at: int, wanted: bool, vocabulary: Lexicon) -> Dia
     halves = values.halves_of_day if 1 <= hour <= 12 else []
     ways = ", or ".join((*(f"{span.text} {half}" for half in halves), f"{int(hour)}:{minutes or 0:02}"))
     return _problem(span, "isn't a time of day: it needs am, pm or a ':'", ways)
+
+
+def without_misled_times(problems: Sequence[Diagnostic]) -> list[Diagnostic]:
+    """Leave out that a time can't stand where it does, if something else in its sentence isn't understood."""
+
+    def misleads(time: Diagnostic) -> bool:
+        others = (each.span for each in problems if each.is_error and each.span.start > time.span.end)
+        return _NOWHERE in time.message and any(
+            other.source is time.span.source
+            and _SENTENCE_END.search(other.source.text, time.span.end, other.start) is None
+            for other in others
+        )
+
+    return [problem for problem in problems if not misleads(problem)]
 
 
 def assumed_times(text: Words, values: Sequence[SlotValue]) -> Iterator[Diagnostic]:
