@@ -29,6 +29,7 @@ NAME = "named"
 """The part that is a name of the world; `name` is that of a node."""
 _HEADS = ("object", "place", "person", "door", "zone")
 """The types of what a relation may lead to."""
+_OTHER = "other_than"
 _PLACED = frozenset(("inside", "at", "off"))
 _MOST_DEEP = 3
 _LONGEST_CLAUSE = 8  # words
@@ -207,9 +208,17 @@ class Modifiers:
             for value, end in self._thing(text, found[1], names, depth):
                 if found[0] != "between":
                     yield ((found[0], value),), end
+                    yield from self._others(text, value, end, names, depth) if found[0] == _OTHER else ()
                 elif depth == 1 and text.words[end] in self._both:
                     for second, last in self._thing(text, end + 1, names, depth):
                         yield ((found[0], f"{value}{SECOND}{second}"),), last
+
+    def _others(self, text: Words, value: str, at: int, names: Names, depth: int) -> Iterator[tuple[Parts, int]]:
+        """Further things behind one: `different from the red cup and the blue cup`."""
+        for second, last in self._thing(text, at + 1, names, depth) if text.words[at] in self._both else ():
+            both = f"{value}{SECOND}{second}"
+            yield ((_OTHER, both),), last
+            yield from self._others(text, both, last, names, depth)
 
     def _thing(self, text: Words, at: int, names: Names, depth: int) -> Iterator[tuple[str, int]]:
         """What a relation leads to: a name, or a kind with its adjectives; the shortest first."""
@@ -226,7 +235,7 @@ class Modifiers:
         """The longest name, or kind where no name is as long; both may have adjectives before them."""
         best: tuple[str, str, int] | None = None
         for parts, start in ((), at), *self.before(text, at, names):
-            if ("other_than", LATEST) in parts:
+            if (_OTHER, LATEST) in parts:
                 continue  # than which one depends on what is described
             heads = [(kind, "", find(names(kind), text.words, start)) for kind in _HEADS]
             for kind, of, found in (*heads, ("object", "kind ", find(names("kind"), text.words, start))):

@@ -107,7 +107,7 @@ class Relations:
         if relation == "other_than" and value == SELF:
             return not self._is_here(name, pose)
         if relation == "other_than":
-            return name not in self._meant(value, pose)
+            return all(name not in self._meant(each, pose) for each in value.split(SECOND))
         if relation == "between":
             first, _, second = value.partition(SECOND)
             pairs = ((one, other) for one in self._meant(first, pose) for other in self._meant(second, pose))
