@@ -176,9 +176,7 @@ class Session:
         """
         found = self._mission_of(mission)
         if self.current is not None and self.current.is_under_way:
-            raise RuntimeError(
-                "another run is active; a session has one run at a time (`halt` ends one that is ticked)"
-            )
+            raise RuntimeError("another run is active; a session has one run at a time")
         factor = {"real": 1.0, "max": math.inf}.get(speed) if isinstance(speed, str) else speed
         if factor is None or not factor >= SLOWEST:
             raise ValueError(f'speed must be "real", "max" or a number from {SLOWEST} on, not {speed!r}')
@@ -391,7 +389,6 @@ class Run:
         """
         self._check_is_latest()
         status = Status(self._runner.tick(seconds))
-        self._under_way = status is Status.RUNNING
         is_over = status not in (Status.RUNNING, Status.IDLE)
         self.outcome = self._explained(self._runner.completed(status)) if is_over else None
         return status
@@ -399,7 +396,6 @@ class Run:
     def halt(self) -> None:
         """Halt every running leaf and stop the robot; the next tick starts over."""
         self._runner.halt()
-        self._under_way = False
 
     def pause(self) -> None:
         """Bring the robot to rest, and stop the mission time."""

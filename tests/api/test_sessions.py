@@ -201,11 +201,9 @@ def test_a_session_has_one_run_at_a_time_also_where_runs_are_ticked() -> None:
             with pytest.raises(RuntimeError, match="prepared another run"):
                 begin()
         assert run.tick() is btlang.Status.RUNNING
-        with pytest.raises(RuntimeError, match="another run is active"):
-            session.prepare("wave")
-        run.halt()
-        assert not run.is_under_way
-        assert session.run("wave", speed="max").succeeded
+        assert session.restore("wave", run.save()).tick() is btlang.Status.RUNNING
+        with pytest.raises(RuntimeError, match="prepared another run"):
+            run.tick()
 
 
 def test_a_status_is_printed_by_its_name_and_equals_its_number() -> None:

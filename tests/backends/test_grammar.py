@@ -131,7 +131,7 @@ def test_every_role_that_can_stand_in_one_line_has_a_rule() -> None:
         "weekly",  # behind what a rule makes
         "ask_where", "ask_how_many", "there_are",  # their names are those of other commands
         "all_names", "nearest", "random", "largest", "smallest", "except",  # said as values
-        "furthest", "leftmost", "rightmost",
+        "furthest", "leftmost", "rightmost", "speaking",
     }  # fmt: skip
     roles = {role.replace("_", "-") for role in WORDS.roles if role not in elsewhere}
     rules = rules_of().keys()

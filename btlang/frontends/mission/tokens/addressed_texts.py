@@ -278,14 +278,15 @@ class AddressedTexts(Hearers):
         return next(ends, 0)
 
     def _note_asked(self, at: int, last: int) -> None:
-        """Make `it` what a question is about: `ask Bob if he wants the cup. If so, bring it`; of several, none."""
+        """Make `it` and `there` what a question is about: `ask Bob if he wants the cup. If so, bring it`."""
         self._calls.note_asked([*self._text.words[at:last], END_OF_TEXT])
-        doors = self._vocabulary.values.names_tree(DOOR)
-        found = {found[0] for place in range(at, last) if (found := find(doors, self._text.words, place))}
-        if len(found) == 1:
-            self._context.latest[DOOR] = found.pop()
-        elif found:
-            self._context.latest.pop(DOOR, None)
+        for kind in (DOOR, PLACE):
+            tree = self._vocabulary.values.names_tree(kind)
+            found = {found[0] for place in range(at, last) if (found := find(tree, self._text.words, place))}
+            if len(found) == 1:
+                self._context.latest[kind] = found.pop()
+            elif found:
+                self._context.latest.pop(kind, None)
 
     def _say_too(self, entry: Entry, value: SlotValue, command: Token) -> int:
         """`ask Bob "Tea?". If he says no, ask Alice`, `tell Bob lunch is ready, then tell Alice too`: to somebody else.

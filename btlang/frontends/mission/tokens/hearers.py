@@ -5,14 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btlang.diagnostics.diagnostic import diagnostic
-from btlang.frontends.mission.token import STATEMENT_ENDS, Called, Listed, Token, arguments_of
+from btlang.frontends.mission.token import STATEMENT_ENDS, Called, Listed, Token, arguments_of, statement_start
 from btlang.frontends.mission.tokens.sentence_reader import is_question
 from btlang.frontends.mission.tokens.told_words import ToldWords
 from btlang.frontends.mission.tokens.word_matches import words_of
 from btlang.text.source import Span
 from btlang.text.words import Words
+from btlang.tree.answers import ABOUT_ANSWERS
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.match import Match
 from btlang.vocabulary.value_type import OBJECT, PERSON
 from btlang.vocabulary.word_tree import find
 
@@ -136,6 +138,24 @@ class Hearers(ToldWords):
             here |= latest if place >= ends[-1] else set()
         return known, here
 
+    def note_other(self, match: Match) -> None:
+        """BT038 for `ask Bob what Alice needs. If he says cup, bring it to her`: she isn't Bob."""
+        text, vocabulary, tokens = self._text, self._vocabulary, self._tokens
+        plural = vocabulary.values.plural_pronouns
+        single = {who for who, forms in vocabulary.persons.items() if plural.isdisjoint(forms)}
+        for value in match.values if self._calls.speaks_of_people else ():
+            who = person_of(text.words[value.first], vocabulary) if value.type == PERSON and not value.more else ""
+            if who not in single:
+                continue
+            first = statement_start(tokens, len(tokens))
+            answer = next((at for at in range(first, len(tokens)) if _is_answer(tokens[at])), None)
+            named = set().union(*map(self._persons_of, tokens[answer or 0 : -1]))
+            subject = person_of(text.words[words_of(text, tokens[answer]).start], vocabulary) if answer else who
+            if subject in single - {who} and value.text not in named:
+                word, example = text.span(value.first, value.last), vocabulary.values.said_names(PERSON)[0]
+                problem = diagnostic("BT038", word, words=word.text, type=PERSON, example=example)
+                self._calls.problems.append(problem)
+
     def _said_by(self, token: Token) -> set[str]:
         """The persons for whom words of a token stand."""
         words = words_of(self._text, token)
@@ -257,6 +277,11 @@ def verbs_of(text: Words, first: int, last: int, vocabulary: Lexicon) -> dict[in
     if not found and text.words[first - 1] in asking["who"] and _with_you(asked, vocabulary) != asked:
         found[first] = asked, first + 1  # `who wants tea`
     return found
+
+
+def _is_answer(token: Token) -> bool:
+    """Whether a condition is about what somebody answered."""
+    return token.kind == "condition" and isinstance(token.value, Called) and token.value.entry.id in ABOUT_ANSWERS
 
 
 def _owns(text: Words, at: int, last: int, vocabulary: Lexicon) -> bool:

@@ -459,6 +459,7 @@ class WordReader:
         if end := self._visitors.read_met(match.last):
             return end
         self._requests.note_question(said)
+        self._requests.note_other(match)
         self._outcomes.give_up(match.last)
         self._places.search_there(match)
         self._visitors.in_each()
