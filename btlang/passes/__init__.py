@@ -24,6 +24,7 @@ from btlang.passes.lint.tree_lints import (
 from btlang.passes.lint.two_readings import (
     find_conditional_alternatives,
     find_counts_behind_lists,
+    find_early_rules,
     find_lasting_reactions,
     find_rules_at_goals,
     find_two_readings,
@@ -58,6 +59,7 @@ PASSES = (
     Pass("two readings", find_two_readings, needs_text=True),
     Pass("conditional alternative", find_conditional_alternatives, needs_text=True),
     Pass("rules at goals", find_rules_at_goals, needs_text=True),
+    Pass("early rules", find_early_rules, needs_text=True),
     Pass("counts behind lists", find_counts_behind_lists, needs_text=True),
     Pass("lasting reactions", find_lasting_reactions, needs_text=True),
     Pass("asked once", find_asked_once, needs_text=True),

@@ -213,6 +213,24 @@ def _rules_at_goal(items: Sequence[ast.Ast], vocabulary: Lexicon) -> Iterator[Di
     yield problem.replace(readings=((whole, taken), (whole, other)))
 
 
+def find_early_rules(compilation: Compilation) -> Iterator[Diagnostic]:
+    """Report `at 10 pm, check the lab. Whenever somebody is there, wave`: the rule holds until 10 pm, too."""
+    body, vocabulary = compilation.mission.body, compilation.vocabulary
+    items = sort_by_place(body.items) if isinstance(body, ast.Chain) else ()
+    for wait, rule in pairwise(item for item in items if isinstance(item, ast.WaitTime | ast.Whenever)):
+        if not isinstance(wait, ast.WaitTime) or not isinstance(rule, ast.Whenever):
+            continue
+        asked, said = rule.condition, Span(wait.span.source, wait.span.start, rule.span.start).text.rstrip(" .;,")
+        is_about_people = isinstance(asked, ast.Phrase) and _is_about_people(asked.entry, vocabulary)
+        if not is_about_people or "\n" in said or rule.body.span.start < asked.span.start:
+            continue
+        whole, behind = Span(wait.span.source, wait.span.start, rule.span.end), rule.span.text
+        taken = f"{behind}. {said}"
+        other = f"{said}, {vocabulary.word('and')} {behind[:1].lower()}{behind[1:]}"
+        problem = diagnostic("BT050", whole, taken=taken, fixed=taken, other=other)
+        yield problem.replace(readings=((whole, taken), (whole, other)))
+
+
 def find_counts_behind_lists(compilation: Compilation) -> Iterator[Diagnostic]:
     """Report `go through the lab and the hall and count the people`: in each, or only in the last."""
     word, joints = compilation.vocabulary.word, compilation.vocabulary.roles["and"]

@@ -15,6 +15,7 @@ from btlang.frontends.mission.token import (
     statement_start,
     texts_of,
 )
+from btlang.frontends.mission.tokens.rules_inside import ON_WAY, any_lasts
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.frontends.mission.tokens.settling import FAILS
 from btlang.frontends.mission.tokens.silent_words import BEGINS
@@ -136,13 +137,17 @@ class RuleWords(SentenceReader):
     def _split_rule(self, last: int) -> None:
         """`patrol until noon, and whenever bumped, wave`: a rule of its own, where each command is done once.
 
-        Also in `patrol, but wave whenever bumped`.
+        Also in `patrol, but wave whenever bumped`. Behind other statements, or a time, it holds while A is done.
         """
         tokens = self._tokens
         if last > 1 and tokens[last - 1].kind == "command" and tokens[last - 2].kind == "but":
             last -= 1
         joint = run_start(tokens, last, JOINTS | {"but"})
-        before = tokens[statement_start(tokens, joint) : joint]
+        first = statement_start(tokens, joint)
+        before = tokens[first:joint]
         if before and any(token.kind in ("and", "but") for token in tokens[joint:last]):
-            if all(token.kind in _PLAIN for token in before):
+            timed = before[0].kind == "at"
+            if all(token.kind in _PLAIN for token in before[timed:]):
+                if tokens[last].kind == "whenever" and (timed or first) and any_lasts(before):
+                    tokens[last].role = ON_WAY
                 tokens[joint:last] = [Token("semi", tokens[joint].start, tokens[joint].start)]

@@ -75,7 +75,7 @@ def _front(tokens: list[Token], rule: int) -> None:
     is_command = rule > 0 and tokens[rule - 1].kind in ("command", "wait") and not is_later
     if not is_command or not first < joint < rule - 1 or any(each.kind not in _IN_CONDITIONS for each in condition):
         return
-    if all(_accompanies(token) for token in tokens[first:joint]):  # `wave and nod whenever C` may mean both each time
+    if not any_lasts(tokens[first:joint]):  # `wave and nod whenever C` may mean both each time
         return
     done, here = tokens[rule - 1], tokens[rule].start
     made = [tokens[rule], *condition, Token("comma", here, here), done]
@@ -85,6 +85,11 @@ def _front(tokens: list[Token], rule: int) -> None:
     if keeps_in or command[-1].role == STAYS:  # `stand at the door and wave whenever C`
         command += [Token("semi" if keeps_in else "then", here, here), Token("wait_forever", here, here)]
     tokens[first:end] = _made(tokens[first:end], command, made)
+
+
+def any_lasts(commands: Sequence[Token]) -> bool:
+    """Whether some of these commands last, so that a rule may hold meanwhile."""
+    return not all(map(_accompanies, commands))
 
 
 def _accompanies(token: Token) -> bool:
@@ -123,10 +128,15 @@ def _is_event(tokens: Sequence[Token], form: int) -> bool:
 def _on_way(statement: Sequence[Token], rule: int) -> list[Token]:
     """The block of a rule that begins at a place and the commands before it."""
     last = run_start(statement, rule, JOINTS | STATEMENT_ENDS)
-    journey = statement[:last]
-    if not journey or any(token.kind not in ("command", "name", *JOINTS) for token in journey):
+    kinds = [token.kind for token in statement[:2]]
+    begin = {"then": 1, "at": 1 + (kinds[1:] == ["comma"])}.get(kinds[0], 0)
+    journey = list(statement[begin:last])
+    if not journey or any(token.kind not in ("command", "name", "wait_time", *JOINTS) for token in journey):
         return []
-    return _made(statement, journey, statement[rule:])
+    if journey[-1].role == STAYS:
+        here = journey[-1].end
+        journey += [Token("then", here, here), Token("wait_forever", here, here)]
+    return [*statement[:begin], *_made(statement[begin:], journey, statement[rule:])]
 
 
 def _block(statement: Sequence[Token], doing: int) -> list[Token]:
