@@ -30,6 +30,7 @@ ASKS, INSTANT, TAKES_TIME = range(3)
 """What the leaves below a node are at most: conditions, things that end in the tick they start, others."""
 Found: TypeAlias = "Exposed | None"
 _JOINTS = " ,.;\n"
+_APART = "To do both, give each a mission and a schedule of its own: btc task schedule MISSION --every RULE"
 _TIME = "when the time is over"
 _USUAL_END = "6 pm"
 _WHEN = {ON_SUCCESS: "as soon as the condition is false", ON_FAILURE: "as soon as the condition is true"}
@@ -52,7 +53,7 @@ def find_unreachable(compilation: Compilation) -> list[Diagnostic]:
                 if _is_endless(node.children[-1]) and _stand_apart(*node.children[-2:]):
                     inside[id(node)] = node.children[-1]
         if inside and _is_endless(node) and id(node.children[0]) in inside:
-            warning = _only_round(node, inside[id(node.children[0])], compilation.vocabulary)
+            warning = _only_round(node, inside[id(node.children[0])], compilation)
             found.extend([warning] if warning is not None else [])
         return find_ends(node, children, named)
 
@@ -60,14 +61,16 @@ def find_unreachable(compilation: Compilation) -> list[Diagnostic]:
     return found
 
 
-def _only_round(outer: Node, rounds: Node, vocabulary: Lexicon) -> Diagnostic | None:
+def _only_round(outer: Node, rounds: Node, compilation: Compilation) -> Diagnostic | None:
     """Make a warning of rounds that never end at the end of others: `every day at 9 am, wave. Then every hour, nod`."""
     if outer.span is None or rounds.span is None:
         return None
     said = outer.span.source.text[outer.span.start : rounds.span.start].rstrip(_JOINTS)
-    words = (vocabulary.word(role) for role in ("then", "and"))
+    words = (compilation.vocabulary.word(role) for role in ("then", "and"))
     said = next((said[: -len(word)].rstrip(_JOINTS) for word in words if said.lower().endswith(word)), said)
-    advice = _both(said, rounds.span.text, vocabulary)
+    held = _held(rounds, compilation)
+    may_meet = not _held(outer, compilation, but=rounds).isdisjoint(held)
+    advice = _APART if may_meet or not said else _both(said, rounds.span.text, compilation.vocabulary)
     return diagnostic("BT078", rounds.span, words=rounds.span.text, advice=advice)
 
 
@@ -77,6 +80,15 @@ def _is_endless(node: Node) -> bool:
 
 def _stand_apart(first: Node, second: Node) -> bool:
     return first.span is not None and second.span is not None and not _overlap(first.span, second.span)
+
+
+def _held(node: Node, compilation: Compilation, but: Node | None = None) -> set[str]:
+    """Return the resources of the robot that some commands use; those of another tree aren't looked at."""
+    if node is but:
+        return set()
+    entries = compilation.vocabulary.entries.get(node.id, ())
+    own = {each for entry in entries for each in entry.resources}
+    return own.union(*(_held(child, compilation, but) for child in node.children))
 
 
 def _both(rounds: str, others: str, vocabulary: Lexicon) -> str:
@@ -97,20 +109,24 @@ def _warnings(parent: NodeKind, before: Node, ends: Ends, behind: Node, compilat
     found = diagnostic("BT052", behind.span, ((before.span, f"this {reason}"),), reason=reason)
     if before.port("num_cycles") and compilation.is_text and "\n" not in before.span.text + behind.span.text:
         may_end = not any(part.port("time") for part in before.children[0].children)  # but `every day at 9 am, wave`
-        ways = _ways_out(before.span.text, behind.span.text, may_end, compilation.vocabulary)
+        may_meet = not _held(before, compilation).isdisjoint(_held(behind, compilation))
+        ways = _ways_out(before.span.text, behind.span.text, may_end, may_meet, compilation.vocabulary)
         found = found.advising(ways) if ways else found
     return [found]
 
 
-def _ways_out(rounds: str, behind: str, may_end: bool, vocabulary: Lexicon) -> str:
-    """Say how to come to what stands behind rounds without end, and how to do it in each of them."""
+def _ways_out(rounds: str, behind: str, may_end: bool, may_meet: bool, vocabulary: Lexicon) -> str:
+    """Say how to come to what stands behind rounds without end, and how to do it in each of them.
+
+    Rounds that need the same resources of the robot, and so `may_meet`, can't go on beside one another.
+    """
     until = vocabulary.first("until_time").replace("{time_of_day}", _USUAL_END)
     may_end = may_end and rounds.split()[-1].lower() not in vocabulary.counts  # but `wave forever`
     ways = [f"To do it in the end, say when that comes, for example: {rounds} {until}"] if may_end else []
     paces = vocabulary.firsts["every"] | vocabulary.firsts["every_day"] | vocabulary.firsts["weekly"]
     has_pace = [said.split()[0].lower() in paces for said in (rounds, behind)]
     if all(has_pace):
-        ways.append(_both(rounds, behind, vocabulary))
+        ways.append(_APART if may_meet else _both(rounds, behind, vocabulary))
     elif has_pace[0]:
         behind = f"{behind[:1].lower()}{behind[1:]}"
         ways.append(f"To do it in each round, write: {rounds}, {vocabulary.word('then')} {behind}")

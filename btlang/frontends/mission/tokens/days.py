@@ -9,6 +9,7 @@ from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.word_tree import find
 
+_DAILY = ("on_days", "weekly", "every_day")
 _GROUPS = {"weekdays": [WEEKDAYS[day] for day in WORKDAYS], "weekends": [WEEKDAYS[day] for day in WEEKEND]}
 
 
@@ -58,11 +59,17 @@ def say_hour_first(text: Words, vocabulary: Lexicon) -> None:
         hours = (at for at in range(begin + 1, next(ends, 0)) if _role(text, at, vocabulary) == "at")
         hour = next(hours, 0) if last else 0
         match = longest(vocabulary.trie, text, hour, vocabulary.context) if hour else None
-        if match is not None:
+        if match is not None and not _names_days(text, match.last, vocabulary):
             said = [words[last - 1], *words[hour : match.last], ","]
             text.drop(hour, match.last)
             text.drop(last, begin)
             text.replace(last - 1, said)
+
+
+def _names_days(text: Words, at: int, vocabulary: Lexicon) -> bool:
+    """Whether other days are named in the statement that goes on at a word: `..., on Saturdays at 9`."""
+    end = next(place for place in range(at, len(text.words)) if text.words[place] in STOPS)
+    return any(_end_of_days(text, i, vocabulary) or _role(text, i, vocabulary) in _DAILY for i in range(at, end))
 
 
 def _end_of_days(text: Words, first: int, vocabulary: Lexicon) -> int:
@@ -75,7 +82,7 @@ def _end_of_days(text: Words, first: int, vocabulary: Lexicon) -> int:
     while day is not None:
         last = day[1]
         day = find(tree, words, last + 1) if words[last] in joints else None
-    return last if last and _role(text, first, vocabulary) not in ("on_days", "weekly") else 0
+    return last if last and _role(text, first, vocabulary) not in _DAILY else 0
 
 
 def _fronts(vocabulary: Lexicon) -> set[str]:
