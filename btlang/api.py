@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from functools import partial
 from importlib import import_module
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
@@ -64,7 +65,17 @@ def parse_tree(
     source = source_of(text)
     with gc_paused, _hint_at_file(text):
         vocabulary, chosen = mission_vocabulary(source, keywords, world_of(world), language, has_robot=has_robot)
-        read = read_text(source, main, vocabulary=vocabulary, parser=parser, errors_of=errors_of, known=_known(values))
+        known = _known(values)
+        try:
+            read = read_text(source, main, vocabulary=vocabulary, parser=parser, errors_of=errors_of, known=known)
+        except MissionError as error:
+            if frontend_of(source) != "english":
+                raise
+            from btlang.passes.lint.beside_errors import find_beside_errors
+
+            warnings_of = partial(_warnings_of, vocabulary=vocabulary, parser=parser, known=known)
+            beside = find_beside_errors(source, error.diagnostics, warnings_of)
+            raise MissionError([*error.diagnostics, *beside]) from None
         if isinstance(read, Tree):
             return mission_of_tree(read, vocabulary, chosen)
         compilation = run_passes(Compilation(vocabulary, read.mission, warnings=read.warnings, origins=origins))
@@ -72,6 +83,11 @@ def parse_tree(
     return Mission(
         compilation.tree, vocabulary, chosen, tuple(compilation.warnings), program, tuple(all_facts(program))
     )
+
+
+def _warnings_of(source: Source, vocabulary: Lexicon, parser: str, known: Mapping[str, Known]) -> list[Diagnostic]:
+    read = read_mission(source, vocabulary, parser, known)
+    return run_passes(Compilation(vocabulary, read.mission, warnings=read.warnings)).warnings
 
 
 @contextmanager

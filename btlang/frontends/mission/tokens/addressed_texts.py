@@ -10,7 +10,7 @@ from btlang.frontends.mission.token import Called, Listed, Token, arguments_of, 
 from btlang.frontends.mission.tokens.hearers import Hearers, verbs_of
 from btlang.frontends.mission.tokens.silent_words import BEGINS
 from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of
-from btlang.text.words import END_OF_TEXT, Words
+from btlang.text.words import Words
 from btlang.tree.answers import ASK
 from btlang.vocabulary.entry import RECIPIENT, Entry
 from btlang.vocabulary.match import Match, SlotValue
@@ -276,17 +276,6 @@ class AddressedTexts(Hearers):
             at for at, match in found if match is not None and match.meaning.role in _MEASURES and match.last == last
         )
         return next(ends, 0)
-
-    def _note_asked(self, at: int, last: int) -> None:
-        """Make `it` and `there` what a question is about: `ask Bob if he wants the cup. If so, bring it`."""
-        self._calls.note_asked([*self._text.words[at:last], END_OF_TEXT])
-        for kind in (DOOR, PLACE):
-            tree = self._vocabulary.values.names_tree(kind)
-            found = {found[0] for place in range(at, last) if (found := find(tree, self._text.words, place))}
-            if len(found) == 1:
-                self._context.latest[kind] = found.pop()
-            elif found:
-                self._context.latest.pop(kind, None)
 
     def _say_too(self, entry: Entry, value: SlotValue, command: Token) -> int:
         """`ask Bob "Tea?". If he says no, ask Alice`, `tell Bob lunch is ready, then tell Alice too`: to somebody else.

@@ -10,12 +10,12 @@ from btlang.frontends.mission.tokens.sentence_reader import is_question
 from btlang.frontends.mission.tokens.told_words import ToldWords
 from btlang.frontends.mission.tokens.word_matches import words_of
 from btlang.text.source import Span
-from btlang.text.words import Words
+from btlang.text.words import END_OF_TEXT, Words
 from btlang.tree.answers import ABOUT_ANSWERS
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match
-from btlang.vocabulary.value_type import OBJECT, PERSON
+from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE
 from btlang.vocabulary.word_tree import find
 
 _SOMEBODY = "may be somebody else for whoever hears it"
@@ -168,6 +168,17 @@ class Hearers(ToldWords):
         if not isinstance(said, Called | Listed):
             return set()
         return {text for arguments in arguments_of(said) for text in said.entry.given(PERSON, arguments) if text}
+
+    def _note_asked(self, at: int, last: int) -> None:
+        """Make `it` and `there` what a question is about: `ask Bob if he wants the cup. If so, bring it`."""
+        self._calls.note_asked([*self._text.words[at:last], END_OF_TEXT])
+        for kind in (DOOR, PLACE):
+            tree = self._vocabulary.values.names_tree(kind)
+            found = {found[0] for place in range(at, last) if (found := find(tree, self._text.words, place))}
+            if len(found) == 1:
+                self._context.latest[kind] = found.pop()
+            elif found:
+                self._context.latest.pop(kind, None)
 
     def _with_thing(self, text: Words, first: int, last: int) -> Words:
         """`look for the cup. If that fails, ask Bob where it is`: the words with the cup, which he can't know."""
