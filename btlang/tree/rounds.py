@@ -135,6 +135,7 @@ def _choice_of(node: ast.Ast) -> Choice | None:
 def _add_loops(root: ast.Ast, vocabulary: Lexicon) -> ast.Ast:
     if any(isinstance(node, ast.Remember) for node in ast.parents_first(root)):
         root = fold(root, ast.parts, _with_what_says_it)
+    root = fold(root, ast.parts, _with_tours_apart)
     nodes = ast.parents_first(root)
     sets = [(at, choice) for at, node in enumerate(nodes) if (choice := _set_of(node)) is not None]
     parents = {id(part): node for node in nodes for part in ast.parts(node)}
@@ -215,6 +216,41 @@ def _with_what_says_it(node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
         else:
             made.append(item)
     return made[0] if len(made) == 1 else ast.Chain("sequence", tuple(made), node.bracketed, node.span)
+
+
+def _with_tours_apart(node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
+    """Keep a journey to several places out of the rounds over what is taken behind it.
+
+    `go to the lab and the hall and collect the cups, then bring them to the sink` tours once, not for each cup.
+    """
+    if not isinstance(node, ast.Chain) or node.operator != "sequence":
+        return ast.with_parts(node, done)
+    made: list[ast.Ast] = []
+    for item in done:
+        tour, *rest = item.items if isinstance(item, ast.Chain) and not item.bracketed else (item,)
+        if (
+            rest
+            and _is_tour(tour)
+            and any(map(_set_of, rest))
+            and isinstance(item, ast.Chain)
+            and not ast.is_list(item)
+        ):
+            made += [tour, rest[0] if len(rest) == 1 else item.replace(items=tuple(rest))]
+        else:
+            made.append(item)
+    return ast.with_parts(node, done) if len(made) == len(done) else node.replace(items=tuple(made))
+
+
+def _is_tour(node: ast.Ast) -> bool:
+    """Whether a command travels to several places."""
+    if isinstance(node, ast.Chain):
+        return ast.is_list(node) and all(map(_is_journey, node.items))
+    choice = _set_of(node)
+    return choice is not None and choice.type == PLACE and _is_journey(node)
+
+
+def _is_journey(node: ast.Ast) -> bool:
+    return isinstance(node, ast.Phrase) and _TRAVELS in node.entry.needs
 
 
 def _round(nodes: Sequence[ast.Ast], at: int, choice: Choice, parents: dict[int, ast.Ast]) -> _Round:

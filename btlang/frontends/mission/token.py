@@ -50,6 +50,8 @@ STATEMENT_ENDS = frozenset(("newline", "semi", "stop"))
 """Raw kinds at the end of a statement, also where the next word goes on with it."""
 LINES = frozenset(("newline", "semi", "indent", "dedent", "define"))
 """Behind these kinds of tokens a statement begins, out of brackets."""
+DAYTIME = "TimeOfDay"
+"""The id of the condition that the time of day is within bounds."""
 JOINTS = frozenset(("and", "comma", "then"))
 """Raw kinds between the commands of a statement."""
 FORMS = frozenset((*RULES, "if", "unless", "while", "until", "otherwise", "if_doing", "if_works"))
@@ -263,8 +265,13 @@ def begins_condition(tokens: Sequence[Token], at: int) -> bool:
 
 
 def closed_until(tokens: Sequence[Token]) -> str:
-    """Return until when a statement closes a zone: 11:00 for `from 10 am to 11 am, avoid the lab`; "" for others."""
-    condition = tokens[1].value if len(tokens) > 1 and tokens[0].kind == "while" else None
-    if not isinstance(condition, Called) or not any(map(keeps_out, tokens)):
+    """Return until when a statement closes a zone: 11:00 for `from 10 am to 11 am, avoid the lab`; "" for others.
+
+    So also for `don't enter the lab before 11 am`.
+    """
+    at = next((at for at, token in enumerate(tokens[:-1]) if token.kind == "while"), -1)
+    condition = tokens[at + 1].value if at >= 0 else None
+    if not isinstance(condition, Called) or condition.entry.id != DAYTIME or not any(map(keeps_out, tokens)):
         return ""
-    return dict(condition.arguments).get("at_most", "")
+    bounds = dict(condition.arguments)
+    return bounds.get("at_most", bounds.get("below", ""))

@@ -7,15 +7,15 @@ from collections.abc import Iterator, Sequence
 from itertools import chain
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.frontends.mission.token import Called, Token
+from btlang.frontends.mission.token import DAYTIME, Called, Token
 from btlang.text.source import Source, Span
 from btlang.text.words import Words
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import SlotValue
 
 _TIME, _DAYS = "time_of_day", "days"
-DAYTIME, MIDNIGHT = "TimeOfDay", "00:00"
-"""The condition that the time of day is within bounds, and where a day begins."""
+MIDNIGHT = "00:00"
+"""Where a day begins."""
 _NOWHERE = "is a time of day, and none can stand here"
 _SENTENCE_END = re.compile(r"[.!?;](?=\s)|\n")
 _USUAL = "6:30 pm, or 18:30"

@@ -7,9 +7,10 @@ from collections.abc import Container
 from functools import cached_property
 
 from btlang.diagnostics.diagnostic import diagnostic
-from btlang.frontends.mission.explanations.times import DAYTIME, assumed_between
+from btlang.frontends.mission.explanations.times import assumed_between
 from btlang.frontends.mission.token import (
     BEFORE_CONDITIONS,
+    DAYTIME,
     IN_CONDITIONS,
     JOINTS,
     KEEP_OUT,

@@ -12,6 +12,7 @@ from itertools import pairwise
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.token import (
+    DAYTIME,
     JOINTS,
     KEEP_OUT,
     LINES,
@@ -39,7 +40,7 @@ from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.value_type import PLACE
 
-_DAYTIME, _MOMENT = "TimeOfDay", 600.0  # seconds in which a rule notices that it has become a time
+_MOMENT = 600.0  # seconds in which a rule notices that it has become a time
 _EXAMPLE = "6 pm"
 _MOMENT_ONLY = "it is so for a moment only"
 _HEADS = frozenset(("every", "every_day", "at", "delay"))
@@ -61,7 +62,7 @@ def with_ends(tokens: list[Token], vocabulary: Lexicon, span: Callable[[int, int
     Returns what is wrong with constraints that a duration ends (BT161), or that stand in a statement with others before
     a condition (BT151); `span` gives the place of some characters.
     """
-    opening, clock = vocabulary.entry(_OPEN), vocabulary.entry(_DAYTIME)
+    opening, clock = vocabulary.entry(_OPEN), vocabulary.entry(DAYTIME)
     problems: list[Diagnostic] = []
     _end_whole_rules(tokens, vocabulary, span)
     if opening is not None:

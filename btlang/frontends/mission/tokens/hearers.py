@@ -50,6 +50,12 @@ class Hearers(ToldWords):
             if is_other and not any(vocabulary.values.texts.opens(text.words[i]) for i in range(first, at)):
                 continue
             if who not in named and len(meant) == 1 and other:
+                if not is_asked and at == first and "{" not in other and not hearer <= known_otherwise:
+                    ways = (
+                        as_named(text, at, last, who, other, vocabulary),
+                        as_hearer(text, first, last, who, vocabulary),
+                    )
+                    self._note_hearer(command, first, last, *ways)
                 text = as_named(text, at, last, who, other, vocabulary) if "{" not in other else text
             elif is_asked and (is_subject or (len(spoken) == 1 and others.isdisjoint(here))):
                 text = as_hearer(text, first, last, who, vocabulary, but=who)
@@ -57,6 +63,15 @@ class Hearers(ToldWords):
                 if who in named or meant or not others:
                     text = as_hearer(text, first, last, who, vocabulary)
         return text
+
+    def _note_hearer(self, command: Token, first: int, last: int, named: Words, heard: Words) -> None:
+        """BT050 for `ask Alice if she is done. If so, tell Carol that she can go`: Alice, or who hears it."""
+        text, written = self._text, self._vocabulary.values.texts.written
+        is_opened = self._vocabulary.values.texts.opens(text.words[first - 1])
+        front = text.source.text[command.start : text.ends[first - 1 - is_opened]]
+        taken, other = (f'{front} "{written(words, first, last)}"' for words in (named, heard))
+        whole = Span(text.source, command.start, text.ends[last - 1])
+        self._calls.problems.append(diagnostic("BT050", whole, taken=taken, other=other, fixed=taken))
 
     def _of_speaker(self, first: int, last: int) -> Words:
         """The words of `ask me if I want my tea` as those about somebody else: `if they want your tea`."""
