@@ -6,9 +6,11 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.token import (
+    DAYTIME,
     IN_CONDITIONS,
     JOINTS,
     RULES,
+    Called,
     Token,
     run_end,
     run_start,
@@ -112,12 +114,22 @@ def with_exceptions(tokens: list[Token], vocabulary: Lexicon, source: Source) ->
             continue  # nothing is done before it, or nothing is asked
         every = next((each for each in range(first, comma) if tokens[each].kind in _PACES), -1)
         rule = _behind(tokens, first) if tokens[first].kind in RULES else last
+        is_plain = not lasts and all(token.kind in _PLAIN for token in tokens[first:comma])
         if lasts and rule < comma and end == last:
             both = [*_one(tokens[first + 1 : rule]), _joint("and", unless[0]), _joint("not", unless[0])]
             tokens[first + 1 : end] = [*both, *_one(unless[1:]), *tokens[rule:comma]]
         elif every == comma - 1 >= first:
             tokens[every:end] = [*unless, tokens[every]]
-        elif every == first or (not lasts and all(token.kind in _PLAIN for token in tokens[first:comma])):
+        elif (
+            every < first
+            and not lasts
+            and _is_too_early(unless)
+            and all(each.kind in _PLAIN for each in tokens[first:comma])
+        ):
+            body = _in_brackets(tokens[first:comma])  # `go to the lab, but not before 2 pm`: it waits until then
+            wait, deny, then = (_joint(kind, body[0]) for kind in ("wait_until", "not", "then"))
+            tokens[first:end] = [wait, deny, unless[1], then, *body]
+        elif every == first or is_plain:
             begin = run_end(tokens, first + (every == first), ("comma", "colon"))
             body = _in_brackets(tokens[begin:comma])
             tokens[begin:end] = [*body, *unless]
@@ -129,6 +141,13 @@ def with_exceptions(tokens: list[Token], vocabulary: Lexicon, source: Source) ->
             one = f"{vocabulary.word('unless')} {asked}, {done}"
             other = f"{done} {vocabulary.word('while')} {vocabulary.word('not')} {asked}"
             yield diagnostic("BT151", span, words=span.text, one=one, other=other)
+
+
+def _is_too_early(unless: Sequence[Token]) -> bool:
+    """Whether `but not before 2 pm` says from when on something may be done."""
+    asked = unless[1].value if len(unless) == 2 else None
+    is_daytime = isinstance(asked, Called) and asked.entry.id == DAYTIME
+    return is_daytime and isinstance(asked, Called) and [name for name, _ in asked.arguments] == ["below"]
 
 
 def _statement_around(tokens: Sequence[Token], at: int) -> tuple[int, int]:
