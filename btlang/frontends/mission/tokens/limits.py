@@ -26,7 +26,7 @@ from btlang.vocabulary.match import Match
 from btlang.vocabulary.value_type import PERSON, PLACE
 
 _TIME = "duration"
-_LIMITS = ("within", "delay", "for", "held")
+_LIMITS = ("within", "delay", "for", "held", "by_time")
 """What may say how long a command may take, behind words that ask how it went."""
 
 
@@ -249,7 +249,8 @@ class Limits(GoingOn):
         if self._tokens[at].kind in MEASURES:
             return end
         said = self._calls.token(limit, end)
-        self._tokens.insert(at, Token("within", said.start, said.end, said.value))
+        kind = "by_time" if said.kind == "by_time" else "within"
+        self._tokens.insert(at, Token(kind, said.start, said.end, said.value))
         return limit.last
 
     def unanswered(self, end: int) -> int:
