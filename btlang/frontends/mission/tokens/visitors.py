@@ -187,6 +187,10 @@ class Visitors(SentenceReader):
         else:
             return None
         found = match_of(text, places, other, (self._vocabulary.trie,), self._context)
+        if found is None and other.keys() == {0}:  # `people who come near`
+            found = match_of(
+                text, places, {**other, 1: f"{text.words[at + 1]}s"}, (self._vocabulary.trie,), self._context
+            )
         is_event = found is not None and found.meaning.role == "condition"
         return relocated(found, places) if found is not None and is_event else None
 
