@@ -119,6 +119,12 @@ class Hearers(ToldWords):
         is_asked, opener = is_question(command), text.words[first - 1]
         pleads = opener in (*asking["pleading"], *asking["asking_for"])
         heard = self._to_hearer(command, first, end, is_asked or pleads)
+        who, others = person_of(text.words[at], self._vocabulary), self._persons_before()[0]
+        names = {name for name, _ in others if "{" not in name} - self._persons_of(command)
+        if (
+            who and len(names) == 1 and heard.words[at] == text.words[at]
+        ):  # `lead Bob to the lab and tell Alice he is there`
+            heard = as_named(heard, at, end, who, names.pop(), self._vocabulary)
         said = values.texts.written(heard, first, end)
         if is_asked:
             verbs, sure = verbs_of(text, first, end, self._vocabulary), set(text.words[first:end])
@@ -133,7 +139,8 @@ class Hearers(ToldWords):
             verb, _, whom = front.partition(" ")
             told = asking["informing"][0]
             front = f"{told.capitalize() if verb[:1].isupper() else told} {whom}"
-        rest = f", {self._vocabulary.word('then')} {values.texts.written(text, at + 1, last)}" if goes_on else ""
+        behind = at + 1 + (text.words[at + 1] in self._vocabulary.roles["and"])
+        rest = f", {self._vocabulary.word('then')} {values.texts.written(text, behind, last)}" if goes_on else ""
         return f'{front} "{said}"{rest}'
 
     def _clear(self, said: Words, first: int, last: int) -> set[int]:
