@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any
 
 from btlang.devices.driver import Device, DeviceSilent, MakesDriver
@@ -38,9 +38,18 @@ class Rig:
         targets: Mapping[str, JointTarget] | None = None,
         patience: float = PATIENCE,
     ) -> None:
-        """Tells the targets again and again until something holds; all readings are kept in `seen`."""
+        """Tells the targets again and again until something holds; all readings are kept in `seen`.
+
+        What looks at the latest reading doesn't hold before there is one.
+        """
+
+        def is_so() -> object:
+            with suppress(IndexError):
+                return holds()
+            return False
+
         end = time.monotonic() + patience
-        while not holds():
+        while not is_so():
             assert time.monotonic() < end, f"waited in vain; reported: {self.events}"
             for name, target in (targets or {}).items():
                 self.loop.write(name, target)
