@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cached_property
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import STATEMENT_ENDS, Called, Listed, Token, arguments_of, statement_start
@@ -160,12 +161,18 @@ class Hearers(ToldWords):
             here |= latest if place >= ends[-1] else set()
         return known, here
 
+    @cached_property
+    def _single(self) -> set[str]:
+        """The subjects for one person alone: not `they`."""
+        plural = self._vocabulary.values.plural_pronouns
+        return {who for who, forms in self._vocabulary.persons.items() if plural.isdisjoint(forms)}
+
     def note_other(self, match: Match) -> None:
         """BT038 for `ask Bob what Alice needs. If he says cup, bring it to her`: she isn't Bob."""
-        text, vocabulary, tokens = self._text, self._vocabulary, self._tokens
-        plural = vocabulary.values.plural_pronouns
-        single = {who for who, forms in vocabulary.persons.items() if plural.isdisjoint(forms)}
-        for value in match.values if self._calls.speaks_of_people else ():
+        if not self._calls.speaks_of_people:
+            return  # as nearly always
+        text, vocabulary, tokens, single = self._text, self._vocabulary, self._tokens, self._single
+        for value in match.values:
             who = person_of(text.words[value.first], vocabulary) if value.type == PERSON and not value.more else ""
             if who not in single:
                 continue
