@@ -65,7 +65,12 @@ class Scan:
         return Span(self.source, first.start, (last or first).end)
 
     def words(self, token: Token) -> str:
-        return self.span(token).text
+        """Its words; of one that was put in, the word for a rule, or else what stands before it."""
+        said = self.span(token).text
+        if said or token.kind in RULES:
+            return said or self.word(token.kind)
+        before = (each for each in reversed(self.raw) if each.start < each.end <= token.start)
+        return next((self.span(each).text for each in before), "")
 
     def begin_statement(self, token: Token) -> None:
         """Statements of a group are joined when the second one begins, so that trailing ends count for nothing."""
