@@ -15,7 +15,7 @@ from btlang.frontends.mission.token import (
     statement_start,
     texts_of,
 )
-from btlang.frontends.mission.tokens.rules_inside import ON_WAY, any_lasts
+from btlang.frontends.mission.tokens.rules_inside import ON_WAY, TIMES, any_lasts
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.frontends.mission.tokens.settling import FAILS
 from btlang.frontends.mission.tokens.silent_words import BEGINS
@@ -146,7 +146,7 @@ class RuleWords(SentenceReader):
         first = statement_start(tokens, joint)
         before = tokens[first:joint]
         if before and any(token.kind in ("and", "but") for token in tokens[joint:last]):
-            timed = before[0].kind == "at"
+            timed = before[0].kind in TIMES
             if all(token.kind in _PLAIN for token in before[timed:]):
                 if tokens[last].kind == "whenever" and (timed or first) and any_lasts(before):
                     tokens[last].role = ON_WAY

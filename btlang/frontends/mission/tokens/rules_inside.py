@@ -27,6 +27,7 @@ ON_WAY = "on_way"
 _OBSTACLES = ("SomethingInTheWay", "SomeoneInTheWay")
 _BLOCKED = ("WallInFront", *_OBSTACLES)
 _DOING = "while_doing"
+TIMES = frozenset(("at", "every_day", "every"))
 _LATER = frozenset(("wait_until", "wait_time", "at", "every_day"))
 """Raw kinds at the start of a statement whose commands are done later: a rule in front would hold until then, too."""
 _IN_CONDITIONS = frozenset(("condition", "not", "and", "or", "either", "both", "neither", "nor"))
@@ -67,7 +68,7 @@ def _front(tokens: list[Token], rule: int) -> None:
     first, end = statement_start(tokens, rule), statement_end(tokens, rule)
     joint = run_start(tokens, rule - 1, JOINTS)
     first = _last_then(tokens, first, joint)
-    if tokens[first].kind == "at":  # `at noon, go to the lab and wave whenever C`
+    if tokens[first].kind in TIMES:  # `at noon, go to the lab and wave whenever C`
         first += 1 + (tokens[first + 1].kind == "comma")
     condition = tokens[rule + 1 : run_start(tokens, end, STATEMENT_ENDS)]
     lasts = tokens[first].kind == "wait_time" and joint == first + 1  # `stay there until noon and wave whenever C`
@@ -129,7 +130,7 @@ def _on_way(statement: Sequence[Token], rule: int) -> list[Token]:
     """The block of a rule that begins at a place and the commands before it."""
     last = run_start(statement, rule, JOINTS | STATEMENT_ENDS)
     kinds = [token.kind for token in statement[:2]]
-    begin = {"then": 1, "at": 1 + (kinds[1:] == ["comma"])}.get(kinds[0], 0)
+    begin = 1 + (kinds[1:] == ["comma"]) if kinds[0] in TIMES else kinds[0] == "then"
     journey = list(statement[begin:last])
     if not journey or any(token.kind not in ("command", "name", "wait_time", *JOINTS) for token in journey):
         return []

@@ -22,7 +22,7 @@ from btlang.frontends.mission.token import (
 from btlang.frontends.mission.tokens.addressed_texts import TELL
 from btlang.frontends.mission.tokens.ended_rules import GO, journey_to
 from btlang.frontends.mission.tokens.journey_words import ANYBODY_COMES, COMES
-from btlang.frontends.mission.tokens.rules_inside import ON_WAY
+from btlang.frontends.mission.tokens.rules_inside import ON_WAY, TIMES
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, is_question
 from btlang.frontends.mission.tokens.settling import STAYS
 from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of, words_of
@@ -108,7 +108,7 @@ class Visitors(SentenceReader):
         choice = choice_of(everyone)
         first = statement_start(tokens, len(tokens))
         joint = run_start(tokens, len(tokens) - 1, JOINTS)
-        timed = first + (tokens[first].kind == "at" and joint > first + 1)  # `at noon, go there and greet everyone`
+        timed = first + (tokens[first].kind in TIMES and joint > first + 1)  # `at noon, go there and greet everyone`
         is_plain = all(token.kind in _SIMPLE or (is_first and token.kind in _PACES) for token in tokens[timed:])
         if choice is None or (choice.parts and not kind) or (ordinal(choice.how) and not is_first) or not is_plain:
             return 0
