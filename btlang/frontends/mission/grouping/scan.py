@@ -65,12 +65,14 @@ class Scan:
         return Span(self.source, first.start, (last or first).end)
 
     def words(self, token: Token) -> str:
-        """Its words; of one that was put in, the word for a rule, or else what stands before it."""
+        """Its words; of one that was put in, the word for a rule, or else what is before it; of a block, what begins it."""
         said = self.span(token).text
         if said or token.kind in RULES:
             return said or self.word(token.kind)
-        before = (each for each in reversed(self.raw) if each.start < each.end <= token.start)
-        return next((self.span(each).text for each in before), "")
+        written = [each for each in self.raw if each.start < each.end]
+        behind = (each for each in written if each.start >= token.end)
+        before = (each for each in reversed(written) if each.end <= token.start)
+        return next((self.span(each).text for each in (behind if token.kind == "indent" else before)), "")
 
     def begin_statement(self, token: Token) -> None:
         """Statements of a group are joined when the second one begins, so that trailing ends count for nothing."""
