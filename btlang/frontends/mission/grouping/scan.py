@@ -65,7 +65,7 @@ class Scan:
         return Span(self.source, first.start, (last or first).end)
 
     def words(self, token: Token) -> str:
-        """Its words; of one that was put in, the word for a rule, or else what is before it; of a block, what begins it."""
+        """Its words; of one that was put in, the word for a rule, or what is before it; of a block, what begins it."""
         said = self.span(token).text
         if said or token.kind in RULES:
             return said or self.word(token.kind)
