@@ -1,4 +1,4 @@
-"""Warnings of the sentences in which nothing is wrong, so that one revision of a mission can heed all that is said."""
+"""Warnings of the sentences before the first in which something is wrong, so that one revision can heed them, too."""
 
 from __future__ import annotations
 
@@ -8,8 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError
 from btlang.text.source import Source, Span
 
-_ASKS_FROM_AFAR = "BT149"
-_LOCAL = frozenset(("BT068", _ASKS_FROM_AFAR, "BT170"))
+_LOCAL = frozenset(("BT068", "BT149", "BT170"))
 """The codes of warnings that are about one sentence, whatever the others say."""
 _QUOTED = re.compile(r'"[^"\n]*"')
 _SENTENCE = re.compile(r"[^.!?;\n]+(?:[.!?](?!\s)[^.!?;\n]*)*[.!?;]?")
@@ -31,12 +30,8 @@ def find_beside_errors(
         found = warnings_of(Source(rest, source.name))
     except MissionError:
         return []
-    after = broken[0][0]  # a sentence that isn't understood may lead to whoever is asked
-    return [
-        _in_source(warning, source)
-        for warning in found
-        if warning.code in _LOCAL and not (warning.code == _ASKS_FROM_AFAR and warning.span.start > after)
-    ]
+    first = broken[0][0]  # what stands behind a sentence that isn't understood may depend on it
+    return [_in_source(warning, source) for warning in found if warning.code in _LOCAL and warning.span.end <= first]
 
 
 def _sentences(text: str) -> Iterator[tuple[int, int]]:

@@ -261,7 +261,8 @@ class AddressedTexts(Hearers):
         quote = next((i for i in range(at + 1, self._end_of_statement(at)) if text.words[i][0] == '"'), 0)
         if not quote or any(text.words[i] in self._vocabulary.joining for i in range(at, quote)):
             self._doubt(entry, at, _NO_QUESTION)
-            return 0
+            end = self._vocabulary.values.texts.end_of_clause(text, at) or value.last
+            return self._say_clause(value, end, command, text)
         end = next((i for i in range(at + 1, quote) if text.words[i] in self._vocabulary.asking["located"]), quote)
         people = [self._context.types[PERSON]]
         self._calls.problems.append(unnamed(text.span(at, end), people, "", self._vocabulary))
