@@ -15,7 +15,12 @@ from btlang.frontends.mission.tokens.counted_things import with_counted_things
 from btlang.frontends.mission.tokens.ended_rules import with_ends
 from btlang.frontends.mission.tokens.framed_rules import with_framed_rules
 from btlang.frontends.mission.tokens.left_out import find_unplaced
-from btlang.frontends.mission.tokens.other_things import with_goals_there, with_other_things, with_things_there
+from btlang.frontends.mission.tokens.other_things import (
+    with_goals_there,
+    with_other_things,
+    with_things_there,
+    with_waits_there,
+)
 from btlang.frontends.mission.tokens.repeated_statements import (
     with_conditions_then,
     with_questions_each_time,
@@ -105,6 +110,7 @@ class Lexer:
         self.problems += with_counted_things(self.tokens, self.vocabulary, source)
         with_things_there(self.tokens)
         with_goals_there(self.tokens, vocabulary, source)
+        with_waits_there(self.tokens, vocabulary, source)
         self.problems += with_other_things(self.tokens, vocabulary, self.text)
         self.problems += with_framed_rules(self.tokens, self.vocabulary, source)
         with_rules_behind(self.tokens)

@@ -15,7 +15,8 @@ from btlang.frontends.mission.token import (
     run_start,
     with_arguments,
 )
-from btlang.frontends.mission.tokens.ended_rules import GO
+from btlang.frontends.mission.tokens.ended_rules import GO, journey_to
+from btlang.frontends.mission.tokens.settling import STAYS
 from btlang.frontends.mission.tokens.silent_words import TRAVELS
 from btlang.frontends.mission.tokens.word_matches import words_of
 from btlang.support.record import Record
@@ -38,6 +39,7 @@ Arguments: TypeAlias = "tuple[tuple[str, str], ...]"
 _TAKING, _PLACED = ("PickUp", "Take", "Bring"), {NAMES, *RELATIONS}
 _NEAREST, _OTHER, _KIND = "nearest", "other_than", "kind"
 _ALL_OR_ONE = (ALL, _NEAREST)
+_WAITS = frozenset(("wait", "wait_time"))
 _ONE = "bring the book to Alice"
 _REASON = "it may be one that was meant before"
 _SIMPLE = frozenset(("command", "name", "open", "close", *JOINTS, *STATEMENT_ENDS))
@@ -184,6 +186,22 @@ def with_goals_there(tokens: list[Token], vocabulary: Lexicon, source: Source) -
             parts = tuple(part for part in thing.parts if part != ("inside", place))
             named = dict(parts).get(NAME, "") if len(parts) == 1 else ""
             token.value = Called(take, ((OBJECT, named or thing.replace(parts=parts).text), (PLACE, place)))
+
+
+def with_waits_there(tokens: list[Token], vocabulary: Lexicon, source: Source) -> None:
+    """Make `follow Bob until he is in the lab. Wait there` go to the lab, where the robot may not have come by then."""
+    goes, pronouns = vocabulary.entry(GO), vocabulary.values.pronouns
+    for at in reversed([at for at, token in enumerate(tokens) if token.kind in _WAITS or token.role == STAYS]):
+        wait = tokens[at]
+        words = source.text[wait.start : wait.end].lower().split()
+        if goes is None or all(PLACE not in pronouns.get(word, ()) for word in words):
+            continue  # as nearly always
+        before = (token.value for token in tokens[:at] if isinstance(token.value, Called))
+        named = [(said.entry.sort, place) for said in before for place in said.entry.given(PLACE, said.arguments)]
+        if named and all(sort == "condition" for sort, _ in named):
+            journey = Token("command", wait.start, wait.start, journey_to(named[-1][1], goes))
+            opening, then, closing = (Token(kind, wait.start, wait.start) for kind in ("open", "then", "close"))
+            tokens[at : at + 1] = [opening, journey, then, wait, closing]
 
 
 def _placed(said: str, place: str) -> str:
