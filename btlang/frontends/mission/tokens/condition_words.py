@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.frontends.mission.token import Token
+from btlang.frontends.mission.token import Listed, Token
 from btlang.text.words import Words
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match
@@ -15,7 +15,7 @@ from btlang.vocabulary.value_type import PERSON, PLACE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import TypeAlias
+    from typing import TypeAlias, TypeGuard
 
     Origin: TypeAlias = tuple[Token, int, Match, TrieNode]
     """A condition that was read as a whole: the latest part of it, its first word, and where it was found."""
@@ -62,6 +62,18 @@ def _other_subject(before: Match, text: Words, match: Match, at: int, vocabulary
     span = text.span(at, match.last)
     example = f"you are {span.text}"
     return diagnostic("BT150", span, words=span.text, reason="it may be said of somebody else", example=example)
+
+
+def is_so_of_none(value: object, text: Words, match: Match, at: int, vocabulary: Lexicon) -> TypeGuard[Listed]:
+    """Whether a verb denies something of each of a group: `everyone has left the lab`; not `everyone isn't there`."""
+    return isinstance(value, Listed) and value.joiner == "and" and is_denied_by_verb(text, match, at, vocabulary)
+
+
+def is_denied_by_verb(text: Words, match: Match, at: int, vocabulary: Lexicon) -> bool:
+    """Whether a phrase denies a condition without a word such as `not`: `Bob has left the lab`."""
+    said = f" {' '.join(text.words[at : match.last])} "
+    denials = (denial for denials in vocabulary.negations.values() for denial in denials)
+    return match.meaning.role == "negated" and not any(f" {denial} " in said for denial in denials)
 
 
 def check_negation(

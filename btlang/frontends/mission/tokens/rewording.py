@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.frontends.mission.tokens.condition_words import is_denied_by_verb
 from btlang.frontends.mission.tokens.counted_things import COUNTED
 from btlang.frontends.mission.tokens.days import list_days, say_hour_first
 from btlang.frontends.mission.tokens.each_and_any import ENDING, STOPS, end_of_condition, say_each
@@ -26,6 +27,7 @@ def reworded(text: Words, vocabulary: Lexicon) -> list[Diagnostic]:
     _say_at_door(text, vocabulary)
     _drop_words_of_turns(text, vocabulary)
     _drop_still(text, vocabulary)
+    _say_last_of_all(text, vocabulary)
     _drop_left(text, vocabulary)
     _say_there(text, vocabulary)
     say_each(text, vocabulary)
@@ -120,6 +122,17 @@ def _drop_still(text: Words, vocabulary: Lexicon) -> None:
             first = max((i + 1 for i in range(first, at) if words[i] == ","), default=first)
             if any(word in vocabulary.before_conditions for word in words[first:at]):
                 text.drop(at, end)
+
+
+def _say_last_of_all(text: Words, vocabulary: Lexicon) -> None:
+    """Say that all have left for `the last guest has left`, which names no one."""
+    if text.distinct.isdisjoint(vocabulary.last_ones):
+        return  # as nearly always
+    for at in reversed([at for at, word in enumerate(text.words) if word in vocabulary.last_ones]):
+        match = longest(vocabulary.trie, text, at, vocabulary.context)
+        if match is not None and is_denied_by_verb(text, match, at, vocabulary):
+            if match.values and match.values[0].first == at and match.values[0].type == PERSON:
+                text.replace(at, vocabulary.word("all_names").split())
 
 
 def _drop_left(text: Words, vocabulary: Lexicon) -> None:

@@ -22,7 +22,7 @@ from btlang.frontends.mission.token import (
     statement_start,
 )
 from btlang.frontends.mission.tokens.calls import NEGATED, Calls
-from btlang.frontends.mission.tokens.condition_words import check_negation, with_words_before
+from btlang.frontends.mission.tokens.condition_words import check_negation, is_so_of_none, with_words_before
 from btlang.frontends.mission.tokens.journey_words import COMES
 from btlang.frontends.mission.tokens.order_words import BEFORE_ASIDE, OrderWords
 from btlang.frontends.mission.tokens.outcomes import Outcomes
@@ -419,6 +419,8 @@ class WordReader:
             if not self._shares:
                 self._problems += check_negation(self._text, match, at, self._vocabulary, tokens)
         token = self._calls.token(match, at)
+        if is_so_of_none(token.value, self._text, match, at, self._vocabulary):
+            token.value = token.value.replace(joiner="or")
         self._places.placed_before(token)
         self._requests.said(token, at)
         last = self._requests.whole_answer(token, match)
