@@ -141,7 +141,7 @@ class GoingOn(SentenceReader):
     @property
     def _searching(self) -> set[str]:
         """The words that ask whether something was found."""
-        return {*self._vocabulary.asking["search"], *self._vocabulary.asking["missed"]}
+        return {*self._vocabulary.asking["finding"], *self._vocabulary.asking["missed"]}
 
     def going_on(self, role: str, words: Span) -> str:
         """The role of words that go on with the statement before: `if you don't find it` denies `if you find it`.

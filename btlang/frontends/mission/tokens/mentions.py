@@ -133,8 +133,9 @@ class Mentions:
 
         `words` end with one that is no word of a name.
         """
-        values = self._vocabulary.values
-        things, at = list[tuple[int, int, str]](), 0
+        values, asking = self._vocabulary.values, self._vocabulary.asking
+        is_verb = len(words) > 1 and words[1].lower() in (*asking["speaking"], *asking["hearing"])  # `Can I help you?`
+        things, at = list[tuple[int, int, str]](), int(is_verb)
         while at < len(words):
             found = [find(values.names_tree(kind), words, at) for kind in ("kind", KINDS, OBJECT)]
             ways = [(way[1], sort, way[0]) for sort, way in enumerate(found) if way is not None]

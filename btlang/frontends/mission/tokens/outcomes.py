@@ -81,6 +81,8 @@ class Outcomes(Limits):
             self._ask_alone()
             if role == WORKS:
                 self._doubt_so(match.last, at)
+        if role == FAILS and not self._searching.isdisjoint(self._text.words[at : match.last]):
+            self._ask_after_all()  # `when you have found it, A, and if it's nowhere, B`
         if role == FAILS and WORKS in self._statement(len(tokens) - 1)[1]:
             if self._denies_what_worked(self._text.span(at, match.last)):
                 role = "otherwise"  # `if you find it, A, and if you can't find it, B`
@@ -108,10 +110,7 @@ class Outcomes(Limits):
         self._calls.problems.append(diagnostic("BT151", span, words=span.text, one=one, other=other))
 
     def settle(self, end: int) -> int:
-        """What the condition asks that ends at a word is left out where the command before it has settled it.
-
-        Returns where to go on: behind a time that says how long the command may take.
-        """
+        """Leave out a condition that ends at a word if the command before it has settled it; return where to go on."""
         tokens, roles = self._tokens, self._vocabulary.roles
         if self._is_end(end) or self._text.words[end] in (*roles["or"], *roles["and"]):
             return end  # `go to Bob. If he isn't there or bumped, A` asks more; `say hi to Bob when he comes`
