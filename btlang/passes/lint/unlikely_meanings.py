@@ -217,7 +217,11 @@ def find_distant_questions(compilation: Compilation) -> Iterator[Diagnostic]:
             yield diagnostic("BT149", node.span, words=node.span.text, person=all_of, fixed=fixed)
             return
     sights = {id(node.condition) for node in nodes if isinstance(node, ast.If)}
+    in_rules = {id(each) for node in nodes if isinstance(node, ast.Whenever)
+                for part in (node.condition, node.body) for each in ast.parents_first(part)}  # fmt: skip
     for phrase in sorted(phrases, key=lambda each: each.span.start):
+        if id(phrase) in in_rules or phrase.entry.constrains:
+            continue  # what a rule does is done at some time
         named = phrase.entry.given(PERSON, phrase.arguments)
         choice = choice_of(named[0]) if named else None
         parts = dict(choice.parts) if choice is not None else {}

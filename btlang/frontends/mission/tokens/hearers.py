@@ -116,7 +116,7 @@ class Hearers(ToldWords):
         text, values, asking = self._text, self._vocabulary.values, self._vocabulary.asking
         joins = at > first and text.words[at] in (",", *self._vocabulary.roles["and"])
         goes_on = joins and self._phrase(at + 1) is not None
-        end = at - (text.words[at - 1] == ",") if goes_on else last
+        end = at - (text.words[at - 1] == ",") if joins else last
         is_asked, opener = is_question(command), text.words[first - 1]
         pleads = opener in (*asking["pleading"], *asking["asking_for"])
         heard = self._to_hearer(command, first, end, is_asked or pleads)
@@ -142,6 +142,7 @@ class Hearers(ToldWords):
             front = f"{told.capitalize() if verb[:1].isupper() else told} {whom}"
         behind = at + 1 + (text.words[at + 1] in self._vocabulary.roles["and"])
         rest = f", {self._vocabulary.word('then')} {values.texts.written(text, behind, last)}" if goes_on else ""
+        rest = f", {self._vocabulary.word('then')} ..." if joins and not goes_on else rest
         return f'{front} "{said}"{rest}'
 
     def _clear(self, said: Words, first: int, last: int) -> set[int]:

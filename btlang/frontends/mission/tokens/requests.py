@@ -243,6 +243,8 @@ class Requests(Questions):
             words, span = source.text[token.start : token.end], Span(source, check.start, token.end)
             one, unless = (self._vocabulary.word(role) for role in ("check", "unless"))
             other = f"{unless} {words}, {does}"
+            goes_on = source.text[token.end :].lstrip(" ")[:1] not in ("", *".;!?)\r\n")
+            other = f"({other})" if goes_on else other  # else what follows would depend on it, too
             self._calls.problems.append(diagnostic("BT151", span, words=span.text, one=f"{one} {words}", other=other))
 
     def _goes_on_if(self, at: int) -> bool:
