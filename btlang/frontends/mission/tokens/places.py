@@ -31,7 +31,7 @@ from btlang.vocabulary.references import ALL, NAMES, choice_of
 from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE
 from btlang.vocabulary.word_tree import find
 
-_HOLD, _SEES, _AT = "Hold", "SeesPerson", "PersonIsAt"
+_HOLD, _SEEN_AT = "Hold", {"SeesPerson": "PersonIsAt", "SeesObject": "ObjectIsAt"}
 _JOINS = ("and", "then", "or")
 _BEHIND = (
     *_JOINS, "at", "every", "every_day", "weekly", "count", "within", "by_time", "until_time", "if", "unless", "until",
@@ -160,12 +160,13 @@ class Places(SentenceReader):
         """
         value, tokens = asked.value, self._tokens
         say_there(asked, tokens, self._vocabulary, self._text.source.text[asked.start : asked.end])
-        if not isinstance(value, Called) or value.entry.id != _SEES or tokens[-1:] == [] or tokens[-1].kind != "not":
+        there = _SEEN_AT.get(value.entry.id, "") if isinstance(value, Called) else ""
+        if not there or not isinstance(value, Called) or tokens[-1:] == [] or tokens[-1].kind != "not":
             return
         here = run_start(tokens, statement_start(tokens, len(tokens)), STATEMENT_ENDS)
         for token in tokens[statement_start(tokens, here) :]:
             before = token.value
-            if token.kind == "condition" and isinstance(before, Called) and before.entry.id == _AT:
+            if token.kind == "condition" and isinstance(before, Called) and before.entry.id == there:
                 if {text for _, text in value.arguments} <= {text for _, text in before.arguments}:
                     asked.value = before
 
