@@ -34,6 +34,7 @@ _WHERE = ("at", "inside")
 """The parts of a description that say at which place somebody or something is."""
 _IN_VIEW = ("SeesSomeone", "SeesPerson", "SeesObject", "SomeoneNear", "PersonNear")
 _CLOSED = "DoorClosed"
+_DOOR_STATES = ("DoorOpen", _CLOSED)
 _FREE, _BATTERY, _LOW = "PathClear", "Battery", "BatteryLow"
 
 
@@ -50,10 +51,12 @@ def find_asked_once(compilation: Compilation) -> Iterator[Diagnostic]:
                 kept.add(id(node.body))
             if type(node) is ast.If:
                 yield from _too_early(node, vocabulary)
-            if type(node) is ast.If and node.otherwise is not None:
+            items, at = before.get(id(node), ((), 0))
+            if type(node) is ast.If and at > 0 and _asks_for_failure(node, items[at - 1]):
+                yield _only_if_failed(node, items[at - 1], vocabulary)
+            elif type(node) is ast.If and node.otherwise is not None:
                 yield from _warn_of_otherwise(node, vocabulary)
             elif type(node) is ast.If and not node.negated:
-                items, at = before.get(id(node), ((), 0))
                 sentence = _sentence_before(items, at)
                 if sentence and _is_awaited(node, sentence[-1]):
                     continue
@@ -173,6 +176,24 @@ def _is_tour(journeys: Sequence[ast.Phrase]) -> bool:
     choices = [choice_of(goal) for goal in goals]
     is_set = any(choice is not None and choice.how == ALL for choice in choices)
     return is_set or (len(goals) > 1 and len({each.entry.id for each in journeys}) == 1)
+
+
+def _asks_for_failure(node: ast.If, before: ast.Ast) -> bool:
+    """Return whether a condition is so only if a command has failed: `open the door. If it is closed, wave`."""
+    asked, tried = node.condition, before.body if isinstance(before, ast.Retry) else before
+    if not isinstance(asked, ast.Phrase) or not isinstance(tried, ast.Phrase) or not tried.entry.achieves:
+        return False
+    doors = {*asked.entry.given(DOOR, asked.arguments)}
+    is_same = doors != set() and doors == {*tried.entry.given(DOOR, tried.arguments)}
+    return is_same and asked.entry.id in _DOOR_STATES and asked.entry.id not in tried.entry.achieves
+
+
+def _only_if_failed(node: ast.If, before: ast.Ast, vocabulary: Lexicon) -> Diagnostic:
+    words = node.span.source.text[node.span.start : node.condition.span.end]
+    tried, failing = before.span.text, vocabulary.word("if_fails")
+    ends = f"write: {tried}. {failing.capitalize()}, {node.body.span.text}"
+    advice = f"'{tried}' comes first, and fails if it can't be done. For what is done then, {ends}"
+    return diagnostic("BT068", node.span, words=words, advice=advice)
 
 
 def _is_at_goal(asked: ast.Ast, journey: ast.Phrase) -> bool:
