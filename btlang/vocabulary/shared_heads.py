@@ -41,7 +41,7 @@ class SharedHeads:
 
     def between(self, kind: str, words: Sequence[str], at: int, last: str) -> list[str]:
         """The numbers behind the first of `rooms 201 to 206` up to the last, if each is in a name; else none."""
-        one, number = self._plurals(kind)[0].get(words[at], ""), words[at + 1]
+        one, number = self._plurals(kind)[0].get(words[at], words[at]), words[at + 1]
         if not (one and number.isdecimal() and last.isdecimal() and 0 < int(last) - int(number) <= _MOST_ITEMS):
             return []
         numbers = [str(each).zfill(len(number)) for each in range(int(number), int(last) + 1)]

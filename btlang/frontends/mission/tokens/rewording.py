@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.tokens.condition_words import is_denied_by_verb
@@ -367,16 +367,29 @@ def _list_ranges(text: Words, vocabulary: Lexicon) -> None:
     joints = set(vocabulary.asking["between_joint"]).difference(vocabulary.roles["and"])
     if joints.isdisjoint(text.distinct):
         return  # as often
+    sources = {phrase[0] for phrase in vocabulary.values.role_words.introducing.get("source", ())}
     for at in reversed(range(len(words) - 3)):
         if words[at + 2] not in joints or not words[at + 1].isdecimal():
             continue
-        if words[at + 3] == words[at] and words[at + 4].isdecimal():  # `aisle 1 to aisle 4`
-            text.drop(at + 3, at + 4)
-        numbers = next((found for kind in WORLD if (found := heads.between(kind, words, at, words[at + 3]))), [])
+        is_twice = words[at + 3] == words[at] and words[at + 4].isdecimal()  # `aisle 1 to aisle 4`
+        last = words[at + 3 + is_twice]
+        numbers = next((found for kind in WORLD if (found := heads.between(kind, words, at, last))), [])
+        is_from = at > 0 and words[at - 1] in sources
+        if is_from and is_twice and not _says_each(words, at, vocabulary):
+            continue  # `go from room 1 to room 4` is a journey
         if numbers:
+            text.drop(at + 3, at + 3 + is_twice)
+            if is_from and is_twice:  # `go from room 1 to room 4 and wave in each room`
+                text.replace(at - 1, vocabulary.asking["journey"][-1:])
             listed = [word for number in numbers for word in (",", number)]
             text.replace(at + 3, [*listed[1:-2], vocabulary.word("and"), numbers[-1]] if len(numbers) > 1 else numbers)
             text.replace(at + 2, [","] if len(numbers) > 1 else [vocabulary.word("and")])
+
+
+def _says_each(words: Sequence[str], at: int, vocabulary: Lexicon) -> bool:
+    """Whether each of several is spoken of behind the first one in its statement: `and at each room, ...`."""
+    end = next(i for i in range(at, len(words)) if words[i] in STOPS)
+    return any(words[i] in vocabulary.quantifiers and words[i + 1] == words[at] for i in range(at + 1, end))
 
 
 def _drop_untold_sizes(text: Words, vocabulary: Lexicon) -> Iterator[Diagnostic]:
