@@ -61,21 +61,30 @@ class Visitors(SentenceReader):
         somebody = next(iter(self._vocabulary.asking["somebody"]), "")
         for behind in range(at + 2, min(at + 2 + _MOST_IN_NAME, self._end_of_statement(at))):
             event = self._event(behind, somebody)
-            if event is None or text.words[event.last][0] != '"':
+            is_quoted = event is not None and text.words[event.last][0] == '"'
+            opens = event is not None and self._opens(text.words[event.last])
+            if event is None or not (is_quoted or opens):
                 continue
             places = [*range(at, behind), *rest_of(text, event.last)]
             found = match_of(text, places, {}, (self._vocabulary.trie,), self._context)
-            if found is not None and found.meaning.entry is not None and found.last == behind - at + 1:
+            ends = found is not None and (found.last == behind - at + 1 or not is_quoted)
+            if found is not None and found.meaning.entry is not None and ends:
                 self._met = behind
                 return relocated(found, places)
         return match
+
+    def _opens(self, word: str) -> bool:
+        """Whether a word begins what somebody is told or asked without quotes: `that lunch is ready`, `to wait`."""
+        asking = self._vocabulary.asking
+        return self._vocabulary.values.texts.opens(word) or word in (*asking["pleading"], *asking["asking_for"])
 
     def read_met(self, last: int) -> int:
         """Make a rule of the command that is read up to a word, if an event was in it. Return where to go on."""
         met, self._met = self._met, 0
         end = self._rule(met, last) if met else 0
         if met and not end:
-            words = self._text.span(met, last - 1)
+            event = self._event(met, next(iter(self._vocabulary.asking["somebody"]), ""))
+            words = self._text.span(met, event.last if event is not None else last)
             reason, example = "it isn't clear who is meant", f"{self._vocabulary.word('whenever')} ..., ask them ..."
             self._calls.problems.append(diagnostic("BT150", words, words=words.text, reason=reason, example=example))
         return end

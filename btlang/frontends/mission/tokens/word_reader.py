@@ -450,7 +450,7 @@ class WordReader:
             self._requests.otherwise()
         end = self._requests.value_in(match, at, said) if match.values and match.meaning.entry else 0
         if end:
-            return end
+            return self._visitors.read_met(end) or end
         if (word in self._unknown.before_doing or word in self._verb_forms) and constraint_of(said) is not None:
             said.role = "fronted"
         if self._is_said_twice(said):
