@@ -220,3 +220,15 @@ def test_what_describes_a_thing_is_no_definition() -> None:
 def test_what_is_chosen_in_one_branch_only_is_warned_of(text: str, warned: list[str]) -> None:
     warnings = btlang.parse_tree(text, world=WORLD).warnings
     assert [warning.span.text for warning in warnings if warning.code == "BT069"] == warned
+
+
+@pytest.mark.parametrize(
+    ("text", "codes"),
+    [
+        ("go to Alice. Ask her if she is done. If so, tell Bob that she can go home", ["BT050"]),  # Alice, or Bob
+        ("wait for Alice. If she doesn't come, tell Bob that she is late", []),
+        ("go to Alice. Ask her if she is done. If so, tell her that she can go home", []),
+    ],
+)
+def test_who_may_be_meant_is_shown(text: str, codes: list[str]) -> None:
+    assert [warning.code for warning in btlang.parse_tree(text, world=WORLD).warnings] == codes

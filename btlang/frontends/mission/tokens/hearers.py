@@ -51,7 +51,8 @@ class Hearers(ToldWords):
             if is_other and not any(vocabulary.values.texts.opens(text.words[i]) for i in range(first, at)):
                 continue
             if who not in named and len(meant) == 1 and other:
-                if not is_asked and at == first and "{" not in other and not hearer <= known_otherwise:
+                is_open = not hearer <= known_otherwise and who not in self._said_in_statement()
+                if not is_asked and at == first and "{" not in other and is_open:
                     ways = (
                         as_named(text, at, last, who, other, vocabulary),
                         as_hearer(text, first, last, who, vocabulary),
@@ -185,6 +186,11 @@ class Hearers(ToldWords):
                 word, example = text.span(value.first, value.last), vocabulary.values.said_names(PERSON)[0]
                 problem = diagnostic("BT038", word, words=word.text, type=PERSON, example=example)
                 self._calls.problems.append(problem)
+
+    def _said_in_statement(self) -> set[str]:
+        """The persons for whom words of this statement stand: he, in `if he doesn't come, ...`."""
+        tokens = self._tokens[statement_start(self._tokens, len(self._tokens)) :]
+        return set().union(*map(self._said_by, tokens))
 
     def _said_by(self, token: Token) -> set[str]:
         """The persons for whom words of a token stand."""
