@@ -134,7 +134,7 @@ def test_a_killed_session_is_offered_again(repl: Callable[..., Terminal], tmp_pa
     golden(again, "> bow then wa", "restored")
     again.press("C-c")
     again.type("show")
-    again.wait_for("> show\nbow is nod")
+    prompted(again, "> show\nbow is nod")
     again.press("C-d", "C-d")
     again.wait_for("This session is saved")
     assert again.wait_for_end() == 0
