@@ -90,6 +90,10 @@ def recorded_in(place: str) -> tuple[int, TaskState]:
         return int(saved["scopes"][0]["values"].get("n", 0)) if saved else 0, task.state
 
 
+def numbers_printed(lines: list[str]) -> list[str]:
+    return [line.split()[1] for line in lines if line.startswith("printed") and line != "printed rule"]
+
+
 def is_over(place: str) -> bool:
     return recorded_in(place)[1] in FINAL
 
@@ -107,12 +111,12 @@ def test_a_task_that_is_resumed_does_nothing_again(kind: str, tmp_path: Path) ->
             seen.append(peer.lines.get(timeout=LONG))
         seen += peer.kill()
         recorded, _ = recorded_in(place)
-        assert recorded in (moment - 1, moment, moment + 1)
+        latest = max(map(int, numbers_printed(seen)))  # on a busy computer it goes on until it is killed
+        assert recorded in (latest - 1, latest, latest + 1)
         peer = Peer(folder, place)
         wait_until(partial(is_over, place))
         again = peer.end()
-        numbers = [line.split()[1] for line in again if line.startswith("printed") and line != "printed rule"]
-        assert numbers == [str(number) for number in range(recorded + 1, 21)]
+        assert numbers_printed(again) == [str(number) for number in range(recorded + 1, 21)]
         rules = [*seen, *again].count("printed rule")
         assert rules == 1 or (rules == 2 and recorded <= 7)  # the end of that print was not yet recorded
         assert recorded_in(place)[1] is TaskState.COMPLETED
