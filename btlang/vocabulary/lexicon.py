@@ -131,8 +131,9 @@ class Lexicon:
         """Negations and words for how many, and words like `stop`: corrections are careful about them."""
         self.asked_once = frozenset(language["asked_once"])
         self.subjects = frozenset(language["subjects"])
-        self.last_ones = frozenset(words for words, number in language["ordinals"].items() if number == -1)
         """Words that say nothing behind `until` and `before`: `until you go to the lab`."""
+        self.last_ones = frozenset(words for words, number in language["ordinals"].items() if number == -1)
+        """Words for the last of several: `last`."""
         self.remarks: tuple[WordTree, ...] = tuple(
             tree_of((phrase, True) for phrase in self.asking[name]) for name in ("feeling", "there", "states")
         )

@@ -53,14 +53,18 @@ class Visitors(SentenceReader):
             return frozenset()
         return self._vocabulary.opening_words(TELL, ASK)
 
+    @cached_property
+    def _somebody(self) -> str:
+        """The word for anybody, for whom an event without a kind waits; empty in a language without one."""
+        return next(iter(self._vocabulary.asking["somebody"]), "")
+
     def with_event(self, match: Match | None, at: int) -> Match | None:
         """The phrase at a word; `ask everyone you meet "Tea?"` is `ask everyone "Tea?"` and an event."""
         text = self._text
         if text.words[at] not in self._hearing:
             return match  # as nearly always
-        somebody = next(iter(self._vocabulary.asking["somebody"]), "")
         for behind in range(at + 2, min(at + 2 + _MOST_IN_NAME, self._end_of_statement(at))):
-            event = self._event(behind, somebody)
+            event = self._event(behind, self._somebody)
             is_quoted = event is not None and text.words[event.last][0] == '"'
             opens = event is not None and self._opens(text.words[event.last])
             if event is None or not (is_quoted or opens):
@@ -83,7 +87,7 @@ class Visitors(SentenceReader):
         met, self._met = self._met, 0
         end = self._rule(met, last) if met else 0
         if met and not end:
-            event = self._event(met, next(iter(self._vocabulary.asking["somebody"]), ""))
+            event = self._event(met, self._somebody)
             words = self._text.span(met, event.last if event is not None else last)
             reason, example = "it isn't clear who is meant", f"{self._vocabulary.word('whenever')} ..., ask them ..."
             self._calls.problems.append(diagnostic("BT150", words, words=words.text, reason=reason, example=example))
@@ -102,7 +106,7 @@ class Visitors(SentenceReader):
         if not isinstance(said, Called):
             return 0
         kind, is_first = _kind_of(said)
-        event = self._event(at, kind or next(iter(self._vocabulary.asking["somebody"]), ""))
+        event = self._event(at, kind or self._somebody)
         if event is None:
             return 0
         last = last or event.last
