@@ -195,6 +195,12 @@ class MissionError(Exception):
         return MissionError([each.advising(advice) for each in self.diagnostics])
 
 
+def two_readings(span: Span, taken: str, other: str) -> Diagnostic:
+    """Make BT050 for words that have two readings. Each reading is a text to write in their place."""
+    problem = diagnostic("BT050", span, taken=taken, other=other, fixed=taken)
+    return problem.replace(readings=((span, taken), (span, other)))  # type: ignore[no-any-return]
+
+
 def sort_diagnostics(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
     """Sort diagnostics by file, place, code and text, each once."""
     unique = {(d.span.source.name, d): d for d in diagnostics}  # spans of two files may be equal

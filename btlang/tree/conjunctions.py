@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic, two_readings
 from btlang.support.record import Record
 from btlang.text.source import Span
 from btlang.tree import ast
@@ -163,9 +163,7 @@ class Conjunctions:
         for role in ("then", "meanwhile"):
             at = joint.start - span.start
             said.append(f"{text[:at].rstrip(' ,')} {self._vocabulary.word(role)}{text[at + len(joint.text) :]}")
-        taken, other = said
-        problem = diagnostic("BT050", span, taken=taken, other=other, fixed=taken)
-        self.problems.append(problem.replace(readings=((span, taken), (span, other))))
+        self.problems.append(two_readings(span, *said))
 
     def _leaf(self, node: ast.Ast) -> Traits:
         if isinstance(node, ast.Phrase):

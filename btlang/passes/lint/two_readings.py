@@ -22,7 +22,7 @@ from bisect import bisect
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic, two_readings
 from btlang.passes.compilation import Compilation
 from btlang.passes.lint.asked_once import ON_THE_WAY
 from btlang.passes.lint.other_form import find_in_form, find_in_pace, find_in_sentences, find_in_time
@@ -209,8 +209,7 @@ def _rules_at_goal(items: Sequence[ast.Ast], vocabulary: Lexicon) -> Iterator[Di
         said = f"{vocabulary.word('whenever')} {condition.text}, {doing.text}"
     taken = f"{said}. {journey.span.text}"
     other = f"{journey.span.text}, {vocabulary.word('then')} {vocabulary.word('wait_forever')}. {said}"
-    problem = diagnostic("BT050", whole, taken=taken, fixed=taken, other=other)
-    yield problem.replace(readings=((whole, taken), (whole, other)))
+    yield two_readings(whole, taken, other)
 
 
 def find_early_rules(compilation: Compilation) -> Iterator[Diagnostic]:
@@ -227,8 +226,7 @@ def find_early_rules(compilation: Compilation) -> Iterator[Diagnostic]:
         whole, behind = Span(wait.span.source, wait.span.start, rule.span.end), rule.span.text
         taken = f"{behind}. {said}"
         other = f"{said}, {vocabulary.word('and')} {behind[:1].lower()}{behind[1:]}"
-        problem = diagnostic("BT050", whole, taken=taken, fixed=taken, other=other)
-        yield problem.replace(readings=((whole, taken), (whole, other)))
+        yield two_readings(whole, taken, other)
 
 
 def find_counts_behind_lists(compilation: Compilation) -> Iterator[Diagnostic]:
@@ -247,8 +245,7 @@ def find_counts_behind_lists(compilation: Compilation) -> Iterator[Diagnostic]:
                 whole = Span(left.span.source, left.span.start, right.span.end)
                 taken = f"{left.span.text}, {word('then')} {right.span.text}"
                 other = f"{right.span.text} in {joined([goal for goal, *_ in goals], word('and'))}"
-                problem = diagnostic("BT050", whole, taken=taken, fixed=taken, other=other)
-                yield problem.replace(readings=((whole, taken), (whole, other)))
+                yield two_readings(whole, taken, other)
 
 
 def _places_of(phrase: ast.Phrase) -> set[str]:
@@ -273,8 +270,7 @@ def find_lasting_reactions(compilation: Compilation) -> Iterator[Diagnostic]:
                 continue
             taken = f"{front}{word('repeat')} {done} {until}"
             other = f"{word('wait')} {until}. {rule[:1].upper()}{rule[1:]}"
-            problem = diagnostic("BT050", node.span, taken=taken, fixed=taken, other=other)
-            yield problem.replace(readings=((node.span, taken), (node.span, other)))
+            yield two_readings(node.span, taken, other)
 
 
 def _is_about_people(entry: Entry, vocabulary: Lexicon) -> bool:

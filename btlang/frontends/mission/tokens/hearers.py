@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import cached_property
 
-from btlang.diagnostics.diagnostic import diagnostic
+from btlang.diagnostics.diagnostic import diagnostic, two_readings
 from btlang.frontends.mission.token import STATEMENT_ENDS, Called, Listed, Token, arguments_of, statement_start
 from btlang.frontends.mission.tokens.sentence_reader import is_question
 from btlang.frontends.mission.tokens.told_words import ToldWords
@@ -73,7 +73,7 @@ class Hearers(ToldWords):
         front = text.source.text[command.start : text.ends[first - 1 - is_opened]]
         taken, other = (f'{front} "{written(words, first, last)}"' for words in (named, heard))
         whole = Span(text.source, command.start, text.ends[last - 1])
-        self._calls.problems.append(diagnostic("BT050", whole, taken=taken, other=other, fixed=taken))
+        self._calls.problems.append(two_readings(whole, taken, other))
 
     def _of_speaker(self, first: int, last: int) -> Words:
         """The words of `ask me if I want my tea` as those about somebody else: `if they want your tea`."""
@@ -105,11 +105,11 @@ class Hearers(ToldWords):
         last = self._end_of_statement(end)
         opener = text.words[first - 1]
         is_opened = self._vocabulary.values.texts.opens(opener) or opener in self._vocabulary.asking["pleading"]
-        whole, behind = Span(text.source, command.start, text.ends[end - 1]), text.span(end, last).text
+        whole, behind = Span(text.source, command.start, text.ends[last - 1]), text.span(end, last).text
         front = text.source.text[command.start : text.ends[first - 1 - is_opened]]
         said = text.span(first, end).text
         taken, other = f'{front} "{said}"{behind}', f'{front} "{said}{behind}"'
-        self._calls.problems.append(diagnostic("BT050", whole, taken=taken, other=other, fixed=taken))
+        self._calls.problems.append(two_readings(whole, taken, other))
         return end
 
     def _quoting(self, command: Token, first: int, last: int, at: int) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.diagnostics.diagnostic import Diagnostic, two_readings
 from btlang.text.words import Words
 from btlang.vocabulary.entry import GOAL, THEME
 from btlang.vocabulary.lexicon import Lexicon
@@ -36,5 +36,4 @@ def two_goals(match: Match, at: int, text: Words, vocabulary: Lexicon) -> Diagno
         f"{text.source.text[span.start : text.starts[place]]}{clause} {text.source.text[text.starts[place] : span.end]}"
         for place in (where, theme.last)
     )
-    problem = diagnostic("BT050", span, taken=taken, other=other, fixed=taken)
-    return problem.replace(readings=((span, taken), (span, other)))  # type: ignore[no-any-return]
+    return two_readings(span, taken, other)
