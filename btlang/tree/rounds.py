@@ -136,6 +136,7 @@ def _add_loops(root: ast.Ast, vocabulary: Lexicon) -> ast.Ast:
     if any(isinstance(node, ast.Remember) for node in ast.parents_first(root)):
         root = fold(root, ast.parts, _with_what_says_it)
     root = fold(root, ast.parts, _with_tours_apart)
+    root = fold(root, ast.parts, _with_both_cases)
     nodes = ast.parents_first(root)
     sets = [(at, choice) for at, node in enumerate(nodes) if (choice := _set_of(node)) is not None]
     parents = {id(part): node for node in nodes for part in ast.parts(node)}
@@ -239,6 +240,37 @@ def _with_tours_apart(node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
         else:
             made.append(item)
     return ast.with_parts(node, done) if len(made) == len(done) else node.replace(items=tuple(made))
+
+
+def _with_both_cases(node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
+    """Keep both cases of a condition in one round: `in each room, if nobody is there, wave; if somebody is, nod`."""
+    if not isinstance(node, ast.Chain) or node.operator != "sequence":
+        return ast.with_parts(node, done)
+    made: list[ast.Ast] = []
+    for item in done:
+        before = made[-1] if made else None
+        goes_on = isinstance(before, ast.Chain) and before.operator == "and" and _is_tour(before.items[0])
+        if goes_on and isinstance(before, ast.Chain) and _is_other_case(before.items[-1], item):
+            made[-1] = ast.Chain("and", (*before.items, item), before.bracketed, before.span)
+        else:
+            made.append(item)
+    return made[0] if len(made) == 1 else node.replace(items=tuple(made))
+
+
+def _is_other_case(case: ast.Ast, other: ast.Ast) -> bool:
+    """Whether a condition is asked where another one is denied, and neither has an alternative."""
+    if not (isinstance(case, ast.If) and isinstance(other, ast.If)) or case.otherwise or other.otherwise:
+        return False
+    (asked, is_so), (asked_then, is_so_then) = map(_case, (case, other))
+    return asked != "" and asked == asked_then and is_so != is_so_then
+
+
+def _case(form: ast.If) -> tuple[object, bool]:
+    """Return what a form asks, "" for several conditions, and whether that must be true."""
+    asked, is_so = form.condition, not form.negated
+    if isinstance(asked, ast.Not):
+        asked, is_so = asked.condition, not is_so
+    return (asked.entry.id, asked.arguments) if isinstance(asked, ast.Phrase) else "", is_so
 
 
 def _is_tour(node: ast.Ast) -> bool:

@@ -19,6 +19,7 @@ class Capability(Record):
 
 
 _ARMS = ("left arm", "right arm")
+HOLDING = "holding"
 CAPABILITIES = {
     "base": Capability("base", ("base",)),
     "pose": Capability("base"),
@@ -33,7 +34,7 @@ CAPABILITIES = {
     "hand": Capability("hand", _ARMS),
     "left hand": Capability("left hand", _ARMS[:1]),
     "right hand": Capability("right hand", _ARMS[1:]),
-    "holding": Capability("hand"),
+    HOLDING: Capability("hand"),
     "voice": Capability("voice", ("voice",)),
     "ears": Capability("ears"),
     "perception": Capability("camera that recognises things"),

@@ -39,6 +39,7 @@ def in_one_line(mission: btlang.Mission) -> str:
         *rows("times.txt"),
         *rows("waits.txt"),
         *rows("counts.txt"),
+        *rows("carried.txt"),
     ],
     ids=lambda text: text,
 )

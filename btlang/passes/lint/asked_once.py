@@ -61,7 +61,7 @@ def find_asked_once(compilation: Compilation) -> Iterator[Diagnostic]:
                 if sentence and _is_awaited(node, sentence[-1]):
                     continue
                 joins_rule = at > 0 and isinstance(items[at - 1], ast.Whenever) and "\n" not in node.span.text
-                if joins_rule or _is_statement(node, vocabulary):
+                if joins_rule or _is_statement(node, body, vocabulary):
                     is_first = not sentence and at + 1 < len(items)
                     warnings = list(_warn(node, sentence[-1] if sentence else None, vocabulary, is_first))
                     yield from warnings or _too_late(node, sentence, vocabulary)
@@ -272,14 +272,27 @@ def _find_things(phrase: ast.Phrase) -> set[str]:
     return found - {""}
 
 
-def _is_statement(node: ast.If, vocabulary: Lexicon) -> bool:
-    """Whether nothing stands beside it in its statement, and no block below it; behind `stop when C` more may stand."""
+def _is_statement(node: ast.If, body: ast.Ast, vocabulary: Lexicon) -> bool:
+    """Whether nothing stands beside it in its statement, and no block below it; behind `stop when C` more may stand.
+
+    Words that say nothing may stand behind it, too: `before you carry on`.
+    """
     text, span = node.span.source.text, node.span
     before, behind = text[: span.start].rstrip(" \t"), text[span.end :].lstrip(" \t")
     starts = not before or before[-1] in "\n;.!?" or before[-2:] in _QUOTED_ENDS
     halts = node.body.span.start < node.condition.span.start and node.body.span.text.lower() in vocabulary.halting
     ends = not behind or behind[0] in "\r\n;.!?#" or span.text[-2:] in _QUOTED_ENDS
-    return starts and "\n" not in span.text and (halts or ends)
+    if not starts or "\n" in span.text:
+        return False
+    return halts or ends or not _has_more(span, body)
+
+
+def _has_more(span: Span, body: ast.Ast) -> bool:
+    """Whether something of a body begins behind a place in the same sentence."""
+    text = span.source.text
+    end = _SENTENCE_END.search(text, span.end)
+    sentence = range(span.end, end.start() if end else len(text))
+    return any(each.span.start in sentence for each in ast.parents_first(body))
 
 
 def _warn(node: ast.If, before: ast.Ast | None, vocabulary: Lexicon, is_first: bool = False) -> Iterator[Diagnostic]:

@@ -15,10 +15,13 @@ from btlang.passes.lint.other_readings import sort_by_place
 from btlang.passes.scope import find_names
 from btlang.text.source import Span
 from btlang.tree import ast
-from btlang.tree.ast import Assign, Ast, Definition, Exact, Remember, all_definitions, bodies, keys_of, parts
+from btlang.tree.ast import Assign, Ast, Definition, Exact, ForEach, Remember, all_definitions, bodies, keys_of, parts
 from btlang.tree.catalogue import SUBTREE
 from btlang.tree.comments import KEPT
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE
+
+_NAMED = (PLACE, PERSON, OBJECT, DOOR)
 
 
 def find_unused(compilation: Compilation) -> Iterator[Diagnostic]:
@@ -53,6 +56,8 @@ def _values(compilation: Compilation) -> Iterator[Diagnostic]:
         for node in compilation.syntax(body):
             if isinstance(node, (Assign, Remember)):
                 given.setdefault(node.key, node.span)
+            elif isinstance(node, ForEach) and node.kind in _NAMED:
+                yield from _idle_loop(node, compilation.vocabulary)
     definitions = all_definitions(mission)
     if not given and not any(definition.parameters for definition in definitions):
         return
@@ -66,6 +71,19 @@ def _values(compilation: Compilation) -> Iterator[Diagnostic]:
     for key, span in given.items():
         if key not in asked and span.source is mission.span.source:
             yield diagnostic("BT051", span, name=key.replace("_", " ").strip())
+
+
+def _idle_loop(loop: ForEach, vocabulary: Lexicon) -> Iterator[Diagnostic]:
+    """Yield `for each room: wave`, which never goes to a room."""
+    if loop.key in _find_asked_keys(ast.parents_first(loop.body)):
+        return
+    name, said, source = loop.key.replace("_", " "), loop.body.span, loop.span.source
+    head = Span(source, loop.span.start, said.start)
+    advice = ""
+    if loop.kind in (PLACE, PERSON) and head.text.strip() and "\n" not in loop.span.text:
+        journey = " ".join((*vocabulary.asking["journey"], name))
+        advice = f"To go to each first, write: {head.text.strip()} {journey} {vocabulary.word('then')} {said.text}"
+    yield diagnostic("BT051", loop.span, name=name, help=advice)
 
 
 def _find_asked_keys(nodes: Iterable[Ast]) -> set[str]:

@@ -199,12 +199,13 @@ class Answers(AddressedTexts):
         return end
 
     def _miss_words(self, token: Token) -> None:
-        """BT012 for `wait until Bob says so`, which doesn't say in which words."""
-        value = token.value
+        """BT012 for `wait until Bob says so`, `if somebody calls you`, which don't say in which words."""
+        value, asking = token.value, self._vocabulary.asking
         if isinstance(value, Called) and value.entry.id in _REPLIES:
             words = Span(self._text.source, token.start, token.end)
             *front, last = words.text.split()
-            if last.lower() in self._vocabulary.asking["so"] and front:
+            nothing = (*asking["so"], *asking["told_pronouns"], *asking["hearing"], *self._vocabulary.values.role_words.speaker)
+            if last.lower() in nothing and value.arguments[-1][1] == last.lower() and front:
                 said, example = " ".join(front), f'{" ".join(front)} "{_GO_AHEAD}"'
                 problem = diagnostic("BT012", words, words=said, wanted="a text", example=example)
                 self._calls.problems.append(problem)

@@ -57,6 +57,7 @@ class Calls(Mentions):
     def token(self, match: Match, at: int) -> Token:
         """The token of a phrase."""
         text, meaning = self._text, match.meaning
+        match = self._with_held(match) if self._held else match
         values = match.values
         for value in values if self._owners else ():
             self._note_owners(value)

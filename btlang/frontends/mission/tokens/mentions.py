@@ -12,7 +12,7 @@ from btlang.text.words import END_OF_TEXT, Words, split
 from btlang.tree.answers import ASK, SOMEBODY_SAYS
 from btlang.vocabulary.adjectives import OWNER
 from btlang.vocabulary.antecedents import pronouns_for
-from btlang.vocabulary.capabilities import MOVES
+from btlang.vocabulary.capabilities import HOLDING, MOVES
 from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
@@ -23,7 +23,9 @@ from btlang.vocabulary.value_type import DOOR, KINDS, OBJECT, PERSON, PLACE, TEX
 from btlang.vocabulary.word_tree import find
 
 _SEVERAL = {"PeopleAt": PERSON, "ObjectsAt": OBJECT}  # conditions about so many of them
+_HOLDS = "Holding"  # the condition that holds once a thing is taken up
 _MEETS = "SomeoneNear"  # the condition that holds once a command for nobody in particular is done
+_UNKNOWN = "{"
 ODD = ("", "{", "(")
 """How texts begin that are no plain values: of unknown names, references, choices and points."""
 
@@ -37,6 +39,8 @@ class Mentions:
         """How all journeys are made whose command says nothing else: `drive slowly`."""
         self._themes: tuple[str, list[str]] = "", []
         """The id of the command that was read last, and the things that it and those before it with that id had."""
+        self._held, self._passed = "", ""
+        """What the robot has taken up, and the thing to which it only went, or at which it looked, since then."""
         self._lists: dict[str, tuple[Token, SlotValue]] = {}
         self._alternatives: dict[str, tuple[Token, SlotValue]] = {}  # by the reference to the one that succeeds
         # in most missions nobody is spoken of by a pronoun
@@ -55,6 +59,7 @@ class Mentions:
         self._note_values(match)
         if match.meaning.entry is not None and match.meaning.role in ("command", "condition"):
             self._note_counted(match.meaning.entry, match)
+            self._note_held(match.meaning.entry, match)
         for kind, value in before.items():
             if self._context.latest.get(kind, value) != value:
                 del self._context.latest[kind]
@@ -88,6 +93,38 @@ class Mentions:
         key = self._context.keys.get(kind, kind)
         self._lists.pop(kind, None)
         self._context.listed[kind] = Choice(ALL, kind, key, tuple(sorted((*kinds, *where)))).text
+
+    def _note_held(self, entry: Entry, match: Match) -> None:
+        """Keep what the robot holds apart from a thing that it only goes to, or looks at."""
+        things = [value for value in match.values if value.type == OBJECT]
+        latest = self._context.latest.get(OBJECT, "")
+        if _HOLDS in entry.achieves:
+            self._held, self._passed = latest if things else "", ""
+        elif HOLDING in entry.needs:
+            self._held, self._passed = "", ""
+        elif things:
+            self._passed = "" if entry.first else latest  # what was looked for is meant
+            if latest == self._held:
+                self._held = _UNKNOWN  # another choice in its place
+
+    def _with_held(self, match: Match) -> Match:
+        """`pick up the cup, go to the book and put it down`: the cup. BT150 where it isn't known which thing that is."""
+        entry = match.meaning.entry
+        if entry is None or not self._passed or HOLDING not in entry.needs or _HOLDS in entry.achieves:
+            return match
+        pronouns, values = self._vocabulary.values.pronoun_words, list[SlotValue]()
+        for value in match.values:
+            is_passed = value.type == OBJECT and value.text == self._passed and not (value.more or value.group)
+            if is_passed and find(pronouns, self._text.words, value.first) is not None:
+                if self._held == _UNKNOWN:
+                    it, reason = self._text.span(value.first, value.last), "it may be what the robot holds"
+                    problem = diagnostic("BT150", it, words=it.text, reason=reason, example=entry.example)
+                    self.problems.append(problem)
+                else:
+                    value = value.replace(text=self._held)
+            values.append(value)
+        changed: Match = match.replace(values=tuple(values))
+        return changed
 
     def _note_values(self, match: Match) -> None:
         for value in sorted(match.values, key=lambda value: value.name == value.type):  # a theme last: `it` prefers it

@@ -29,7 +29,7 @@ from btlang.frontends.mission.tokens.word_matches import (
     words_of,
 )
 from btlang.text.words import Words
-from btlang.vocabulary.entry import RECIPIENT, THEME
+from btlang.vocabulary.entry import GOAL, RECIPIENT, THEME
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import ReadingContext
@@ -41,6 +41,7 @@ BEFORE_DOING = frozenset(("before", "after", "while", "until", "never", "followe
 """The kinds of tokens behind which a command may have the form of its verb: `after waving`."""
 JOINTS = frozenset(("then", "and", "or", "comma", "otherwise", "before", "after"))
 """Behind these a command may leave out words of the one before it."""
+_LISTING = frozenset(("and", "comma", "then"))
 _COMMANDS = frozenset(("command", "name"))
 _EITHER_END = (["for", "or"], ["up_to", "or"])  # `for 10 s or 2 m` says two ends of one command, not two commands
 LONGEST_VERB = 4
@@ -179,6 +180,12 @@ class PartialCommands:
             return 0
         people = self._people()
         token, before = self._token_of(read[0], at), said_before(self._tokens)
+        if self._only_says_goal(read[0], at):
+            del self._tokens[-2:]
+            if not self._tokens or self._tokens[-1].kind not in JOINTS:
+                self._tokens.append(token)
+                return read[0].last
+            before = said_before(self._tokens)
         _complete(token, before)
         if self._tokens[-1].kind in ("and", "then", "comma"):
             self._list_people(people)
@@ -193,6 +200,17 @@ class PartialCommands:
         self._share_recipient(token)
         enlist(self._tokens, token)
         return read[0].last
+
+    def _only_says_goal(self, match: Match, at: int) -> bool:
+        """Whether words say where to for the command right before a comma, which doesn't: `bring the cup, to the lab`."""
+        before, entry = self._tokens[-2] if len(self._tokens) > 1 else None, match.meaning.entry
+        value, speaker = before.value if before is not None else None, self._vocabulary.values.role_words.speaker
+        if self._tokens[-1].kind != "comma" or not isinstance(value, Called | Listed) or entry is None or before is None:
+            return False
+        goals, own = {*entry.slots_of(GOAL), *entry.slots_of(RECIPIENT)}, {each for row in arguments_of(value) for each, _ in row}
+        added = {each.name for each in match.values if each.first >= at}
+        is_new = bool(added) and added <= goals - own and own == {*value.entry.slots_of(THEME)}
+        return is_new and speaker.isdisjoint(self._words_of(before))
 
     def _people(self) -> tuple[str, ...]:
         """The names of whom `them` stands for."""
@@ -223,7 +241,7 @@ class PartialCommands:
     def _share_recipient(self, last: Token) -> None:
         """`bring the cup from the kitchen and the book from the lab to Alice`: she gets both."""
         said, speaker = last.value, self._vocabulary.values.role_words.speaker
-        if not isinstance(said, Called | Listed) or self._tokens[-1].kind not in ("and", "comma"):
+        if not isinstance(said, Called | Listed) or self._tokens[-1].kind not in _LISTING:
             return
         slots = said.entry.slots_of(RECIPIENT)
         given = tuple((name, value) for name, value in arguments_of(said)[-1] if name in slots)
@@ -239,7 +257,7 @@ class PartialCommands:
                 _complete(token, last)  # `take the cup and all plates to the lab`
                 if token.value is value:
                     return
-            elif token.kind not in ("and", "comma") and token.role != "list":
+            elif token.kind not in _LISTING and token.role != "list":
                 return
 
     def _words_of(self, token: Token) -> list[str]:

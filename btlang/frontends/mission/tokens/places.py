@@ -38,6 +38,7 @@ _BEHIND = (
 )  # fmt: skip
 """Raw kinds that may stand behind where a command is done: `wave in the hall at 6 pm`."""
 _AND = frozenset(("and", "comma"))
+_ASKING = ("if", "unless", "check")
 _COMMANDS = frozenset(("command", "name", "wait", "nothing"))
 _DONE = ("command", "name", "close", "wait")
 _HEADS = frozenset(("every", "every_day", "condition"))
@@ -274,10 +275,11 @@ class Places(SentenceReader):
             self._doubt_round(at, behind, following)
         if self._goes_there(_goal_of(journey), len(self._tokens)):
             return behind
-        if following is None or following.meaning.role not in _COMMANDS:
+        asks = following is not None and following.meaning.role in _ASKING
+        if following is None or following.meaning.role not in (*_COMMANDS, *_ASKING):
             return 0
-        if any(value.group or value.more for value in journey.values) and not self._are_commands(behind):
-            return 0  # `in every room, look around, and if you see Alice, greet her`
+        if not asks and any(value.group or value.more for value in journey.values) and not self._are_commands(behind):
+            return 0  # `in every room, look around, then wave`
         if self._repeats(journey, run_start(self._tokens, len(self._tokens), LINES)):
             return 0
         self._append_tour(journey, at)
@@ -357,15 +359,16 @@ class Places(SentenceReader):
         return is_spoken_of and any(token.kind not in _PLAIN for token in self._tokens[first:last])
 
     def _are_commands(self, at: int) -> bool:
-        """Whether all from a word to the end of the statement are commands that `and` joins."""
+        """Whether all from a word to the end of the statement are commands that `and` joins, up to an `if`."""
         joints = self._vocabulary.roles["and"]
         while True:
             command = self._phrase(at)
             if command is None or command.meaning.role not in _COMMANDS:
-                return False
+                return command is not None and command.meaning.role in _ASKING
             at = command.last + self._is_there(command.last)
             if self._is_end(at):
                 return True
+            at += self._text.words[at] == ","
             if self._text.words[at] not in joints:
                 return False
             at += 1

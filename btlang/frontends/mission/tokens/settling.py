@@ -30,6 +30,7 @@ from btlang.text.source import Source, Span
 from btlang.text.words import Words
 from btlang.vocabulary.antecedents import pronouns_for
 from btlang.vocabulary.descriptions import NAME
+from btlang.vocabulary.capabilities import HOLDING
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import ALL, choice_of
@@ -47,7 +48,7 @@ MEASURES = frozenset(("for", "up_to", "within", "count"))
 """What may stand between a command and the words that ask how it went."""
 WAITS = ("wait_until", "wait_for", "wait_up_to")
 """The raw kinds before a condition that is waited for."""
-_HOLDING, _THERE = "holding", ("SeesObject", "ObjectIsAt")
+_THERE = ("SeesObject", "ObjectIsAt")
 _SIMPLE = frozenset(("command", "name", "wait", "nothing", *JOINTS))
 _BETWEEN = _SIMPLE | STATEMENT_ENDS | MEASURES | {"open", "close", "meanwhile"}
 _HEADS = frozenset(("every", "every_day", "at", "repeat", "comma", "then", "colon", "open"))
@@ -371,7 +372,7 @@ def names_of(text: str) -> set[str]:
 
 def takes(command: Token) -> bool:
     """Whether a command takes something into a hand."""
-    return isinstance(command.value, Called | Listed) and _HOLDING in command.value.entry.needs
+    return isinstance(command.value, Called | Listed) and HOLDING in command.value.entry.needs
 
 
 def misses(command: Token, asked: Token) -> bool:
