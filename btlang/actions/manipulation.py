@@ -58,13 +58,17 @@ def release(robot: Hands, object: str | None = None) -> Steps:
 
 
 def pick_up(robot: FetchingRobot, object: str) -> Steps:
-    """Drive up to the object, grasp it with the right hand and lift it. Fails if one of these fails."""
+    """Drive up to the object, grasp it with the right hand and lift it. Fails if one of these fails.
+
+    An object that the hand holds is only lifted: a rule may have halted the command once it was grasped.
+    """
     held = robot.holding("right")
-    if held is not None:
+    if held not in (None, object):
         raise ActionFailed(f"the right hand already holds {said(held)}")
-    yield from travel(robot, object)
-    yield from take(robot, "right arm reaching")
-    yield from accomplish(robot.grasp("right", object))
+    if held is None:
+        yield from travel(robot, object)
+        yield from take(robot, "right arm reaching")
+        yield from accomplish(robot.grasp("right", object))
     yield from take(robot, "right arm carrying")
 
 

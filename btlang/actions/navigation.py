@@ -13,6 +13,7 @@ from btlang.robots.robot import Base, Navigation, Operation, RobotError
 from btlang.robots.worlds.descriptions import describe_relations
 from btlang.robots.worlds.likeness import unseen
 from btlang.robots.worlds.world import said
+from btlang.vocabulary.references import NEAREST, SOUGHT, Choice
 
 PASSED = 0.5
 """Metres from a place within which the robot has passed it."""
@@ -111,9 +112,13 @@ def choose(
     """Write the "nearest", a "random" name and so on of a type. Fails if there is none with these parts.
 
     The parts are those of a description: what it is like, what it isn't, and its relations. "speaking" is the person
-    who spoke last, else the nearest one in view.
+    who spoke last, else the nearest one in view. For what is "sought" the description itself is written, as nothing
+    like it may be known yet.
     """
     wanted = {name: text for name, text in parts.items() if text}
+    if how == SOUGHT:
+        output(Choice(NEAREST, type, type, tuple(wanted.items())).text)
+        return
     chosen = speaker(robot) if how == _SPEAKING else robot.choose(type, how, wanted)
     if chosen is None or (how == _SPEAKING and wanted and chosen not in robot.described(type, wanted)):
         raise ActionFailed(unseen(type, wanted, describe_relations(wanted)))

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Generator
 from contextlib import closing
-from typing import Protocol
+from typing import Protocol, TypeAlias
 
 from btlang.actions.common import COUNTABLE, DrivingRobot, Watch, compares, of_a_kind, spot
 from btlang.actions.motion import Steps, turn
@@ -11,12 +12,17 @@ from btlang.actions.navigation import accomplish, go_to, travel
 from btlang.actions.sensing import holding
 from btlang.engine.leaves.leaf import ActionFailed, Failed
 from btlang.robots.robot import Hands, Navigation, Perception
+from btlang.robots.worlds.descriptions import describe_relations
+from btlang.robots.worlds.likeness import describe
 from btlang.robots.worlds.world import said
+from btlang.vocabulary.references import choice_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.engine.blackboard import Blackboard
 
+Found: TypeAlias = Callable[[str], object]
+"""Takes the name of what was found."""
 COUNT = "@_count"
 """The blackboard key of the last count."""
 _COUNTED, _PERSON = "@_counted", "person"  # what the last count was of: a kind, or a type of things
@@ -28,19 +34,27 @@ class SearchingRobot(Perception, Navigation, DrivingRobot, Hands, Protocol):
 
 
 def look_for_person(
-    robot: SearchingRobot, person: str, place: str | None = None, x: float | None = None, y: float | None = None
+    robot: SearchingRobot,
+    person: str,
+    place: str | None = None,
+    x: float | None = None,
+    y: float | None = None,
+    found: Found | None = None,
 ) -> Steps:
     """Search a place, or all of them, until a person is in view there. Fails if they are in none."""
-    yield from _search(robot, "person", person, place, x, y)
+    yield from _find(robot, "person", person, place, x, y, found)
 
 
 def look_for_object(
-    robot: SearchingRobot, object: str, place: str | None = None, x: float | None = None, y: float | None = None
+    robot: SearchingRobot,
+    object: str,
+    place: str | None = None,
+    x: float | None = None,
+    y: float | None = None,
+    found: Found | None = None,
 ) -> Steps:
     """Search a place, or all of them, until an object is in view there, or in a hand. Fails if it is in none."""
-    if robot.body.has("holding") and holding(robot, object):
-        return
-    yield from _search(robot, "object", object, place, x, y)
+    yield from _find(robot, "object", object, place, x, y, found)
 
 
 def look_for_someone(
@@ -51,19 +65,29 @@ def look_for_someone(
 
 
 def find_person(
-    robot: SearchingRobot, person: str, place: str | None = None, x: float | None = None, y: float | None = None
+    robot: SearchingRobot,
+    person: str,
+    place: str | None = None,
+    x: float | None = None,
+    y: float | None = None,
+    found: Found | None = None,
 ) -> Steps:
     """Look for a person and go there."""
-    yield from look_for_person(robot, person, place, x, y)
-    yield from travel(robot, person)
+    name = yield from _find(robot, "person", person, place, x, y, found)
+    yield from travel(robot, name)
 
 
 def find_object(
-    robot: SearchingRobot, object: str, place: str | None = None, x: float | None = None, y: float | None = None
+    robot: SearchingRobot,
+    object: str,
+    place: str | None = None,
+    x: float | None = None,
+    y: float | None = None,
+    found: Found | None = None,
 ) -> Steps:
     """Look for an object and go there."""
-    yield from look_for_object(robot, object, place, x, y)
-    yield from travel(robot, object)
+    name = yield from _find(robot, "object", object, place, x, y, found)
+    yield from travel(robot, name)
 
 
 def find_someone(
@@ -162,25 +186,67 @@ def _count(
     blackboard.set(_COUNTED, what)
 
 
+def _find(
+    robot: SearchingRobot,
+    type: str,
+    sought: str,
+    place: str | None,
+    x: float | None,
+    y: float | None,
+    found: Found | None,
+) -> Generator[None, None, str]:
+    """Search for what has a name or fits a description, and return its name. A hand may hold it."""
+    held = _held(robot, type, sought)
+    if not held:
+        yield from _search(robot, type, sought, place, x, y)
+    name = (held or _found(robot, type, sought, place))[0]
+    if found is not None:
+        found(name)
+    return name
+
+
+def _held(robot: SearchingRobot, type: str, sought: str) -> list[str]:
+    """Return what the hands hold of what is sought."""
+    may_hold = type == "object" and robot.body.has("holding")
+    return [name for name in _known(robot, type, sought) if holding(robot, name)] if may_hold else []
+
+
+def _known(robot: SearchingRobot, type: str, sought: str) -> list[str]:
+    """Return the name that is sought, or those that the robot knows of what fits the description, nearest first."""
+    choice = choice_of(sought)
+    return [sought] if choice is None else robot.described(type, dict(choice.parts))
+
+
 def _search(
-    robot: SearchingRobot, type: str, name: str | None, place: str | None, x: float | None, y: float | None
+    robot: SearchingRobot, type: str, sought: str | None, place: str | None, x: float | None, y: float | None
 ) -> Steps:
     is_here = place is not None or x is not None
-    tour = _look_in(robot, place, x, y) if is_here else _tour(robot, name)
+    tour = _look_in(robot, place, x, y) if is_here else _tour(robot, type, sought)
     with closing(tour):
-        while not _found(robot, type, name, place):
+        while not _found(robot, type, sought, place):
             try:
                 next(tour)
             except StopIteration:
                 where = f" in {said(place or spot(x, y))}" if is_here else ""
-                found = f"I haven't found {said(name)}" if name else "I haven't found anybody"
-                raise ActionFailed(f"{found}{where}") from None
+                raise ActionFailed(f"I haven't found {_words(type, sought)}{where}") from None
             yield
 
 
-def _found(robot: SearchingRobot, type: str, name: str | None, place: str | None) -> list[str]:
+def _words(type: str, sought: str | None) -> str:
+    """Return the words for what is sought."""
+    choice = choice_of(sought or "")
+    if choice is not None:
+        parts = dict(choice.parts)
+        return describe(type, parts, describe_relations(parts))
+    return said(sought) if sought else "anybody"
+
+
+def _found(robot: SearchingRobot, type: str, sought: str | None, place: str | None) -> list[str]:
     """Return which of those that are searched are in view, and at the place as far as the robot knows."""
-    seen = robot.seen(type) if name is None else [name] if robot.sees(name) else []
+    if sought is None:
+        seen = robot.seen(type)
+    else:
+        seen = [name for name in _known(robot, type, sought) if robot.sees(name)]
     if not seen or place is None:
         return seen
     there = robot.described(type, {"at": place})
@@ -192,11 +258,11 @@ def _look_in(robot: SearchingRobot, place: str | None, x: float | None, y: float
     yield from turn(robot, _AROUND)
 
 
-def _tour(robot: SearchingRobot, name: str | None) -> Steps:
+def _tour(robot: SearchingRobot, type: str, sought: str | None) -> Steps:
     """Turn once around here, go where the robot knows it, and look into all places."""
     watch = Watch(robot)
     yield from turn(robot, _AROUND)
-    if name is not None:
+    for name in _known(robot, type, sought)[:1] if sought is not None else ():
         try:
             yield from accomplish(robot.navigate_to(name))
             yield from turn(robot, _AROUND)

@@ -8,13 +8,13 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
 from btlang.passes.lower_time import TIMED
 from btlang.passes.scope import Lowered, LoweringScope, new_node, new_round
-from btlang.passes.scripts import compile_assignment, compile_comparison, make_choice, prepare_ports, run_before
+from btlang.passes.scripts import compile_assignment, compile_comparison, make_choice, prepare_ports, run_before, seek
 from btlang.text.source import Span
 from btlang.tree import ast
 from btlang.tree.catalogue import CONSTRAINTS, SUBTREE, never_ends
 from btlang.tree.node import Node, NodeModel, PortModel, Tree
 from btlang.tree.visit import fold
-from btlang.vocabulary.entry import MEASURED
+from btlang.vocabulary.entry import FOUND, MEASURED
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import ALL, choice_of, names_key
 
@@ -107,6 +107,8 @@ def _phrase(item: ast.Phrase, _done: list[Lowered], scope: LoweringScope) -> Low
         order = list(defaults)
         spoken.sort(key=lambda port: order.index(port[0]))
     scripts, ports = prepare_ports(spoken, scope)
+    if FOUND in item.entry.outputs:
+        scripts, ports = seek(scripts, ports)
     return Lowered(run_before(scripts, Node(item.entry.id, (), ports + item.ports, item.name, item.span)))
 
 

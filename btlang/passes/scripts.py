@@ -11,10 +11,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from btlang.passes.scope import LoweringScope
 from btlang.tree.catalogue import SEQUENCE
 from btlang.tree.node import Node
-from btlang.vocabulary.references import Choice, Reference, choice_of, pieces
+from btlang.vocabulary.entry import FOUND
+from btlang.vocabulary.references import NEAREST, SEEN, SOUGHT, Choice, Reference, choice_of, pieces
+from btlang.vocabulary.value_type import OBJECT, PERSON
 
 OPERATORS = {"below": "<", "above": ">", "at_least": ">=", "at_most": "<=", "equal": "=="}
 """What a script writes for each comparison."""
+_CHOSEN = ("type", "how", "output")
 Ports = tuple[tuple[str, str], ...]
 
 
@@ -26,6 +29,19 @@ def make_script(code: str) -> Node:
 def make_choice(choice: Choice, key: str) -> Node:
     """Make the node that chooses a name for a key, without a sentence."""
     return Node("Choose", (), (("type", choice.type), ("how", choice.how), ("output", f"{{{key}}}"), *choice.parts))
+
+
+def seek(choices: Sequence[Node], ports: Ports) -> tuple[list[Node], Ports]:
+    """Return the choices before a search, which it is to find by what they describe, and its ports with the output."""
+    things = {("type", PERSON), ("type", OBJECT)}
+    sought = [each.replace(ports=_sought(each.ports)) if things & {*each.ports} else each for each in choices]
+    keys = [each.port("output") for each in sought if each.port("how") == SOUGHT]
+    return sought, (*ports, *((FOUND, key) for key in keys[:1]))
+
+
+def _sought(ports: Ports) -> Ports:
+    is_plain = dict(ports).get("how") in (NEAREST, SEEN) and len(ports) > len(_CHOSEN)
+    return tuple((name, SOUGHT if name == "how" and is_plain else text) for name, text in ports)
 
 
 def run_before(scripts: Sequence[Node], node: Node) -> Node:

@@ -9,7 +9,7 @@ from btlang.text.words import split
 from btlang.tree.catalogue import SUBTREE
 from btlang.tree.dump import describe_node
 from btlang.tree.node import Node
-from btlang.vocabulary.entry import MEASURED, POINT, Entry
+from btlang.vocabulary.entry import FOUND, MEASURED, POINT, Entry
 from btlang.vocabulary.lexicon import DEFINING, Lexicon
 from btlang.vocabulary.pattern import Form, Slot, forms, name_form
 from btlang.vocabulary.reading_context import Known
@@ -79,6 +79,8 @@ def leaf_words(
     first = ""
     for entry in vocabulary.entries.get(node_id, ()):
         spoken = {name: text for name, text in ports.items() if _default(entry, name) != text}
+        if not exactly and FOUND in entry.outputs:
+            spoken.pop(FOUND, None)  # the thing is said already
         spoken = _with_point(entry, spoken, vocabulary)
         types = {slot.name: vocabulary.types[slot.type] for slot in entry.slots}
         if not spoken.keys() <= types.keys():

@@ -14,6 +14,7 @@ from btlang.text.source import Source
 from btlang.text.words import split
 from btlang.tree import ast
 from btlang.tree.answers import ABOUT_ANSWERS, ASK, asks
+from btlang.tree.round_parts import TRAVELS, gathered, is_journey, set_of
 from btlang.tree.sums import COMPARED, COUNTING
 from btlang.tree.visit import fold
 from btlang.vocabulary.lexicon import Lexicon
@@ -21,7 +22,6 @@ from btlang.vocabulary.references import ALL, Choice, choice_of
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import PERSON, PLACE, TEXT
 
-_TRAVELS = "navigation"
 ONE_FAILS = "if_one_fails"
 """The role of words for what is done for each thing of a round that fails."""
 
@@ -46,17 +46,6 @@ def _own_bodies(mission: ast.Program) -> list[ast.Ast]:
     return [*included, *(each.body for each in mission.definitions), *([mission.body] if mission.body else [])]
 
 
-def _set_of(node: ast.Ast) -> Choice | None:
-    """Return the set that a command speaks of."""
-    if not isinstance(node, ast.Phrase | ast.Name):
-        return None
-    for _, text in node.arguments:
-        choice = choice_of(text) if text[:1] == "{" else None
-        if choice is not None and choice.how == ALL:
-            return choice
-    return None
-
-
 class _Round(Record):
     """A set, and the parts `first` to `last` of a chain that are in its round; no chain if the `whole` of a command is.
 
@@ -73,7 +62,7 @@ class _Round(Record):
 def _with_loops(root: ast.Ast, vocabulary: Lexicon) -> ast.Ast:
     if any(map(_choice_of, ast.parents_first(root))):
         root = _chosen_anew(root)
-    if any(map(_set_of, ast.parents_first(root))):
+    if any(map(set_of, ast.parents_first(root))):
         root = _add_loops(root, vocabulary)
     return fold(root, ast.parts, lambda node, done: _with_each_tried(node, done, vocabulary))
 
@@ -133,12 +122,9 @@ def _choice_of(node: ast.Ast) -> Choice | None:
 
 
 def _add_loops(root: ast.Ast, vocabulary: Lexicon) -> ast.Ast:
-    if any(isinstance(node, ast.Remember) for node in ast.parents_first(root)):
-        root = fold(root, ast.parts, _with_what_says_it)
-    root = fold(root, ast.parts, _with_tours_apart)
-    root = fold(root, ast.parts, _with_both_cases)
+    root = gathered(root)
     nodes = ast.parents_first(root)
-    sets = [(at, choice) for at, node in enumerate(nodes) if (choice := _set_of(node)) is not None]
+    sets = [(at, choice) for at, node in enumerate(nodes) if (choice := set_of(node)) is not None]
     parents = {id(part): node for node in nodes for part in ast.parts(node)}
     of_chain: dict[int, list[_Round]] = {}
     alone: dict[int, Choice] = {}
@@ -150,7 +136,7 @@ def _add_loops(root: ast.Ast, vocabulary: Lexicon) -> ast.Ast:
             of_chain.setdefault(id(found.chain), []).append(found)
 
     def combine(node: ast.Ast, done: list[ast.Ast]) -> ast.Ast:
-        choice, own = _set_of(node), alone.get(id(node))
+        choice, own = set_of(node), alone.get(id(node))
         if choice is not None and isinstance(node, ast.Phrase | ast.Name):
             made: ast.Ast = _replace_argument(node, choice.text, f"{{{choice.key}}}")
         else:
@@ -204,93 +190,12 @@ def _in_each(node: ast.Ast, change: Callable[[ast.Ast], ast.Ast]) -> ast.Ast | N
     return ast.with_parts(node, [new or old for new, old in zip(changed, parts, strict=True)])
 
 
-def _with_what_says_it(node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
-    """Keep `A and say the battery` together: the command that says a value stays with the one that measures it."""
-    if not isinstance(node, ast.Chain) or node.operator != "sequence":
-        return ast.with_parts(node, done)
-    made: list[ast.Ast] = []
-    for item in done:
-        before = made[-1] if made else None
-        last = before.items[-1] if isinstance(before, ast.Chain) and before.operator == "and" else None
-        if isinstance(before, ast.Chain) and isinstance(last, ast.Remember) and last.span.start == item.span.start:
-            made[-1] = ast.Chain("and", (*before.items, item), before.bracketed, before.span)
-        else:
-            made.append(item)
-    return made[0] if len(made) == 1 else ast.Chain("sequence", tuple(made), node.bracketed, node.span)
-
-
-def _with_tours_apart(node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
-    """Keep a journey to several places out of the rounds over what is taken behind it.
-
-    `go to the lab and the hall and collect the cups, then bring them to the sink` tours once, not for each cup.
-    """
-    if not isinstance(node, ast.Chain) or node.operator != "sequence":
-        return ast.with_parts(node, done)
-    made: list[ast.Ast] = []
-    for item in done:
-        tour, *rest = item.items if isinstance(item, ast.Chain) and not item.bracketed else (item,)
-        if (
-            rest
-            and _is_tour(tour)
-            and any(map(_set_of, rest))
-            and isinstance(item, ast.Chain)
-            and not ast.is_list(item)
-        ):
-            made += [tour, rest[0] if len(rest) == 1 else item.replace(items=tuple(rest))]
-        else:
-            made.append(item)
-    return ast.with_parts(node, done) if len(made) == len(done) else node.replace(items=tuple(made))
-
-
-def _with_both_cases(node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
-    """Keep both cases of a condition in one round: `in each room, if nobody is there, wave; if somebody is, nod`."""
-    if not isinstance(node, ast.Chain) or node.operator != "sequence":
-        return ast.with_parts(node, done)
-    made: list[ast.Ast] = []
-    for item in done:
-        before = made[-1] if made else None
-        goes_on = isinstance(before, ast.Chain) and before.operator == "and" and _is_tour(before.items[0])
-        if goes_on and isinstance(before, ast.Chain) and _is_other_case(before.items[-1], item):
-            made[-1] = ast.Chain("and", (*before.items, item), before.bracketed, before.span)
-        else:
-            made.append(item)
-    return made[0] if len(made) == 1 else node.replace(items=tuple(made))
-
-
-def _is_other_case(case: ast.Ast, other: ast.Ast) -> bool:
-    """Whether a condition is asked where another one is denied, and neither has an alternative."""
-    if not (isinstance(case, ast.If) and isinstance(other, ast.If)) or case.otherwise or other.otherwise:
-        return False
-    (asked, is_so), (asked_then, is_so_then) = map(_case, (case, other))
-    return asked != "" and asked == asked_then and is_so != is_so_then
-
-
-def _case(form: ast.If) -> tuple[object, bool]:
-    """Return what a form asks, "" for several conditions, and whether that must be true."""
-    asked, is_so = form.condition, not form.negated
-    if isinstance(asked, ast.Not):
-        asked, is_so = asked.condition, not is_so
-    return (asked.entry.id, asked.arguments) if isinstance(asked, ast.Phrase) else "", is_so
-
-
-def _is_tour(node: ast.Ast) -> bool:
-    """Whether a command travels to several places."""
-    if isinstance(node, ast.Chain):
-        return ast.is_list(node) and all(map(_is_journey, node.items))
-    choice = _set_of(node)
-    return choice is not None and choice.type == PLACE and _is_journey(node)
-
-
-def _is_journey(node: ast.Ast) -> bool:
-    return isinstance(node, ast.Phrase) and _TRAVELS in node.entry.needs
-
-
 def _round(nodes: Sequence[ast.Ast], at: int, choice: Choice, parents: dict[int, ast.Ast]) -> _Round:
     """Return how far the round of a set reaches."""
     key, node = choice.key, nodes[at]
     last = at
     for later in range(at + 1, len(nodes)):
-        own = _set_of(nodes[later])
+        own = set_of(nodes[later])
         if (own is not None and own.key == key) or key in ast.chosen_keys(nodes[later]):
             break
         if key in ast.keys_of(nodes[later]):
@@ -337,7 +242,7 @@ def _index(chain: ast.Chain, path: Sequence[ast.Ast]) -> int:
 def _goes_along(chain: ast.Chain, first: int, last: int, choice: Choice) -> int:
     """Return the last part that is in the round of a set of places or people without a word about them."""
     node = chain.items[first]
-    goes = isinstance(node, ast.Phrase) and (_TRAVELS in node.entry.needs or _counts_answers(chain, first))
+    goes = is_journey(node) or (isinstance(node, ast.Phrase) and _counts_answers(chain, first))
     if choice.type in (PLACE, PERSON) and goes:
         tells = isinstance(node, ast.Phrase) and any(slot.type == TEXT for slot in node.entry.slots)
         while last + 1 < len(chain.items) and _is_joined(chain, last) and _goes_with(chain, last):
@@ -374,7 +279,7 @@ def _travels(node: ast.Ast) -> bool:
     for item in ast.parents_first(node):
         if isinstance(item, ast.Phrase):
             has_place = any(slot.type == PLACE for slot in item.entry.slots)
-            if item.entry.given(PLACE, item.arguments) or (_TRAVELS in item.entry.needs and not has_place):
+            if item.entry.given(PLACE, item.arguments) or (TRAVELS in item.entry.needs and not has_place):
                 return True
         elif isinstance(item, ast.Name | ast.Exact):
             return True

@@ -36,6 +36,8 @@ MEASURED = "value"
 """The port of such a condition that may name the blackboard key to write what was measured to."""
 
 
+FOUND = "found"
+"""The output of a command that searches, where it takes a description of what it is to find: the name of that."""
 THEME, RECIPIENT, GOAL, PATH, MANNER = "theme", "recipient", "goal", "path", "manner"
 VIA = "via"
 """The slot of what a journey passes."""

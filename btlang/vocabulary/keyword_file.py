@@ -148,13 +148,14 @@ class _Reader:
         given = table.get("slots", {})
         if self.nouns and isinstance(given, dict):
             phrases, given = self.with_nouns(phrases, given)
-        slots = self.slots(phrases, given, near, [role for _, roles in verbs for role in roles])
+        outputs = table.get("outputs", [])
+        slots = self.slots(phrases, given, near, [role for _, roles in verbs for role in roles], outputs)
         made = Entry(
             sort, name, tuple(phrases), str(call), slots, tuple(resources), topic, help, example, span=self.span(near),
             constrains=str(constrains), **flags,
             ros=self.ros(table["ros"], sort, slots, near) if "ros" in table else None,
             denied=tuple(self.denied(table.get("denied", []), slots, near)),
-            outputs=self.outputs(table.get("outputs", []), slots, near), verbs=verbs, needs=tuple(needs),
+            outputs=self.outputs(outputs, slots, near), verbs=verbs, needs=tuple(needs),
             achieves=tuple(achieves),
         )  # fmt: skip
         return self.quantity(made, table, near) if sort == "quantity" else made
@@ -315,7 +316,9 @@ class _Reader:
         phrases = tuple(tuple(phrase.lower().split()) for phrase in words if phrase.split())
         return Role(name, str(given.get("slot", kind)), kind, phrases, is_needed, speaker == "me")
 
-    def slots(self, phrases: list[str], table: Any, near: str, roles: Sequence[Role] = ()) -> tuple[SlotSpec, ...]:
+    def slots(
+        self, phrases: list[str], table: Any, near: str, roles: Sequence[Role] = (), outputs: Any = ()
+    ) -> tuple[SlotSpec, ...]:
         if not isinstance(table, dict):
             self.wrong(f"slots of '{near}' must be a table such as {{ distance = {{ type = \"length\" }} }}", near)
             return ()
@@ -336,6 +339,7 @@ class _Reader:
             found |= {name: self.slot(name, table[name], near) for name in POINT if name in table and name not in found}
         for name, given in table.items():
             unsaid = isinstance(given, dict) and "default" in given  # the function gets that each time
+            unsaid = unsaid or (isinstance(outputs, list) and name in outputs)  # or writes it
             if not (phrases or roles) or (unsaid and name not in found):  # or it is only said by its id
                 found[name] = self.slot(name, given, near)
         for name in [name for name in table if name not in found]:

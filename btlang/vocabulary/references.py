@@ -14,9 +14,14 @@ from btlang.vocabulary.entry import POINT
 SIZED = ("largest", "smallest")
 PLACED = ("furthest", "leftmost", "rightmost")
 SPEAKING = "speaking"
-CHOICES = ("nearest", "seen", "random", SPEAKING, *SIZED, *PLACED)
+NEAREST, SEEN = "nearest", "seen"
+CHOICES = (NEAREST, SEEN, "random", SPEAKING, *SIZED, *PLACED)
 """The ways to choose a name; "seen" is the nearest in view, else the nearest known; "speaking" is who spoke last. A
 number is one more: "2" is the second one, "-1" the last.
+"""
+SOUGHT = "sought"
+"""In place of such a way, for a command that searches: what fits the description needn't be known yet. In words and
+references that is "nearest", of people "seen".
 """
 ALL = "all"
 """In place of such a way: all names that are meant, one after the other. The part "count" says how many."""
@@ -122,7 +127,10 @@ def is_related(text: str) -> bool:
 def choice_by(ports: Mapping[str, str]) -> Choice:
     """The choice that a node with these ports makes."""
     parts = ((name, text) for name, text in ports.items() if name not in _NO_PARTS)
-    return Choice(ports.get("how", ALL), ports.get("type", ""), ports.get("output", "")[1:-1], tuple(sorted(parts)))
+    how = ports.get("how", ALL)
+    if how == SOUGHT:
+        how = SEEN if ports.get("type") == "person" else NEAREST
+    return Choice(how, ports.get("type", ""), ports.get("output", "")[1:-1], tuple(sorted(parts)))
 
 
 def pieces(text: str) -> list[str | Reference]:

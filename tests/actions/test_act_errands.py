@@ -12,6 +12,8 @@ from btlang.robots.geometry import Pose
 from btlang.robots.robot import RobotError
 from btlang.robots.worlds.world import Person, Place, Stop, World, WorldObject
 from btlang.robots.worlds.world_file import load_world
+from btlang.text.source import Source
+from btlang.vocabulary.references import Choice
 
 
 def hall(*people, objects=(), **changes):
@@ -209,6 +211,40 @@ def test_find_what_nobody_has_seen(bench):
     b.run(search.find_object, seconds=600.0, object="cup")
     b.run(manipulation.grasp, object="cup")
     assert b.run(search.look_for_object, object="cup") == (None, 0.0)
+
+
+TWO_CUPS = """
+start = { x = 1, y = 1 }
+walls = [[[0, 0], [20, 0], [20, 10], [0, 10], [0, 0]]]
+places = [
+  { name = "kitchen", x = 3, y = 8, points = [[0, 6], [6, 6], [6, 10], [0, 10]] },
+  { name = "lab", x = 17, y = 8, points = [[14, 6], [20, 6], [20, 10], [14, 10]] },
+]
+objects = [
+  { name = "red cup", kind = "cup", color = "red", x = 2, y = 3 },
+  { name = "blue cup", kind = "cup", color = "blue", x = 16, y = 7.3, known = false },
+]
+"""
+
+
+def test_what_fits_no_description_is_not_found(bench):
+    b = bench(load_world(Source(TWO_CUPS)))
+    names: list[str] = []
+    sought = Choice("nearest", "object", "object", (("color", "green"), ("kind", "cup"))).text
+    with pytest.raises(ActionFailed, match=r"^I haven't found a green cup in the lab$"):
+        b.run(search.look_for_object, seconds=600.0, object=sought, place="lab", found=names.append)
+    assert names == []
+
+
+def test_what_fits_a_description_is_found_where_it_is(bench):
+    b = bench(load_world(Source(TWO_CUPS)))
+    names: list[str] = []
+    sought = Choice("nearest", "object", "object", (("kind", "cup"),)).text
+    b.run(search.look_for_object, seconds=600.0, object=sought, found=names.append)
+    b.run(search.find_object, seconds=600.0, object=sought, place="lab", found=names.append)
+    b.run(manipulation.grasp, object="blue cup")
+    b.run(search.look_for_object, object=sought, found=names.append)  # in the hand
+    assert names == ["red cup", "blue cup", "blue cup"]
 
 
 def test_what_is_not_there_is_not_found(bench):

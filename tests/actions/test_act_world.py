@@ -152,6 +152,13 @@ def test_hands(bench, table):
         b.run(manipulation.grasp, object="ball")
 
 
+def test_what_is_held_is_lifted_when_it_is_picked_up_again(bench, table):
+    b = bench(table)
+    b.robot.grasp("right", "cup")
+    b.run(manipulation.pick_up, object="cup")
+    assert b.robot.holding("right") == "cup"
+
+
 def test_a_weak_hand_loses_what_it_picked_up(bench, table):
     b = bench(table, faults=(WorldFault("weak hand", seconds=4.0),))
     b.run(manipulation.pick_up, object="cup")

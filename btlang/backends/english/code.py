@@ -10,6 +10,7 @@ from btlang.passes.scripts import OPERATORS
 from btlang.support.record import Record
 from btlang.tree.catalogue import SUBTREE
 from btlang.tree.node import Node, Tree
+from btlang.vocabulary.entry import FOUND
 from btlang.vocabulary.references import choice_by, plain
 
 _TOKEN = re.compile(
@@ -125,7 +126,10 @@ def read_computed(node: Node) -> Computed | None:
         if key[:1] != "_":
             return None
         texts[key] = text
-    return Computed(node.children[-1], texts, tuple(times))
+    last = node.children[-1]
+    found = last.port(FOUND)[1:-1] in texts
+    said = tuple(port for port in last.ports if not (found and port[0] == FOUND))
+    return Computed(last.replace(ports=said), texts, tuple(times))
 
 
 def _statements(code: str) -> list[list[str]]:

@@ -59,18 +59,26 @@ def unseen(kind: str, parts: Mapping[str, str], behind: str = "") -> str:
     thing.
     """
     if kind == "person" and "named" not in parts:
-        return f"I don't see anybody{_person(parts)}{behind}"
+        return f"I don't see {describe(kind, parts, behind)}"
+    knows = "I know no" if "named" in parts else "I haven't seen"
+    return f"{knows} {describe(kind, parts, behind, article='named' not in parts)}"
+
+
+def describe(kind: str, parts: Mapping[str, str], behind: str = "", *, article: bool = True) -> str:
+    """Return the words for what has these parts: `a red cup`, `anybody in red`; `behind` follows the thing."""
+    if kind == "person" and "named" not in parts:
+        return f"anybody{_person(parts)}{behind}"
     words = [parts[name] for name in ("size", "state", "color", "kind", "named") if name in parts]
     if "owner" in parts:
         behind = f" that belongs to {'you' if parts['owner'] == SPEAKER else parts['owner']}{behind}"
     use = f" to {parts['use']}" if "use" in parts else ""
     behind = f"{f' of {content}' if (content := parts.get('content')) else ''}{behind}"
     behind = f"{f' with {_article(part)}{part}' if (part := parts.get('part')) else ''}{behind}"
-    if "named" in parts:
-        return f"I know no {' '.join(words)}{use}{behind}"
-    if "kind" not in parts:
-        return f"I haven't seen {' '.join(('anything', *words))}{use}{behind}"
-    return f"I haven't seen {_article(words[0])}{' '.join(words)}{use}{behind}"
+    if "kind" not in parts and "named" not in parts:
+        words.insert(0, "anything")
+    elif article:
+        words[0] = _article(words[0]) + words[0]
+    return f"{' '.join(words)}{use}{behind}"
 
 
 def _person(parts: Mapping[str, str]) -> str:

@@ -200,15 +200,14 @@ class Answers(AddressedTexts):
 
     def _miss_words(self, token: Token) -> None:
         """BT012 for `wait until Bob says so`, `if somebody calls you`, which don't say in which words."""
-        value, asking = token.value, self._vocabulary.asking
+        value, asking, words = token.value, self._vocabulary.asking, Span(self._text.source, token.start, token.end)
         if isinstance(value, Called) and value.entry.id in _REPLIES:
-            words = Span(self._text.source, token.start, token.end)
-            *front, last = words.text.split()
-            nothing = (*asking["so"], *asking["told_pronouns"], *asking["hearing"], *self._vocabulary.values.role_words.speaker)
-            if last.lower() in nothing and value.arguments[-1][1] == last.lower() and front:
-                said, example = " ".join(front), f'{" ".join(front)} "{_GO_AHEAD}"'
-                problem = diagnostic("BT012", words, words=said, wanted="a text", example=example)
-                self._calls.problems.append(problem)
+            said, _, last = words.text.rpartition(" ")
+            vague = {*asking["so"], *asking["told_pronouns"], *asking["hearing"]}
+            vague |= self._vocabulary.values.role_words.speaker
+            if said and last.lower() in vague and value.arguments[-1][1] == last.lower():
+                example = f'{said} "{_GO_AHEAD}"'
+                self._calls.problems.append(diagnostic("BT012", words, words=said, wanted="a text", example=example))
 
     def note_question(self, command: Token) -> None:
         """Remember of whom pronouns behind the answers to a question to nobody by name speak."""

@@ -103,12 +103,13 @@ class Mentions:
         elif HOLDING in entry.needs:
             self._held, self._passed = "", ""
         elif things:
-            self._passed = "" if entry.first else latest  # what was looked for is meant
+            is_passed = match.meaning.role == "command" and not entry.first
+            self._passed = latest if is_passed else ""  # what was looked for, or asked about, may be meant
             if latest == self._held:
                 self._held = _UNKNOWN  # another choice in its place
 
     def _with_held(self, match: Match) -> Match:
-        """`pick up the cup, go to the book and put it down`: the cup. BT150 where it isn't known which thing that is."""
+        """`pick up the cup, go to the book and put it down`: the cup. BT150 where it isn't clear."""
         entry = match.meaning.entry
         if entry is None or not self._passed or HOLDING not in entry.needs or _HOLDS in entry.achieves:
             return match

@@ -202,12 +202,17 @@ class PartialCommands:
         return read[0].last
 
     def _only_says_goal(self, match: Match, at: int) -> bool:
-        """Whether words say where to for the command right before a comma, which doesn't: `bring the cup, to the lab`."""
+        """Whether words behind a comma only say the goal that a command lacks: `bring the cup, to the lab`."""
         before, entry = self._tokens[-2] if len(self._tokens) > 1 else None, match.meaning.entry
         value, speaker = before.value if before is not None else None, self._vocabulary.values.role_words.speaker
-        if self._tokens[-1].kind != "comma" or not isinstance(value, Called | Listed) or entry is None or before is None:
+        if self._tokens[-1].kind != "comma" or before is None or before.kind != "command" or entry is None:
             return False
-        goals, own = {*entry.slots_of(GOAL), *entry.slots_of(RECIPIENT)}, {each for row in arguments_of(value) for each, _ in row}
+        if not isinstance(value, Called | Listed):
+            return False
+        goals, own = (
+            {*entry.slots_of(GOAL), *entry.slots_of(RECIPIENT)},
+            {each for row in arguments_of(value) for each, _ in row},
+        )
         added = {each.name for each in match.values if each.first >= at}
         is_new = bool(added) and added <= goals - own and own == {*value.entry.slots_of(THEME)}
         return is_new and speaker.isdisjoint(self._words_of(before))

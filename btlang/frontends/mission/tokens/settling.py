@@ -29,8 +29,8 @@ from btlang.frontends.mission.token import (
 from btlang.text.source import Source, Span
 from btlang.text.words import Words
 from btlang.vocabulary.antecedents import pronouns_for
-from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.capabilities import HOLDING
+from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import ALL, choice_of

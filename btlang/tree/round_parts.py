@@ -1,0 +1,110 @@
+"""What belongs together in a statement before rounds are made: they take in whole parts of a chain.
+
+A value and what says it, and both cases of a condition, are in one round; a journey to several places is in none over
+what is taken behind it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from btlang.tree import ast
+from btlang.tree.visit import fold
+from btlang.vocabulary.references import ALL, Choice, choice_of
+from btlang.vocabulary.value_type import PLACE
+
+TRAVELS = "navigation"
+
+
+def gathered(root: ast.Ast) -> ast.Ast:
+    """Return a mission in which the chains have as parts what is done in one round, or before it."""
+    if any(isinstance(node, ast.Remember) for node in ast.parents_first(root)):
+        root = fold(root, ast.parts, _with_what_says_it)
+    root = fold(root, ast.parts, _with_tours_apart)
+    return fold(root, ast.parts, _with_both_cases)
+
+
+def set_of(node: ast.Ast) -> Choice | None:
+    """Return the set that a command speaks of."""
+    if not isinstance(node, ast.Phrase | ast.Name):
+        return None
+    for _, text in node.arguments:
+        choice = choice_of(text) if text[:1] == "{" else None
+        if choice is not None and choice.how == ALL:
+            return choice
+    return None
+
+
+def _with_what_says_it(node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
+    """Keep `A and say the battery` together: the command that says a value stays with the one that measures it."""
+    if not isinstance(node, ast.Chain) or node.operator != "sequence":
+        return ast.with_parts(node, done)
+    made: list[ast.Ast] = []
+    for item in done:
+        before = made[-1] if made else None
+        last = before.items[-1] if isinstance(before, ast.Chain) and before.operator == "and" else None
+        if isinstance(before, ast.Chain) and isinstance(last, ast.Remember) and last.span.start == item.span.start:
+            made[-1] = ast.Chain("and", (*before.items, item), before.bracketed, before.span)
+        else:
+            made.append(item)
+    return made[0] if len(made) == 1 else ast.Chain("sequence", tuple(made), node.bracketed, node.span)
+
+
+def _with_tours_apart(node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
+    """Keep a journey to several places out of the rounds over what is taken behind it.
+
+    `go to the lab and the hall and collect the cups, then bring them to the sink` tours once, not for each cup.
+    """
+    if not isinstance(node, ast.Chain) or node.operator != "sequence":
+        return ast.with_parts(node, done)
+    made: list[ast.Ast] = []
+    for item in done:
+        tour, *rest = item.items if isinstance(item, ast.Chain) and not item.bracketed else (item,)
+        if rest and _is_tour(tour) and any(map(set_of, rest)) and isinstance(item, ast.Chain) and not ast.is_list(item):
+            made += [tour, rest[0] if len(rest) == 1 else item.replace(items=tuple(rest))]
+        else:
+            made.append(item)
+    return ast.with_parts(node, done) if len(made) == len(done) else node.replace(items=tuple(made))
+
+
+def _with_both_cases(node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
+    """Keep both cases of a condition in one round: `in each room, if nobody is there, wave; if somebody is, nod`."""
+    if not isinstance(node, ast.Chain) or node.operator != "sequence":
+        return ast.with_parts(node, done)
+    made: list[ast.Ast] = []
+    for item in done:
+        before = made[-1] if made else None
+        goes_on = isinstance(before, ast.Chain) and before.operator == "and" and _is_tour(before.items[0])
+        if goes_on and isinstance(before, ast.Chain) and _is_other_case(before.items[-1], item):
+            made[-1] = ast.Chain("and", (*before.items, item), before.bracketed, before.span)
+        else:
+            made.append(item)
+    return made[0] if len(made) == 1 else node.replace(items=tuple(made))
+
+
+def _is_other_case(case: ast.Ast, other: ast.Ast) -> bool:
+    """Whether a condition is asked where another one is denied, and neither has an alternative."""
+    if not (isinstance(case, ast.If) and isinstance(other, ast.If)) or case.otherwise or other.otherwise:
+        return False
+    (asked, is_so), (asked_then, is_so_then) = map(_case, (case, other))
+    return asked != "" and asked == asked_then and is_so != is_so_then
+
+
+def _case(form: ast.If) -> tuple[object, bool]:
+    """Return what a form asks, "" for several conditions, and whether that must be true."""
+    asked, is_so = form.condition, not form.negated
+    if isinstance(asked, ast.Not):
+        asked, is_so = asked.condition, not is_so
+    return (asked.entry.id, asked.arguments) if isinstance(asked, ast.Phrase) else "", is_so
+
+
+def _is_tour(node: ast.Ast) -> bool:
+    """Whether a command travels to several places."""
+    if isinstance(node, ast.Chain):
+        return ast.is_list(node) and all(map(is_journey, node.items))
+    choice = set_of(node)
+    return choice is not None and choice.type == PLACE and is_journey(node)
+
+
+def is_journey(node: ast.Ast) -> bool:
+    return isinstance(node, ast.Phrase) and TRAVELS in node.entry.needs
