@@ -51,8 +51,8 @@ class ReadingContext:
 
     __slots__ = (
         "_most_words", "before", "deniable", "denials", "joiners", "keys", "known", "lacked", "latest", "listed",
-        "manners", "met", "modifiers", "openers", "pronouns", "reached", "same", "set_starts", "starts", "types",
-        "untyped", "values",
+        "manners", "met", "modifiers", "of_kind", "openers", "pronouns", "reached", "same", "set_starts", "starts",
+        "types", "untyped", "values",
     )  # fmt: skip
 
     def __init__(self, values: Values, known: Mapping[str, Known] | None = None) -> None:
@@ -73,6 +73,8 @@ class ReadingContext:
         """Where what is read is the latest of its type once more, with the words that it ends at."""
         self.listed: dict[str, str] = {}
         """Where the latest values of a type are a list, the set of them; "" where no word stands for it."""
+        self.of_kind: dict[str, str] = {}
+        """The latest thing or person of each kind, as the latest values are."""
         self.lacked = False
         self.met: dict[str, bool] = {}
         self.keys: Mapping[str, str] = {}
@@ -110,6 +112,8 @@ class ReadingContext:
         chosen = self._chosen(kind, text, at) if text.words[at] in self.starts else None
         if chosen is not None and at not in text.articles:
             chosen = self.values.antecedents.by_name(kind, text, at, chosen, self.latest.get(PERSON, ""))
+        elif chosen is not None and self.of_kind:
+            chosen = self.values.antecedents.of_its_kind(self, kind, text, at, chosen)
         if kind in WORLD and not self.joiners.isdisjoint(text.words[max(at - 1, 0) : at + 4]):
             shared = self.values.shared_heads.read(kind, text, at)
             found = shared if shared is not None and (found is None or shared[1] > found[1]) else found
@@ -303,6 +307,7 @@ class ReadingContext:
         """Pronouns stand for nothing any more."""
         self.latest.clear()
         self.listed.clear()
+        self.of_kind.clear()
         self.reached.clear()
 
     def choice(self, text: Words, at: int, kind: str = "") -> tuple[Description, int] | None:

@@ -157,6 +157,8 @@ class Mentions:
                 if choice.how == ALL and match.meaning.role != "command":  # `if all doors are open, close them`
                     self._context.listed[value.type] = latest
             self._context.latest[value.type] = f"{{{choice.key}}}" if choice is not None else latest
+            if value.type in (OBJECT, PERSON):
+                self._note_kind(value.type, latest, choice, is_one=not (value.more or value.group))
             if value.type == TEXT and entry is not None and entry.id == ASK and OBJECT not in self._context.latest:
                 self.note_asked(split(Source(latest), self._vocabulary.orthography).words)
             if value.type in (PLACE, ZONE) and latest in self._vocabulary.values.listed(DOOR):
@@ -165,6 +167,17 @@ class Mentions:
                 self._context.latest[ZONE] = latest  # `go to the lab, then leave it`
             if value.type == ZONE and latest in self._vocabulary.values.listed(PLACE):
                 self._context.latest[PLACE] = latest  # `never enter the lab while Bob is in it`
+
+    def _note_kind(self, type: str, latest: str, choice: Choice | None, *, is_one: bool) -> None:
+        """Keep the thing or person as the latest of its kind: `pick up the red cup. Put the cup on the table`."""
+        parts, of_kind = dict(choice.parts) if choice is not None else {}, self._context.of_kind
+        kind = parts.get("kind", "") or self._vocabulary.values.likenesses.kind_of(type, parts.get(NAME, latest))
+        if choice is not None:
+            latest = f"{{{choice.key}}}"
+            for other in [other for other, text in of_kind.items() if text == latest]:
+                del of_kind[other]  # what was chosen for it is another one now
+        if kind:
+            of_kind[kind] = latest if is_one else ""
 
     def note_asked(self, words: Sequence[str]) -> None:
         """`ask Bob "Do you need the book?". If not, bring it to me`: the one thing that a question names, or its kind.

@@ -180,7 +180,8 @@ class PartialCommands:
             return 0
         people = self._people()
         token, before = self._token_of(read[0], at), said_before(self._tokens)
-        if self._only_says_goal(read[0], at):
+        if before is not None and self._only_says_goal(read[0], at):
+            _keep_theme(token, before)
             del self._tokens[-2:]
             if not self._tokens or self._tokens[-1].kind not in JOINTS:
                 self._tokens.append(token)
@@ -381,6 +382,15 @@ def enlist(tokens: list[Token], command: Token) -> None:
     else:
         tokens.insert(first - 1, Token("open", before.start, before.start, role="list"))
     tokens += (command, Token("close", command.end, command.end, role="list"))
+
+
+def _keep_theme(command: Token, before: Token) -> None:
+    """Give a command that goes on with another one exactly the things of that."""
+    value, said = command.value, before.value
+    if isinstance(value, Called | Listed) and isinstance(said, Called | Listed):
+        slots, rows = value.entry.slots_of(THEME), zip(arguments_of(value), arguments_of(said), strict=True)
+        kept = [tuple((name, dict(own).get(name, text)) for name, text in row) for row, own in rows]
+        command.value = with_arguments(value, kept) if slots else value
 
 
 def _complete(command: Token, before: Token | None) -> None:
