@@ -5,7 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.frontends.mission.token import Listed, Token
+from btlang.frontends.mission.token import (
+    STATEMENT_ENDS,
+    Called,
+    Listed,
+    Token,
+    drives,
+    run_start,
+    statement_start,
+)
+from btlang.frontends.mission.tokens.ended_rules import say_there
+from btlang.text.source import Source
 from btlang.text.words import Words
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match
@@ -19,6 +29,31 @@ if TYPE_CHECKING:
 
     Origin: TypeAlias = tuple[Token, int, Match, TrieNode]
     """A condition that was read as a whole: the latest part of it, its first word, and where it was found."""
+
+
+_SEEN_AT = {"SeesPerson": "PersonIsAt", "SeesObject": "ObjectIsAt"}
+
+
+def placed_before(asked: Token, tokens: Sequence[Token], vocabulary: Lexicon, source: Source) -> None:
+    """`if Bob is in the lab, wait until he leaves`: until he isn't in the lab, wherever the robot looks.
+
+    The same behind `avoid the lab while Bob is there`, in the next statement, and of `check that nobody is in the lab.
+    If someone is there, A`.
+    """
+    value = asked.value
+    say_there(asked, tokens, vocabulary, source.text[asked.start : asked.end])
+    there = _SEEN_AT.get(value.entry.id, "") if isinstance(value, Called) else ""
+    if not there or not isinstance(value, Called) or not tokens or tokens[-1].kind != "not":
+        return
+    here = run_start(tokens, statement_start(tokens, len(tokens)), STATEMENT_ENDS)
+    placed: Called | None = None
+    for token in tokens[statement_start(tokens, here) :]:
+        before = token.value
+        if token.kind == "condition" and isinstance(before, Called) and before.entry.id == there:
+            placed = before if {*dict(value.arguments).values()} <= {*dict(before.arguments).values()} else placed
+        elif token.kind == "command" and drives(before):
+            placed = None  # `if Bob isn't in the lab, go to the hall, and if he isn't there, ...`
+    asked.value = placed or value
 
 
 def with_words_before(

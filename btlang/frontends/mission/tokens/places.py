@@ -21,7 +21,6 @@ from btlang.frontends.mission.token import (
     texts_of,
     with_arguments,
 )
-from btlang.frontends.mission.tokens.ended_rules import say_there
 from btlang.frontends.mission.tokens.repeated_statements import ELSEWHERE
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, leads_to
 from btlang.frontends.mission.tokens.silent_words import TRAVELS, begins
@@ -31,11 +30,10 @@ from btlang.vocabulary.references import ALL, NAMES, choice_of
 from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE
 from btlang.vocabulary.word_tree import find
 
-_HOLD, _SEEN_AT = "Hold", {"SeesPerson": "PersonIsAt", "SeesObject": "ObjectIsAt"}
+_HOLD = "Hold"
 _JOINS = ("and", "then", "or")
-_BEHIND = (
-    *_JOINS, "at", "every", "every_day", "weekly", "count", "within", "by_time", "until_time", "if", "unless", "until",
-)  # fmt: skip
+_TIMED = ("at", "every", "every_day", "weekly", "count", "within", "by_time", "until_time")
+_BEHIND = (*_JOINS, *_TIMED, "if", "unless", "until")
 """Raw kinds that may stand behind where a command is done: `wave in the hall at 6 pm`."""
 _AND = frozenset(("and", "comma"))
 _ASKING = ("if", "unless", "check")
@@ -153,24 +151,6 @@ class Places(SentenceReader):
             opening, closing = Token("open", here, here), Token("close", end, end)
             tokens[at:] = [opening, tokens[at], tokens[last], tokens[-1], closing, *measures]
 
-    def placed_before(self, asked: Token) -> None:
-        """`if Bob is in the lab, wait until he leaves`: until he isn't in the lab, wherever the robot looks.
-
-        The same behind `avoid the lab while Bob is there`, in the next statement, and of `check that nobody is in the
-        lab. If someone is there, A`.
-        """
-        value, tokens = asked.value, self._tokens
-        say_there(asked, tokens, self._vocabulary, self._text.source.text[asked.start : asked.end])
-        there = _SEEN_AT.get(value.entry.id, "") if isinstance(value, Called) else ""
-        if not there or not isinstance(value, Called) or tokens[-1:] == [] or tokens[-1].kind != "not":
-            return
-        here = run_start(tokens, statement_start(tokens, len(tokens)), STATEMENT_ENDS)
-        for token in tokens[statement_start(tokens, here) :]:
-            before = token.value
-            if token.kind == "condition" and isinstance(before, Called) and before.entry.id == there:
-                if {text for _, text in value.arguments} <= {text for _, text in before.arguments}:
-                    asked.value = before
-
     def left_out(self, at: int) -> int:
         """`pick up all cups and bring them to the lab, except the red ones`: of the set in the statement."""
         tokens, first = self._tokens, statement_start(self._tokens, len(self._tokens))
@@ -275,10 +255,11 @@ class Places(SentenceReader):
             self._doubt_round(at, behind, following)
         if self._goes_there(_goal_of(journey), len(self._tokens)):
             return behind
-        asks = following is not None and following.meaning.role in _ASKING
-        if following is None or following.meaning.role not in (*_COMMANDS, *_ASKING):
+        role = following.meaning.role if following is not None else ""
+        if role not in (*_COMMANDS, *_ASKING):
             return 0
-        if not asks and any(value.group or value.more for value in journey.values) and not self._are_commands(behind):
+        is_tour = any(value.group or value.more for value in journey.values)
+        if role not in _ASKING and is_tour and not self._are_commands(behind):
             return 0  # `in every room, look around, then wave`
         if self._repeats(journey, run_start(self._tokens, len(self._tokens), LINES)):
             return 0

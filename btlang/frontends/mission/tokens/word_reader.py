@@ -22,7 +22,12 @@ from btlang.frontends.mission.token import (
     statement_start,
 )
 from btlang.frontends.mission.tokens.calls import NEGATED, Calls
-from btlang.frontends.mission.tokens.condition_words import check_negation, is_so_of_none, with_words_before
+from btlang.frontends.mission.tokens.condition_words import (
+    check_negation,
+    is_so_of_none,
+    placed_before,
+    with_words_before,
+)
 from btlang.frontends.mission.tokens.journey_words import COMES
 from btlang.frontends.mission.tokens.order_words import BEFORE_ASIDE, OrderWords
 from btlang.frontends.mission.tokens.outcomes import Outcomes
@@ -421,7 +426,7 @@ class WordReader:
         token = self._calls.token(match, at)
         if is_so_of_none(token.value, self._text, match, at, self._vocabulary):
             token.value = token.value.replace(joiner="or")
-        self._places.placed_before(token)
+        placed_before(token, self._tokens, self._vocabulary, self._text.source)
         self._requests.said(token, at)
         last = self._requests.whole_answer(token, match)
         tokens.append(token)
