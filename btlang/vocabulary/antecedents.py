@@ -52,18 +52,22 @@ def says_there(words: str, pronouns: Mapping[str, Sequence[str]]) -> bool:
 class Antecedents:
     """The nouns before a word. `ones` are the words in their place, `definite` is the article of what was spoken of,
     `names` gives the words of the names of a type.
+
+    Behind one of the `prepositions` the noun behind the same one before is meant: `the cup in the blue box and the
+    plate in the red one`.
     """
 
     def __init__(
         self,
         ones: Set[str],
+        prepositions: Set[str],
         definite: str,
         names: Callable[[str], WordTree],
         likenesses: Likenesses,
         adjectives: Adjectives,
     ) -> None:
-        self._ones, self._definite, self._names, self._likenesses = ones, definite, names, likenesses
-        self._adjectives = adjectives
+        self._ones, self._prepositions, self._definite = ones, prepositions, definite
+        self._names, self._likenesses, self._adjectives = names, likenesses, adjectives
 
     def resolved(self, found: tuple[Description, int], text: Words, at: int) -> tuple[Description, int] | None:
         """What is described, with the kind of the thing before where `one` is its head; None where nothing is meant.
@@ -73,7 +77,10 @@ class Antecedents:
         meant, end = found
         if text.words[end - 1] not in self._ones:
             return found
-        kind, noun = self._before(meant.type, text, at)
+        alike = self._behind_preposition(text, at)
+        if alike.get(meant.type) is None and alike:
+            return None  # `the cup in the box and the plate in the red one`: no thing that is red
+        kind, noun = (alike[meant.type],) * 2 if alike else self._before(meant.type, text, at)
         if not kind or not meant.parts:
             is_any = meant.type == OBJECT and (noun or not self._before(PLACE, text, at)[1])
             return found if is_any and "color" in dict(meant.parts) else None
@@ -166,6 +173,23 @@ class Antecedents:
             if last == first
         ]
         return (("kind", kind_of), *chain(*before[-1:]), *chain(*behind[-1:])) if kind_of else ()
+
+    def _behind_preposition(self, text: Words, at: int) -> dict[str, str]:
+        """The kind of thing or place that stands in the statement behind the same preposition as a word, by its type."""
+        here, start, at = text.earlier(at)
+        word = here.words[at - 1] if at > start else ""
+        same = [i for i in range(start, at - 1) if here.words[i] == word] if word in self._prepositions else ()
+        found: dict[str, str] = {}
+        for first in range(same[-1] + 1, same[-1] + 1 + _MOST_ADJECTIVES) if same else ():
+            if found or here.words[first] in _NOT_IN_NAMES:
+                break
+            for kind in (OBJECT, PLACE):
+                named, of = find(self._names(kind), here.words, first), find(self._names("kind"), here.words, first)
+                if named is not None:
+                    found[kind] = self._likenesses.kind_of(kind, named[0]) or here.words[named[1] - 1]
+                elif of is not None and kind in self._likenesses.types_of(of[0]):
+                    found[kind] = of[0]
+        return found
 
     def _before(self, kind: str, text: Words, at: int) -> tuple[str, str]:
         """The kind, and the last word, of the latest name or noun of a type before a word in its statement."""

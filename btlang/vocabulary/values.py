@@ -56,7 +56,7 @@ class Values(Measures):
         self.ones, self.definite = frozenset(language["ones"]), "".join(language["articles"][:1])
         """Words in the place of a noun that was said before: `the blue one`."""
         self.likenesses = Likenesses({}, self.listed)
-        self.antecedents = Antecedents(self.ones, self.definite, self.names_tree, self.likenesses, self.adjectives)
+        self.antecedents = self._antecedents()
         self.texts = Texts(language)
         self._plural_endings, self._belonging = language["plural_endings"], frozenset(language["belonging"])
         self._spoken: dict[tuple[str, str], str] = {}
@@ -102,7 +102,7 @@ class Values(Measures):
         changed = {*names, *(OF[kind] for kind in names if kind in OF)} & self._names.keys()
         made._names = {**self._names, **{kind: loads(dumps(self._names[kind])) for kind in changed}}
         made.likenesses = Likenesses(self.likenesses.features if features is None else features, made.listed)
-        made.antecedents = Antecedents(self.ones, self.definite, made.names_tree, made.likenesses, made.adjectives)
+        made.antecedents = made._antecedents()
         made._forget()
         made._spoken = dict(self._spoken)
         for kind, pairs in names.items():
@@ -240,6 +240,10 @@ class Values(Measures):
     def said_names(self, kind: str) -> list[str]:
         """The same as a mission says them."""
         return sorted({self.spoken(kind, name) for name in self.names(kind)})
+
+    def _antecedents(self) -> Antecedents:
+        words = self.ones, self.role_words.prepositions, self.definite
+        return Antecedents(*words, self.names_tree, self.likenesses, self.adjectives)
 
     def choice_words(self, choice: Choice) -> str:
         """The words that stand for a choice: `nearest person`."""

@@ -55,7 +55,7 @@ def find_asked_once(compilation: Compilation) -> Iterator[Diagnostic]:
             if type(node) is ast.If and at > 0 and _asks_for_failure(node, items[at - 1]):
                 yield _only_if_failed(node, items[at - 1], vocabulary)
             elif type(node) is ast.If and node.otherwise is not None:
-                yield from _warn_of_otherwise(node, vocabulary)
+                yield from _warn_of_otherwise(node, vocabulary, is_first=at == 0)
             elif type(node) is ast.If and not node.negated:
                 sentence = _sentence_before(items, at)
                 if sentence and _is_awaited(node, sentence[-1]):
@@ -107,6 +107,9 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
         advice = f"All rounds are over by then. To do it in each round, write: {each}"
         yield _with_reading(node, words, advice, whole, each)
         return
+    if isinstance(timed, ast.Repeat | ast.Apart) and timed.rounds != "-1" and _visits(timed.body):
+        yield _after_rounds(node, timed, words, vocabulary)
+        return
     if isinstance(timed, ast.WaitTime) and not _SENTENCE_END.search(
         node.span.source.text, timed.span.end, node.span.start
     ):
@@ -140,11 +143,32 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
         yield diagnostic("BT068", node.span, words=words, advice=advice)
 
 
-def _warn_of_otherwise(node: ast.If, vocabulary: Lexicon) -> Iterator[Diagnostic]:
-    """Report `when the battery is low, A. Otherwise B`: it isn't asked again while B is done."""
+def _visits(body: ast.Ast) -> bool:
+    """Whether rounds lead somewhere, where something may have changed each time."""
+    return any(isinstance(each, ast.Phrase) and "navigation" in each.entry.needs for each in ast.parents_first(body))
+
+
+def _after_rounds(node: ast.If, rounds: ast.Repeat | ast.Apart, words: str, vocabulary: Lexicon) -> Diagnostic:
+    """Report `go to the lab three times, and if nobody is there, wave`: it is asked once, at the end."""
+    text, done, rest = node.span.source.text, rounds.body.span, node.span.text
+    often = text[done.end : rounds.span.end].strip(" ,")
+    advice = "All rounds are over by then."
+    if isinstance(rounds, ast.Apart) or not often or "\n" in text[rounds.span.start : node.span.end]:
+        return diagnostic("BT068", node.span, words=words, advice=advice)
+    each = f"{often}, {done.text}, {vocabulary.word('then')} {rest[:1].lower()}{rest[1:]}"
+    whole = Span(node.span.source, rounds.span.start, node.span.end)
+    return _with_reading(node, words, f"{advice} To do it in each round, write: {each}", whole, each)
+
+
+def _warn_of_otherwise(node: ast.If, vocabulary: Lexicon, *, is_first: bool) -> Iterator[Diagnostic]:
+    """Report `when the battery is low, A. Otherwise B`: it isn't asked again while B is done.
+
+    The same for `if the battery drops below 20%, A. Otherwise B`, where nothing has been done before.
+    """
     word, body, otherwise = node.span.text.split(maxsplit=1)[0], node.body.span, node.otherwise
     is_front = node.condition.span.end <= body.start and otherwise is not None and body.end <= otherwise.span.start
-    if otherwise is None or not is_front or word.lower() not in vocabulary.asked_once or _is_answered(node):
+    is_watched = word.lower() in vocabulary.asked_once or (is_first and _is_event(node.condition, vocabulary))
+    if otherwise is None or not is_front or not is_watched or _is_answered(node):
         return
     condition, rest = node.condition.span.text, otherwise.span.text
     each = f"{vocabulary.word('whenever')} {condition}, {body.text}. {rest[:1].upper()}{rest[1:]}"

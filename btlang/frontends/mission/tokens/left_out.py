@@ -95,7 +95,8 @@ def _with_recipient(
 def _has_one_elsewhere(text: Words, places: Sequence[int], value: SlotValue, context: ReadingContext) -> bool:
     """Whether a place that is read is something else, and where that goes."""
     values, inside = context.values, places[value.first + 1 : value.last]
-    return any(values.role_words.is_one_elsewhere(text.words, at, values.ones) for at in inside)
+    behind = places[value.last - 1] + 1
+    return any(values.role_words.is_one_elsewhere(text.words, at, values.ones) for at in (*inside, behind))
 
 
 def _may_be_theme(match: Match, goal: SlotValue) -> bool:

@@ -41,6 +41,8 @@ class Mentions:
         """The id of the command that was read last, and the things that it and those before it with that id had."""
         self._held, self._passed = "", ""
         """What the robot has taken up, and the thing to which it only went, or at which it looked, since then."""
+        self._named_at = 0
+        """Where somebody was named last by a command."""
         self._lists: dict[str, tuple[Token, SlotValue]] = {}
         self._alternatives: dict[str, tuple[Token, SlotValue]] = {}  # by the reference to the one that succeeds
         # in most missions nobody is spoken of by a pronoun
@@ -69,6 +71,9 @@ class Mentions:
         somebody = self._vocabulary.negative_subjects.keys()
         names_none = all(slot.type != PERSON for slot in entry.slots)
         is_somebody = entry.phrases and not somebody.isdisjoint(entry.phrases[0].split())
+        exception = self._vocabulary.word("unless") in self._text.words[self._named_at : match.last]
+        if exception and self._named_at and self._context.latest.get(PERSON, "{")[:1] != "{":
+            return  # `bring Alice the cup, unless somebody is near. Tell her "Hi"`
         if names_none and (is_somebody or _MEETS in entry.achieves):
             places = [value for value in match.values if value.type == PLACE and not value.more]
             parts = tuple(("at", value.text) for value in places if value.text[:1] not in ODD)
@@ -159,6 +164,8 @@ class Mentions:
             self._context.latest[value.type] = f"{{{choice.key}}}" if choice is not None else latest
             if value.type in (OBJECT, PERSON):
                 self._note_kind(value.type, latest, choice, is_one=not (value.more or value.group))
+            if value.type == PERSON:
+                self._named_at = value.last if match.meaning.role == "command" else 0
             if value.type == TEXT and entry is not None and entry.id == ASK and OBJECT not in self._context.latest:
                 self.note_asked(split(Source(latest), self._vocabulary.orthography).words)
             if value.type in (PLACE, ZONE) and latest in self._vocabulary.values.listed(DOOR):

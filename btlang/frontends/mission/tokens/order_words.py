@@ -28,8 +28,9 @@ from btlang.frontends.mission.tokens.rule_words import RuleWords
 from btlang.frontends.mission.tokens.rules_inside import ON_WAY
 from btlang.frontends.mission.tokens.sentence_reader import leads_to
 from btlang.frontends.mission.tokens.settling import FAILS, MEASURES
-from btlang.frontends.mission.tokens.silent_words import BEGINS, begins
+from btlang.frontends.mission.tokens.silent_words import BEGINS, begins, does_before
 from btlang.frontends.mission.tokens.word_matches import words_of
+from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
 from btlang.vocabulary.entry import THEME
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.value_type import OBJECT, PERSON
@@ -192,6 +193,21 @@ class OrderWords(ClockWords, JourneyWords, RuleWords):
         if is_later and tokens[before].kind == "and":  # `go to the lab and wave afterwards`
             tokens[before].kind = "then"
         return is_later
+
+    def note_late(self, at: int, first: int) -> None:
+        """BT151 for `go to the lab. First open the door` at the end: before that, or then."""
+        words, tokens, then = self._text.words, self._tokens, self._vocabulary.word("then")
+        if words[at] not in self._vocabulary.asking["foremost"] or not does_before(tokens):
+            return
+        last = next(i for i in range(first, len(words)) if words[i] in (END_OF_STATEMENT, END_OF_TEXT))
+        goes_on = any(word not in (END_OF_STATEMENT, END_OF_TEXT) for word in words[last:])
+        if goes_on or not {*self._vocabulary.roles["then"]}.isdisjoint(words[first:last]):
+            return  # `first A, then B`, `First A. Second B`
+        begin = statement_start(tokens, run_start(tokens, len(tokens), STATEMENT_ENDS))
+        before = self._text.source.text[tokens[begin].start : self._text.starts[at]].strip(" .;\n")
+        span, done = self._text.span(at, last), self._text.span(first, last).text
+        one, other = f"{done}, {then} {before}", f"{before}, {then} {done}"
+        self._calls.problems.append(diagnostic("BT151", span, words=span.text, one=one, other=other))
 
     def _instead(self, match: Match, at: int) -> int:
         """`otherwise wave instead`; elsewhere it is open what isn't done."""

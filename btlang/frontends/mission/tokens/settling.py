@@ -43,7 +43,8 @@ IMPLIED = "implied"
 """The role of a search that nobody has asked for: `tell me where the cup is`."""
 TURNED = "turned"
 """The role of an `otherwise` behind words about a failure."""
-_ENDS_WHILE = ("until", "while")
+_ABOUT_IT = ("until", "while", "if", "unless")
+"""Forms whose condition may be about somebody else than the command before it."""
 MEASURES = frozenset(("for", "up_to", "within", "count"))
 """What may stand between a command and the words that ask how it went."""
 WAITS = ("wait_until", "wait_for", "wait_up_to")
@@ -260,10 +261,10 @@ def find_unclear_things(tokens: Sequence[Token], vocabulary: Lexicon, text: Word
 
 
 def find_unclear_people(tokens: Sequence[Token], vocabulary: Lexicon, text: Words) -> Iterator[Diagnostic]:
-    """Report `follow Alice until you see Bob. Tell her "Bye"`: whom the command or its condition is about."""
+    """Report `wave at Alice if you see Bob. Tell her "Bye"`: whom the command or its condition is about."""
     about, asked = "", ""
     pronouns = {*pronouns_for(vocabulary.values.pronouns, PERSON, alone=True)}
-    if text.distinct.isdisjoint(pronouns) or all(token.kind not in _ENDS_WHILE for token in tokens):
+    if text.distinct.isdisjoint(pronouns) or all(token.kind not in _ABOUT_IT for token in tokens):
         return
     for at, token in enumerate(tokens):
         said = _person_of(token.value) if isinstance(token.value, Called) else ""
@@ -279,7 +280,7 @@ def find_unclear_people(tokens: Sequence[Token], vocabulary: Lexicon, text: Word
         elif token.kind == "condition" and not pronoun and about not in ("", said):
             form = run_start(tokens, at, IN_CONDITIONS) - 1
             first = statement_start(tokens, at)
-            ends = form > first and tokens[form].kind in _ENDS_WHILE
+            ends = form > first and tokens[form].kind in _ABOUT_IT
             asked = said if ends and any(_person_of(each.value) == about for each in tokens[first:form]) else ""
 
 

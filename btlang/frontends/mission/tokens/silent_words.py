@@ -112,8 +112,9 @@ def without_meaning(
         is_behind = len(tokens) > 2 and tokens[-2].kind in JOINTS and tokens[-3].kind in _OPERANDS
         is_last = text.words[match.last] in (",", ";", END_OF_TEXT, END_OF_STATEMENT) and not is_behind
         role = follows.meaning.role if follows is not None and follows.meaning.entry is None else ""
-        goes_on = role in ("then", "and") or (bool(role) and not is_behind)
-        if start.kind == "but" or goes_on or (is_last and not _ends_what_is_done(tokens, text, match.last)):
+        goes_on = role in ("then", "and") or (bool(role) and not is_behind and not does_before(tokens))
+        is_end = all(word in (END_OF_STATEMENT, END_OF_TEXT) for word in text.words[match.last :])
+        if start.kind == "but" or goes_on or (is_last and not (is_end and does_before(tokens))):
             return match.last
         return 0
     purpose = find(vocabulary.purpose, text.words, at) if before.kind == "command" else None
@@ -127,11 +128,10 @@ def without_meaning(
     return 0
 
 
-def _ends_what_is_done(tokens: Sequence[Token], text: Words, at: int) -> bool:
-    """Whether nothing follows a word, and statements with commands come before: `go to the lab. Charge first`."""
-    is_end = all(word in (END_OF_STATEMENT, END_OF_TEXT) for word in text.words[at:])
+def does_before(tokens: Sequence[Token]) -> bool:
+    """Whether statements with commands come before the one that is read: `go to the lab. Charge first`."""
     last = next((at for at in reversed(range(len(tokens))) if tokens[at].kind in STATEMENT_ENDS), 0)
-    return is_end and any(token.kind in _DONE for token in tokens[:last])
+    return any(token.kind in _DONE for token in tokens[:last])
 
 
 def _goes(match: Match | None) -> bool:

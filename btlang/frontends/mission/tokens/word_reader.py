@@ -302,7 +302,9 @@ class WordReader:
                 return self._order.stop_after(match, at)
             return self._tries.again(match, at) if role == "try_again" else self._order.read(match, at)
         if role == "ordinal" and match is not None and at not in text.articles and begins_item(tokens):
-            return match.last + (text.words[match.last] == ",")
+            last = match.last + (text.words[match.last] == ",")
+            self._order.note_late(at, last)
+            return last
         if match is not None and role == "mind":
             return self._partial.add(match.last)
         if match is not None and role == "keep" and self._order.is_doing(match.last):
