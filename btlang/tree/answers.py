@@ -106,8 +106,9 @@ def _gather(node: ast.Ast, problems: list[Diagnostic]) -> ast.Ast:
             elif form:
                 made[asking] = _with_last(form, item)
                 continue
-            elif asking == len(made) - 1 and (item.otherwise is not None or item.negated):  # `unless she says yes`
-                for at in range(asking - is_anew, asking + 1):  # silence is something else than what was asked for
+            elif all(map(_depends, made[asking + 1 :])) and (item.otherwise is not None or item.negated):
+                # silence is something else than what was asked for: `unless she says yes`, `otherwise`
+                for at in range(asking - is_anew, asking + 1):
                     made[at] = _without_failure(made[at])
         _reply(made, asking, item)
         if _questions(item):

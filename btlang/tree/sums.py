@@ -146,7 +146,7 @@ def asks_for_number(node: ast.Ast) -> bool:
 
 
 def _counts_several(node: ast.Ast) -> bool:
-    """Whether a command counts in each place of a list or set: no `for each`, and no commands one behind the other.
+    """Whether a command counts in each place of a list or set: no `for each`, and no commands with verbs of their own.
 
     Those are said of trees as they are, so that they mean the same when they are read back.
     """
@@ -155,7 +155,10 @@ def _counts_several(node: ast.Ast) -> bool:
     if not isinstance(node, ast.Chain) or node.operator not in _IN_TURN:
         return False
     items = [each for each in node.items if not _is_of_sum(each)]
-    return len(items) > 1 and all(map(_is_count, items)) and len({each.span.start for each in items}) == 1
+    if len(items) < 2 or not all(map(_is_count, items)):
+        return False
+    verbs = [each.span.text.split(maxsplit=1)[:1] for each in items]
+    return len({each.span.start for each in items}) == 1 or verbs[0] not in verbs[1:]  # `in A and in B`
 
 
 def _is_of_sum(node: ast.Ast) -> bool:

@@ -175,7 +175,7 @@ class Antecedents:
         return (("kind", kind_of), *chain(*before[-1:]), *chain(*behind[-1:])) if kind_of else ()
 
     def _behind_preposition(self, text: Words, at: int) -> dict[str, str]:
-        """The kind of thing or place that stands in the statement behind the same preposition as a word, by its type."""
+        """The kind of thing or place that stands behind the preposition of a word before it, by its type."""
         here, start, at = text.earlier(at)
         word = here.words[at - 1] if at > start else ""
         same = [i for i in range(start, at - 1) if here.words[i] == word] if word in self._prepositions else ()

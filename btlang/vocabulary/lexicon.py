@@ -147,6 +147,8 @@ class Lexicon:
         self.content_words = frozenset(language["qualities"].get("content", ())[:1])
         self.staying = tree_of((words, True) for words in self.asking["staying"])
         """What does nothing where it stands alone: `stay here`."""
+        self.numbers = tree_of((words, True) for words in self.asking["numbers"])
+        self.in_all = tree_of((words, True) for words in self.asking["in_all"])
         self.in_turn = tree_of((words, True) for words in self.asking["in_turn"])
         """The words beside a list that say nothing: `in that order`."""
         self.ended = tree_of((words, role == "fewer") for role in ("ended", "fewer") for words in self.asking[role])

@@ -107,6 +107,13 @@ class Texts:
         behind = text.words[at + 1] if is_opener else END_OF_TEXT
         return behind[0].isalpha() and behind not in self._joining and behind not in self._then
 
+    def has_verb(self, words: Sequence[str]) -> bool:
+        """Whether a noun and what is behind it may be a sentence: `lab is closed`, `shop closes`; not `exact time`."""
+        sure = self.inverting | self.completed | self._participles
+        may_be_plural = not self.matters.isdisjoint(words)  # `the names of the guests`
+        endings = (*self._endings, "'t", *(() if may_be_plural else ("s",)))
+        return words[0].endswith("'s") or any(word in sure or word.endswith(endings) for word in words[1:])
+
     def asks(self, word: str) -> bool:
         """Whether a word alone is a question: `ask Bob why`."""
         return word in self._question_words

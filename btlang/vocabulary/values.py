@@ -56,7 +56,6 @@ class Values(Measures):
         self.ones, self.definite = frozenset(language["ones"]), "".join(language["articles"][:1])
         """Words in the place of a noun that was said before: `the blue one`."""
         self.likenesses = Likenesses({}, self.listed)
-        self.antecedents = self._antecedents()
         self.texts = Texts(language)
         self._plural_endings, self._belonging = language["plural_endings"], frozenset(language["belonging"])
         self._spoken: dict[tuple[str, str], str] = {}
@@ -87,6 +86,8 @@ class Values(Measures):
         self._openers = self._choice_starts = self._group_starts = None
         self.shared_heads = SharedHeads(self.names_tree, self.joiners, self._plural_endings, self._belonging)
         self._described = NounReader(self.phrases, self.names_tree, self.likenesses)
+        said_again = self.ones, self.role_words.prepositions, self.definite
+        self.antecedents = Antecedents(*said_again, self.names_tree, self.likenesses, self.adjectives)
 
     def with_names(
         self, names: Mapping[str, Iterable[tuple[str, str]]], features: Features | None, articles: frozenset[str]
@@ -102,7 +103,6 @@ class Values(Measures):
         changed = {*names, *(OF[kind] for kind in names if kind in OF)} & self._names.keys()
         made._names = {**self._names, **{kind: loads(dumps(self._names[kind])) for kind in changed}}
         made.likenesses = Likenesses(self.likenesses.features if features is None else features, made.listed)
-        made.antecedents = made._antecedents()
         made._forget()
         made._spoken = dict(self._spoken)
         for kind, pairs in names.items():
@@ -240,10 +240,6 @@ class Values(Measures):
     def said_names(self, kind: str) -> list[str]:
         """The same as a mission says them."""
         return sorted({self.spoken(kind, name) for name in self.names(kind)})
-
-    def _antecedents(self) -> Antecedents:
-        words = self.ones, self.role_words.prepositions, self.definite
-        return Antecedents(*words, self.names_tree, self.likenesses, self.adjectives)
 
     def choice_words(self, choice: Choice) -> str:
         """The words that stand for a choice: `nearest person`."""

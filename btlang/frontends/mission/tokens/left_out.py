@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Container, Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.frontends.mission.token import Called, Listed, Token
+from btlang.frontends.mission.token import Called, Listed, Token, arguments_of, with_arguments
 from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of
 from btlang.text.source import Source, Span
 from btlang.text.words import Words
@@ -135,3 +135,26 @@ def find_unplaced(tokens: Sequence[Token], vocabulary: Lexicon, source: Source) 
             reason = f"those from '{places[0][1]}' may be meant, or any"
             example = span.text.replace(ones, f"{ones} from {places[0][1]}", 1)
             yield diagnostic("BT150", span, words=span.text, reason=reason, example=example)
+
+
+def keep_theme(command: Token, before: Token) -> None:
+    """Give a command that goes on with another one exactly the things of that."""
+    value, said = command.value, before.value
+    if isinstance(value, Called | Listed) and isinstance(said, Called | Listed):
+        slots, rows = value.entry.slots_of(THEME), zip(arguments_of(value), arguments_of(said), strict=True)
+        kept = [tuple((name, dict(own).get(name, text)) for name, text in row) for row, own in rows]
+        command.value = with_arguments(value, kept) if slots else value
+
+
+def complete(command: Token, before: Token | None) -> None:
+    """Give a command that only names a thing the goal of another one: `take the cup to the lab, then the book`."""
+    said, value = command.value, before.value if before is not None else None
+    if not isinstance(said, Called) or not isinstance(value, Called | Listed) or said.entry is value.entry:
+        return
+    themes, given = value.entry.slots_of(THEME), {slot.name: slot.type for slot in said.entry.slots}
+    types, rows = {slot.name: slot.type for slot in value.entry.slots}, arguments_of(value)
+    named = {given[name]: text for name, text in said.arguments}
+    if len(named) == 1 and len(themes) == 1 and {types[name] for name in themes} == named.keys():
+        rest = (each for each in rows[0] if each[0] not in themes and all(each in row for row in rows))
+        theme = next(iter(themes))
+        command.value = Called(value.entry, ((theme, named[types[theme]]), *rest))

@@ -18,7 +18,7 @@ from btlang.frontends.mission.token import (
     with_arguments,
 )
 from btlang.frontends.mission.tokens.calls import Calls
-from btlang.frontends.mission.tokens.left_out import left_out
+from btlang.frontends.mission.tokens.left_out import complete, keep_theme, left_out
 from btlang.frontends.mission.tokens.word_matches import (
     DOING,
     doing,
@@ -181,13 +181,13 @@ class PartialCommands:
         people = self._people()
         token, before = self._token_of(read[0], at), said_before(self._tokens)
         if before is not None and self._only_says_goal(read[0], at):
-            _keep_theme(token, before)
+            keep_theme(token, before)
             del self._tokens[-2:]
             if not self._tokens or self._tokens[-1].kind not in JOINTS:
                 self._tokens.append(token)
                 return read[0].last
             before = said_before(self._tokens)
-        _complete(token, before)
+        complete(token, before)
         if self._tokens[-1].kind in ("and", "then", "comma"):
             self._list_people(people)
         is_further = before is not None and self._calls.search_on(before, read[0])
@@ -260,7 +260,7 @@ class PartialCommands:
                     return
                 token.value = with_arguments(value, [(*each, *given) for each in own])
             elif token.kind == "command" and speaker.isdisjoint(self._words_of(token)):
-                _complete(token, last)  # `take the cup and all plates to the lab`
+                complete(token, last)  # `take the cup and all plates to the lab`
                 if token.value is value:
                     return
             elif token.kind not in _LISTING and token.role != "list":
@@ -382,26 +382,3 @@ def enlist(tokens: list[Token], command: Token) -> None:
     else:
         tokens.insert(first - 1, Token("open", before.start, before.start, role="list"))
     tokens += (command, Token("close", command.end, command.end, role="list"))
-
-
-def _keep_theme(command: Token, before: Token) -> None:
-    """Give a command that goes on with another one exactly the things of that."""
-    value, said = command.value, before.value
-    if isinstance(value, Called | Listed) and isinstance(said, Called | Listed):
-        slots, rows = value.entry.slots_of(THEME), zip(arguments_of(value), arguments_of(said), strict=True)
-        kept = [tuple((name, dict(own).get(name, text)) for name, text in row) for row, own in rows]
-        command.value = with_arguments(value, kept) if slots else value
-
-
-def _complete(command: Token, before: Token | None) -> None:
-    """Give a command that only names a thing the goal of another one: `take the cup to the lab, then the book`."""
-    said, value = command.value, before.value if before is not None else None
-    if not isinstance(said, Called) or not isinstance(value, Called | Listed) or said.entry is value.entry:
-        return
-    themes, given = value.entry.slots_of(THEME), {slot.name: slot.type for slot in said.entry.slots}
-    types, rows = {slot.name: slot.type for slot in value.entry.slots}, arguments_of(value)
-    named = {given[name]: text for name, text in said.arguments}
-    if len(named) == 1 and len(themes) == 1 and {types[name] for name in themes} == named.keys():
-        rest = (each for each in rows[0] if each[0] not in themes and all(each in row for row in rows))
-        theme = next(iter(themes))
-        command.value = Called(value.entry, ((theme, named[types[theme]]), *rest))

@@ -13,6 +13,7 @@ from btlang.frontends.mission.token import (
     Listed,
     Remembered,
     Token,
+    arguments_of,
     drives,
     statement_start,
 )
@@ -28,7 +29,7 @@ from btlang.vocabulary.entry import COUNT, SAY, Entry, Meaning
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.references import free_key, key_of
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.value_type import PERSON, TEXT
+from btlang.vocabulary.value_type import KINDS, PERSON, PLACE, TEXT
 from btlang.vocabulary.word_tree import find
 
 _ANSWER = "Answer"
@@ -210,7 +211,8 @@ class Questions(Answers):
         if counted is None:
             return self._say_last_count(at, end, command, slot)
         is_over = not set(self._vocabulary.asking["counted"]).isdisjoint(self._text.words[end : counted.last])
-        if is_over and count is not None and self._has_counted():  # `say how many people you saw`
+        is_over = (is_over and self._has_counted()) or self._has_counted(counted)
+        if is_over and count is not None and self._ends(counted.last):  # `say how many people you saw`
             self._say(at, Match(Meaning("quantity", count), counted.last), command, slot)
             return counted.last
         return self._say_count(at, counted, command, slot) if self._ends(counted.last) else 0
@@ -242,10 +244,15 @@ class Questions(Answers):
         self._say(at, Match(Meaning("quantity", count), last), command, slot)
         return last
 
-    def _has_counted(self) -> bool:
-        """Whether something has been counted before."""
-        said = (token.value for token in self._tokens)
-        return any(isinstance(value, Called | Listed) and value.entry.id in COUNTING for value in said)
+    def _has_counted(self, things: Match | None = None) -> bool:
+        """Whether something has been counted before; `things` that are counted nowhere else, last of all."""
+        said = [token.value for token in self._tokens]
+        counts = [value for value in said if isinstance(value, Called | Listed) and value.entry.id in COUNTING]
+        if things is None or not counts or any(value.type == PLACE for value in things.values):
+            return things is None and bool(counts)
+        kinds = {value.text for value in things.values if value.type == KINDS}
+        last, given = counts[-1].entry, arguments_of(counts[-1])[-1]
+        return last is things.meaning.entry and kinds == {*last.given(KINDS, given)}
 
     def _counted(self, at: int) -> Match | None:
         """The command that counts what words name, with the words that may stand behind that."""

@@ -103,7 +103,7 @@ class Requests(Questions):
         named = self._measured(first) if first in text.articles else None
         is_value = named is not None and self._ends(named.last)  # `tell Bob the last count`
         if entry.id == TELL and value.last == match.last and self._goes_on(match.last) and not is_value:
-            return self._tell(entry, value, command)
+            return self._miss_clause(value.first, at, command) or self._tell(entry, value, command)
         if first not in text.articles or value.last != first + 1:
             return 0
         is_last = value.last == match.last
@@ -138,6 +138,18 @@ class Requests(Questions):
         self._calls.problems.append(problem)
         self._tokens.append(command)
         return end + 1
+
+    def _miss_clause(self, first: int, at: int, command: Token) -> int:
+        """BT157 for `tell Bob the exact time`, which is no sentence. Returns where to go on, 0 for one that may be."""
+        text, texts = self._text, self._vocabulary.values.texts
+        end = texts.end_of_clause(text, first)
+        if first not in text.articles or not end or texts.has_verb(text.words[first:end]):
+            return 0
+        span = text.span(first, end)
+        quoted = f'{text.span(at, first).text} "{span.text}"'
+        self._calls.problems.append(diagnostic("BT157", span, words=span.text, values=self._values(), quoted=quoted))
+        self._tokens.append(command)
+        return end
 
     def _value_behind(self, at: int, slot: str, first: int, command: Token) -> int:
         """`say "it is" and the time`: the text, then the value."""

@@ -39,6 +39,7 @@ def reworded(text: Words, vocabulary: Lexicon) -> list[Diagnostic]:
     _drop_back(text, vocabulary)
     _say_words(text, vocabulary)
     _say_again(text, vocabulary)
+    _say_numbers(text, vocabulary)
     _count_again(text, vocabulary)
     _tell_again(text, vocabulary)
     _tell_at_once(text, vocabulary)
@@ -122,6 +123,26 @@ def _drop_still(text: Words, vocabulary: Lexicon) -> None:
             first = max((i + 1 for i in range(first, at) if words[i] == ","), default=first)
             if any(word in vocabulary.before_conditions for word in words[first:at]):
                 text.drop(at, end)
+
+
+def _say_numbers(text: Words, vocabulary: Lexicon) -> None:
+    """Ask how many there are for `tell Bob the number of cups`, and leave out `in total` behind that."""
+    words = text.words
+    if text.distinct.isdisjoint((*vocabulary.numbers, *vocabulary.in_all)):
+        return  # as nearly always
+    tells = vocabulary.opening_words("Say", "TellPerson") | vocabulary.telling.keys()
+    how_many = vocabulary.roles["ask_how_many"][0].split()
+    for at in reversed([at for at, word in enumerate(words) if word in vocabulary.numbers]):
+        found = find(vocabulary.numbers, words, at) if find(vocabulary.numbers, words, at - 1) is None else None
+        told = next((i for i in range(at - 1, text.earlier(at)[1] - 1, -1) if words[i] in tells), at)
+        if found is not None and told < at and vocabulary.before_conditions.isdisjoint(words[told:at]):
+            text.drop(at + 1, found[1])
+            text.replace(at, how_many)
+    for at in reversed([at for at, word in enumerate(words) if word in vocabulary.in_all]):
+        found = find(vocabulary.in_all, words, at)
+        before = words[text.earlier(at)[1] : at]
+        if found is not None and words[found[1]][0] in ENDING and how_many[0] in before:
+            text.drop(at, found[1])
 
 
 def _say_last_of_all(text: Words, vocabulary: Lexicon) -> None:
