@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence, Set
 
 from btlang.support.record import Record
-from btlang.text.words import Words
+from btlang.text.words import END_OF_TEXT, Words
 from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.entry import MANNER
 from btlang.vocabulary.match import SlotValue
@@ -385,9 +385,14 @@ class ReadingContext:
         return choice if self.values.listed(kind) or self.known is None else "", chosen[1]
 
     def _said_again(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
-        """`the door` for the door that was said before, by the last word of its name."""
-        latest = self.latest.get(kind, "") if kind == DOOR and at in text.articles else ""
-        return (latest, at + 1) if latest.lower().endswith(f" {text.words[at]}") else None
+        """`the door` for the door that was said before, by the last word of its name, or for that of the room."""
+        if kind != DOOR or at not in text.articles:
+            return None
+        latest, room = self.latest.get(kind, ""), self.latest.get(PLACE, "{").lower().split()
+        if latest.lower().endswith(f" {text.words[at]}"):
+            return latest, at + 1
+        named = find(self.values.names_tree(kind), [*room, text.words[at], END_OF_TEXT], 0)
+        return (named[0], at + 1) if named is not None and named[1] == len(room) + 1 else None
 
     def _are_things(self, types: Sequence[str]) -> bool:
         """Whether a word in the plural stands for a set of things, and somebody who is spoken of is one alone."""

@@ -58,6 +58,8 @@ class Values(Measures):
         self.likenesses = Likenesses({}, self.listed)
         self.texts = Texts(language)
         self._plural_endings, self._belonging = language["plural_endings"], frozenset(language["belonging"])
+        nouns_of = [*language.get("nouns", {}).values()]
+        self._singular = {noun for words in nouns_of for noun in words if plural(noun, self._plural_endings) in words}
         self._spoken: dict[tuple[str, str], str] = {}
         self._exceptions = tree_of((phrase, True) for phrase in language["roles"].get("except", ()))
         self._without = {phrase.split()[0] for phrase in language["roles"].get("without_entering", ())}
@@ -301,6 +303,7 @@ class Values(Measures):
             if not (count and found is not None and not found[0].parts):  # `two people`
                 found = self._resolved(found, text, start)
             is_plural = text.words[at] in self.group_starts and (one is None or found is None or one[1] < found[1])
+            is_plural = is_plural and not (found is not None and text.words[found[1] - 1] in self._singular)
             if found is None or not (count or is_bare or is_plural):
                 return  # `cup` and `sheep` are no plurals
         meant, end = found

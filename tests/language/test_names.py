@@ -92,3 +92,25 @@ def test_a_family_name_alone_is_refused_where_titles_tell_people_apart(tmp_path:
     Path(world).write_text(FAMILY, encoding="utf-8")
     with pytest.raises(btlang.MissionError, match="Similar: Mr Keller, Mrs Keller"):
         btlang.parse_tree("greet Keller", world=world)
+
+
+DOORS = """
+start = { x = 1, y = 1 }
+places = [{ name = "back door", x = 3, y = 0.5 }, { name = "cold room", x = 3, y = 3 }]
+doors = [
+  { name = "cold room door", from = [2, 2], to = [3, 2] }, { name = "shop door", from = [5, 2], to = [6, 2] },
+]
+"""
+
+
+def test_one_door_is_never_all_of_them(tmp_path: Path) -> None:
+    world = str(tmp_path / "doors.toml")
+    Path(world).write_text(DOORS, encoding="utf-8")
+    for said in ("close the door", "open a door", "go to the back door and close the door"):
+        with pytest.raises(btlang.MissionError, match="BT013"):
+            btlang.parse_tree(said, world=world)
+    doors = [
+        [node.port("door") for node in btlang.parse_tree(said, world=world).tree.walk() if node.port("door")]
+        for said in ("close the doors", "go to the cold room and close the door")
+    ]
+    assert doors == [["cold room door", "shop door"], ["cold room door"]]
