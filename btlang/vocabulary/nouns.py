@@ -157,6 +157,10 @@ class Nouns:
         """The words at which a noun phrase may begin."""
         return self._starts(self.tree, names)
 
+    def is_head(self, word: str) -> bool:
+        """Whether a word is a noun of the language for what has names: `people`."""
+        return word in self._heads
+
     def plural_starts(self, names: Callable[[str], WordTree]) -> frozenset[str]:
         """The words at which one in the plural may begin."""
         return self._starts(self.plurals, names)

@@ -149,8 +149,12 @@ class Texts:
         The words at `sure` places are neither.
         """
         doubtful = (at for at in range(first, last) if text.words[at] in self._doubtful and at not in sure)
-        doubtful = (at for at in doubtful if tuple(text.words[at - 1 : at + 1]) not in self._pairs)
+        doubtful = (at for at in doubtful if not self._is_second(text, at))
         return next((at for at in doubtful if at == first or not self._belongs(text, at)), 0)
+
+    def _is_second(self, text: Words, at: int) -> bool:
+        """Whether a word belongs to the one before it: the `else` of `anything else`."""
+        return tuple(text.words[at - 1 : at + 1]) in self._pairs
 
     def _begins_no_other(self, text: Words, at: int) -> bool:
         """Whether a word begins none of the words that could go on with the mission: the `in` of `in ten minutes`."""
@@ -174,7 +178,8 @@ class Texts:
         The `sure` words belong to it, though they may end others; the `verbs` begin questions, by the place of who does
         it, each with where the verb ends: of `she drinks tea`, "do you drink".
         """
-        others = (text.words[at] for at in range(first, last) if not self._begins_no_other(text, at))
+        mine = (at for at in range(first, last) if self._begins_no_other(text, at) or self._is_second(text, at))
+        others = (text.words[at] for at in {*range(first, last)}.difference(mine))
         doubtful = (self._doubtful - sure).intersection(others)  # but not `in` of `if she is in pain`
         opener = text.words[first - 1]
         asks = opener in self._question_words

@@ -12,6 +12,7 @@ from btlang.frontends.mission.tokens.silent_words import BEGINS
 from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of
 from btlang.text.words import Words
 from btlang.tree.answers import ASK
+from btlang.vocabulary.antecedents import pronouns_for
 from btlang.vocabulary.entry import RECIPIENT, Entry
 from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE, TEXT, ZONE
@@ -216,12 +217,8 @@ class AddressedTexts(Hearers):
         """
         values, text, at = self._vocabulary.values, self._text, value.first
         if not self._is_clause(value):
-            if (
-                value.name == "question"
-                and text.words[at][0] != '"'
-                and not values.texts.asks(text.words[at])
-                and value.last == at + 1
-            ):
+            is_bare = text.words[at][0] != '"' and not values.texts.asks(text.words[at])
+            if value.name == "question" and is_bare and value.last == at + 1:
                 return self._ask_nobody(entry, value, command)
             if at not in text.articles and find(values.names_tree("person"), text.words, at) is not None:
                 self._doubt(entry, at, _PERSON)
@@ -229,6 +226,7 @@ class AddressedTexts(Hearers):
         quote = next((place for place in range(at, value.last) if text.words[place][0] == '"'), 0)
         if self._doubt(entry, quote, _QUOTED):
             return 0
+        self._ask_whom(entry, command, at)
         end = self._end_before_command(at, value.last, is_told=False)
         end = end or self._end_before_answer(at, value.last) or self._note_form(command, at, value.last)
         last = end or value.last
@@ -252,6 +250,16 @@ class AddressedTexts(Hearers):
         doubtful = values.texts.doubt(text, at + 1, value.last)
         self._doubt(entry, doubtful or at, "" if doubtful else _NO_QUESTION, (command, at, value.last))
         return self._say_clause(value, value.last, command, text)
+
+    def _ask_whom(self, entry: Entry, command: Token, at: int) -> None:
+        """Ask the one whom a question is about where nobody is named: `go to Bob and ask if he needs help`."""
+        value, latest = command.value, self._context.latest.get(PERSON, "")
+        slot = next((slot.name for slot in entry.slots if slot.type == PERSON), "")
+        pronouns = pronouns_for(self._vocabulary.values.pronouns, PERSON, alone=True)
+        if not isinstance(value, Called) or not slot or not latest or self._text.words[at] not in pronouns:
+            return
+        if slot not in dict(value.arguments):
+            command.value = value.replace(arguments=((slot, latest), *value.arguments))
 
     def _ask_nobody(self, entry: Entry, value: SlotValue, command: Token) -> int:
         """BT013 for `ask the patient "Tea?"`, BT159 for words without a question. Returns where to go on."""

@@ -157,22 +157,26 @@ def _say_last_of_all(text: Words, vocabulary: Lexicon) -> None:
 
 
 def _drop_left(text: Words, vocabulary: Lexicon) -> None:
-    """Take out `left` in a condition: `if nobody is left in the lab`, `if there are no cups left`; not `turn left`."""
+    """Take out `left` in a condition: `if nobody is left in the lab`, `if there are no cups left`; not `turn left`.
+
+    So are `waiting` and the like of people who are counted: `if there are more than 3 people waiting`.
+    """
     words, remaining, values = text.words, vocabulary.asking["remaining"], vocabulary.values
-    if not remaining or remaining[0] not in text.distinct:
+    postures = vocabulary.asking["postures"]
+    if text.distinct.isdisjoint((*remaining[:1], *postures)):
         return  # as nearly always
     prepositions = values.role_words.prepositions
     be, things = vocabulary.asking["asking_be"], (OBJECT, "kind", "kinds")
-    for at in reversed([at for at in range(1, len(words) - 1) if words[at] == remaining[0]]):
+    for at in reversed([at for at in range(1, len(words) - 1) if words[at] in (*remaining[:1], *postures)]):
         ends, before = not words[at + 1][0].isalpha(), words[at - 1]
         asking = vocabulary.before_conditions | vocabulary.firsts["ask_how_many"]
         asks = (i for i in reversed(range(text.earlier(at)[1], at)) if words[i] in asking)
         first = next(asks, at)
         is_thing = before in vocabulary.quantifiers or any(values.takes_word(kind, before) for kind in things)
-        is_thing = is_thing or values.is_number([before])
-        if before in be and ends and first < at:
+        is_thing = is_thing or values.is_number([before]) or values.phrases.is_head(before)
+        if before in be and ends and first < at and words[at] not in postures:
             text.replace(at, [remaining[1]])
-        elif (before in be or is_thing) and any(word in be for word in words[first:at]):
+        elif (is_thing or (before in be and words[at] not in postures)) and any(word in be for word in words[first:at]):
             if ends or words[at + 1] in (*prepositions, remaining[-1]):
                 text.drop(at, at + 1)
 

@@ -117,6 +117,9 @@ def without_meaning(
         if start.kind == "but" or goes_on or (is_last and not (is_end and does_before(tokens))):
             return match.last
         return 0
+    throughout = find(vocabulary.throughout, text.words, at)
+    if throughout is not None and constraint_of(before) is not None:
+        return throughout[1]  # `avoid the hall at all times`
     purpose = find(vocabulary.purpose, text.words, at) if before.kind == "command" else None
     causing = vocabulary.asking["causing"]
     if purpose is None or purpose[1] in text.articles or first_word(before, text.source) in causing:
