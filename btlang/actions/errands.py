@@ -70,6 +70,11 @@ def put_in(robot: FetchingRobot, object: str, container: str, manner: str | None
     yield from keep_pace(robot, manner, _carry(robot, object, travel(robot, container)))
 
 
+def put_beside(robot: FetchingRobot, object: str, other: str, manner: str | None = None) -> Steps:
+    """Pick up an object unless a hand holds it, drive up to another one and put it down beside that."""
+    yield from keep_pace(robot, manner, _carry(robot, object, travel(robot, other)))
+
+
 def _carry(robot: FetchingRobot, object: str, way: Steps) -> Steps:
     """Pick up an object unless a hand holds it, go this way and put it down."""
     yield from _hold(robot, object)

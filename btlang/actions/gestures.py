@@ -25,6 +25,11 @@ def wave(robot: AimingRobot, person: str | None = None) -> Steps:
     yield from _towards(robot, "wave", person) if person else take(robot, "wave")
 
 
+def nod(robot: AimingRobot, person: str | None = None) -> Steps:
+    """Nod the head, towards the person if one is named."""
+    yield from _towards(robot, "nod", person) if person else take(robot, "nod")
+
+
 def perform(
     robot: Gesturing,
     movement: str,
@@ -61,7 +66,6 @@ def point_at_place(
 point_left = posture("left arm pointing", bearing=90.0)
 point_right = posture("right arm pointing", bearing=-90.0)
 point_ahead = posture("right arm pointing", bearing=0.0)
-nod = posture("nod")
 shake_head = posture("shake head")
 look_around = posture("look around")
 look_left = posture("look left")

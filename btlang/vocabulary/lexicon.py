@@ -149,6 +149,7 @@ class Lexicon:
         """What does nothing where it stands alone: `stay here`."""
         self.numbers = tree_of((words, True) for words in self.asking["numbers"])
         self.in_all = tree_of((words, True) for words in self.asking["in_all"])
+        self.opinions = tree_of((words, True) for words in self.asking["opinions"])
         self.throughout = tree_of((words, True) for words in self.asking["throughout"])
         self.in_turn = tree_of((words, True) for words in self.asking["in_turn"])
         """The words beside a list that say nothing: `in that order`."""

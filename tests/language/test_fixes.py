@@ -32,7 +32,7 @@ def mended(text: str) -> str:
         ("do opn gripper", "open gripper"),
         ("do open gripper", "open gripper"),
         ("wave then do go to the lab", "wave then go to the lab"),
-        ("do the wave twice", "wave twice"),
+        ("do the nod twice", "nod twice"),
         ("check test batery is low", "check battery is low"),
         ("move forward 2 then wave", "move forward 2 m then wave"),
         ("wave within 5", "wave within 5 s"),

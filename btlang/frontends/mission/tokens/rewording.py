@@ -27,6 +27,7 @@ def reworded(text: Words, vocabulary: Lexicon) -> list[Diagnostic]:
     _say_at_door(text, vocabulary)
     _drop_words_of_turns(text, vocabulary)
     _drop_still(text, vocabulary)
+    _say_opinion_first(text, vocabulary)
     _say_last_of_all(text, vocabulary)
     _drop_left(text, vocabulary)
     _say_there(text, vocabulary)
@@ -143,6 +144,21 @@ def _say_numbers(text: Words, vocabulary: Lexicon) -> None:
         before = words[text.earlier(at)[1] : at]
         if found is not None and words[found[1]][0] in ENDING and how_many[0] in before:
             text.drop(at, found[1])
+
+
+def _say_opinion_first(text: Words, vocabulary: Lexicon) -> None:
+    """Put `I think` before what it is said of: `bring it to Bob, he's in the lab I think` asks for one thing."""
+    words, opinions = text.words, vocabulary.opinions
+    for at in reversed(range(2, len(words) - 2)) if not text.distinct.isdisjoint(opinions) else ():
+        said = find(opinions, words, at)
+        if said is None or words[said[1]][0] not in ENDING:
+            continue
+        at_end = at - (words[at - 1] == ",")
+        first = next((i + 1 for i in range(at_end - 1, text.earlier(at)[1] - 1, -1) if words[i] == ","), at_end)
+        if first < at_end:
+            opinion = words[at : said[1]]
+            text.drop(at_end, said[1])
+            text.replace(first, [*opinion, words[first]])
 
 
 def _say_last_of_all(text: Words, vocabulary: Lexicon) -> None:
