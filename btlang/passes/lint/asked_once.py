@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from typing import TypeGuard
 
 _SENTENCE_END = re.compile(r"[.;!?\n]")
+_QUOTES = ('"', "\N{RIGHT DOUBLE QUOTATION MARK}")
 _QUOTED_ENDS = ('."', '!"', '?"')
 ON_THE_WAY = ("SomeoneInTheWay", "SomethingInTheWay")
 _BUMPED = "Bumped"
@@ -180,6 +181,7 @@ def _as_sentence(node: ast.If, rule: str, vocabulary: Lexicon) -> tuple[Span, st
     source, place = node.span.source, node.span
     ends = [found.end() for found in _SENTENCE_END.finditer(source.text, 0, place.start)]
     first = max(ends, default=0)
+    first += source.text[first : first + 1] in _QUOTES  # behind `say "Tea?"`
     done = source.text[first : place.start].rstrip(" ,").split()
     while done and done[-1].lower().strip(",") in vocabulary.joining:
         done.pop()

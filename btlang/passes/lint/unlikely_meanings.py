@@ -334,11 +334,15 @@ def _note_end(node: ast.Every | ast.Repeat | ast.UntilTime, vocabulary: Lexicon)
     items = body.items if isinstance(body, ast.Chain) else (body,)
     done = [item for item in items if not _waits(item)]
     phrases = (each for item in done for each in ast.parents_first(item) if isinstance(each, ast.Phrase))
-    first = min(each.span.start for each in phrases if each.entry.sort == "action")
+    acts = (each.span.start for each in phrases if each.entry.sort == "action")
+    first = body.span.start if body.span.start > node.span.start else min(acts)
     inner, text = Span(node.span.source, first, body.span.end), node.span.source.text
     pace = text[node.span.start : inner.start] + text[inner.end : node.span.end]
     paces = {words.split()[0] for role in _PACES for words in vocabulary.roles[role]}
-    if "\n" in node.span.text or paces.isdisjoint(pace.lower().split()):  # `every 10 min, A until 6 pm`
+    front = text[node.span.start : inner.start].lower().split()[:1]
+    is_split = bool(front) and paces.isdisjoint(front)  # `keep waving until 6 pm`
+    is_split |= any(each.span.start < first for each in ast.parents_first(body) if isinstance(each, ast.Phrase))
+    if "\n" in node.span.text or is_split or paces.isdisjoint(pace.lower().split()):  # `every 10 min, A until 6 pm`
         return diagnostic("BT175", node.span, word=word, fixed=f"{word} ...")
     said = f"{inner.text[:1].lower()}{inner.text[1:]}"
     if len(done) > 1 or isinstance(done[0], ast.Chain):

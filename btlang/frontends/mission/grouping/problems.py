@@ -105,6 +105,8 @@ def prohibition(scan: Scan, token: Token) -> None:
     is_known = all(each.kind != "unknown" for each in rest[:form])
     what = _between(scan, [token, *rest[:form]]) or "wave"
     advice = "It does only what it is told, so leave this out, or say what to do in its place."
+    if form < end:
+        advice = "It does only what it is told. Say what to do in its place, and when."
     if form < end and rest[form].kind == "until":
         advice = f"Write for example: {scan.word('wait_until')} {condition}"
     elif condition and is_known:  # nothing is offered that can't be read
