@@ -305,6 +305,8 @@ _ALL = (
          "If yours doesn't, write: _skipIf=\"{script}\"", "warning", "unknown condition"),
     Code("BT248", "Nothing declares the node '{id}': this mission can be shown, but not run.",
          "If a keyword file has it, add: --keywords FILE", "warning", "undeclared node"),
+    Code("BT251", "'{words}' is read as {time}, but could also be {other}.", "Write which: {am}, or {pm}", "warning",
+         "time of the day"),
     Code("BT250", "'{sign}' isn't a word.", "Write comparisons in words."),
 )  # fmt: skip
 

@@ -169,8 +169,11 @@ class Words:
         self.unreadable: list[Span] = []
         self.picked: tuple[Words, Sequence[int]] | None = None
         """Where these are words of another text, side by side: that text, and the place of each in it."""
-        self.assumed: dict[int, tuple[str, int, Span]] = {}
-        """The times of day that are the next ones behind another, by their first words: time, end, and that other."""
+        self.assumed: dict[int, tuple[str, int, Span | None]] = {}
+        """The times of day that don't say in which half of the day they are, by their first words: time and end.
+
+        Behind them stands the other time that says it, None where none does.
+        """
         self.memo: dict[object, dict[tuple[int, str], object]] = {}
         """What readers found at its words, each for itself: the same words are read again and again."""
         self.has_shared_places = False

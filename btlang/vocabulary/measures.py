@@ -18,6 +18,8 @@ _MARK = re.compile("[%°]")
 _LARGEST = 1e12  # beyond it no quantity of a robot makes sense, and sums stay exact
 _MOST_NUMBER_WORDS = 12
 _MOST_TIME_WORDS, _HALF_DAY = 4, 720  # minutes
+_MORNING = 7
+"""The hour from which on one without am or pm is in the morning."""
 _FARTHEST = 1e6  # metres, as in a world file
 
 
@@ -92,12 +94,10 @@ class Measures:
     def later_time(self, text: Words, at: int) -> tuple[str, int] | None:
         """A time that doesn't say in which half of the day it is, `9:30` behind `9 pm`: the next such one.
 
-        The last such one before the end of a span: `from 8 to 10 pm`.
-        That it is assumed is written down in the text.
+        The last such one before the end of a span: `from 8 to 10 pm`. Where no other one says it, that of the day: 9:00
+        for `9 o'clock`, 15:00 for `quarter past three`. That it is assumed is written down in the text.
         """
-        if text.picked is not None or self._halves.isdisjoint(text.distinct):
-            return None  # as nearly always
-        clock = self.clock(text, at)
+        clock = self.clock(text, at) if text.picked is None else None
         if clock is None or not 1 <= clock[0] <= 12 or text.words[at].startswith("0"):
             return None
         hour, minutes, end = clock
@@ -106,10 +106,11 @@ class Measures:
         if is_told or self.quantity(text, at) is not None:
             return None
         minute = int(hour % 12) * 60 + (minutes or 0)
-        behind = self._end_of_span(text, at, end)
-        beside = behind or self._latest_told(text, at)
+        has_halves = not self._halves.isdisjoint(text.distinct)
+        behind = self._end_of_span(text, at, end) if has_halves else None
+        beside = behind or (self._latest_told(text, at) if has_halves else None)
         if beside is None:
-            return None
+            return self._of_day(text, at, clock)
         told = _minutes(beside[0])
         meant = told + (minute - told) % _HALF_DAY - (_HALF_DAY if behind is not None else 0)
         time = f"{meant // 60 % 24:02}:{meant % 60:02}"
@@ -117,6 +118,20 @@ class Measures:
             return time, end  # as it is written
         text.assumed[at] = time, end, beside[1]
         return time, end
+
+    def _of_day(self, text: Words, at: int, clock: tuple[float, int | None, int]) -> tuple[str, int] | None:
+        """The time of an hour from 7 in the morning on, where words say that it is one: `9 o'clock`, `half past two`.
+
+        One with figures is as it is written, `5:30` in the early morning; None for a number alone.
+        """
+        hour, minutes, end = clock
+        is_written = ":" in text.words[at]
+        is_said = minutes is not None or text.words[end - 1] in self._hour_words
+        if hour % 1 or not is_said or (is_written and not 1 <= hour < _MORNING):
+            return None
+        meant = hour if is_written or hour >= _MORNING else hour + 12
+        text.assumed[at] = f"{int(meant):02}:{minutes or 0:02}", end, None
+        return text.assumed[at][:2]
 
     def _end_of_span(self, text: Words, at: int, end: int) -> tuple[str, Span] | None:
         """The time behind one that begins a span, `from 8 to 10 pm`, or that is joined to it, `1:30 and 3 pm`."""

@@ -188,7 +188,7 @@ def find_busy_loops(compilation: Compilation) -> list[Diagnostic]:
 
 
 def _leaf(entry: Entry) -> int:
-    if entry.outputs and not entry.phrases:
+    if entry.outputs and entry.instant and not entry.phrases:
         return ASKS  # it chooses what a condition is about
     if entry.instant:
         return INSTANT

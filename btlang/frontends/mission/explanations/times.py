@@ -74,7 +74,9 @@ def without_misled_times(problems: Sequence[Diagnostic]) -> list[Diagnostic]:
 
 
 def assumed_times(text: Words, values: Sequence[SlotValue]) -> Iterator[Diagnostic]:
-    """BT140 for each time of which only what stands beside it says whether it is in the morning."""
+    """BT140 for each time of which only what stands beside it says whether it is in the morning; BT251 where nothing
+    does.
+    """
     for value in values:
         if value.type == _TIME:
             yield from assumed_between(text, value.first, value.last)
@@ -85,8 +87,19 @@ def assumed_between(text: Words, first: int, last: int) -> Iterator[Diagnostic]:
     for at in (at for at in range(first, last) if at in text.assumed):
         time, end, beside = text.assumed[at]
         span = text.span(at, end)
+        if beside is None:
+            yield _either_half(span, time)
+            continue
         which = "the next such time after" if beside.start < span.start else "the last such time before"
         yield diagnostic("BT140", span, words=span.text, time=time, which=which, before=beside.text)
+
+
+def _either_half(span: Span, time: str) -> Diagnostic:
+    """BT251 for `9 o'clock` alone, and for `5:30`."""
+    other = f"{(int(time[:2]) + 12) % 24:02}{time[2:]}"
+    am, pm = (f"{span.text} {half}" for half in ("am", "pm"))
+    problem = diagnostic("BT251", span, words=span.text, time=time, other=other, am=am, pm=pm)
+    return problem.replace(readings=((span, am), (span, pm)))  # type: ignore[no-any-return]
 
 
 def without_hour(text: Words, at: int, end: int, vocabulary: Lexicon) -> Diagnostic | None:

@@ -136,7 +136,9 @@ def _say_numbers(text: Words, vocabulary: Lexicon) -> None:
     for at in reversed([at for at, word in enumerate(words) if word in vocabulary.numbers]):
         found = find(vocabulary.numbers, words, at) if find(vocabulary.numbers, words, at - 1) is None else None
         told = next((i for i in range(at - 1, text.earlier(at)[1] - 1, -1) if words[i] in tells), at)
-        if found is not None and told < at and vocabulary.before_conditions.isdisjoint(words[told:at]):
+        named = (find(tree, words, at) for tree in vocabulary.measured) if found is not None else ()
+        is_value = any(value[1] > found[1] + 1 for value in named if value and found)  # `number of people near you`
+        if found is not None and told < at and not is_value and vocabulary.before_conditions.isdisjoint(words[told:at]):
             text.drop(at + 1, found[1])
             text.replace(at, how_many)
     for at in reversed([at for at, word in enumerate(words) if word in vocabulary.in_all]):
@@ -147,8 +149,22 @@ def _say_numbers(text: Words, vocabulary: Lexicon) -> None:
 
 
 def _say_opinion_first(text: Words, vocabulary: Lexicon) -> None:
-    """Put `I think` before what it is said of: `bring it to Bob, he's in the lab I think` asks for one thing."""
-    words, opinions = text.words, vocabulary.opinions
+    """Put `I think` before what it is said of: `bring it to Bob, he's in the lab I think` asks for one thing.
+
+    So does `It should be in the lab`.
+    """
+    words, opinions, asking = text.words, vocabulary.opinions, vocabulary.asking
+    supposing, opinion = asking["supposing"], next(iter(asking["opinions"]), "").split()
+    robot = {*asking["hearing"], *asking["subject"][:1], *vocabulary.joining}
+    robot |= vocabulary.subjects if not text.distinct.isdisjoint(asking["subject"][:1]) else set()
+    for at in reversed(range(1, len(words) - 2)) if not text.distinct.isdisjoint(supposing) else ():
+        first = text.earlier(at)[1]
+        subject = words[first:at]
+        is_placed = words[at] in supposing and words[at + 1] in asking["being"] and words[at + 2] in asking["located"]
+        if is_placed and subject and robot.isdisjoint(subject):
+            text.drop(at + 1, at + 2)
+            text.replace(at, asking["asking_be"][:1])
+            text.replace(first, [*opinion, words[first]])
     for at in reversed(range(2, len(words) - 2)) if not text.distinct.isdisjoint(opinions) else ():
         said = find(opinions, words, at)
         if said is None or words[said[1]][0] not in ENDING:
@@ -188,11 +204,12 @@ def _drop_left(text: Words, vocabulary: Lexicon) -> None:
         asking = vocabulary.before_conditions | vocabulary.firsts["ask_how_many"]
         asks = (i for i in reversed(range(text.earlier(at)[1], at)) if words[i] in asking)
         first = next(asks, at)
-        is_thing = before in vocabulary.quantifiers or any(values.takes_word(kind, before) for kind in things)
-        is_thing = is_thing or values.is_number([before]) or values.phrases.is_head(before)
+        is_noun = any(values.takes_word(kind, before) for kind in things) or values.phrases.is_head(before)
+        is_thing = is_noun or before in vocabulary.quantifiers or values.is_number([before])
+        is_left = words[at] not in postures and (is_thing or before in be)
         if before in be and ends and first < at and words[at] not in postures:
             text.replace(at, [remaining[1]])
-        elif (is_thing or (before in be and words[at] not in postures)) and any(word in be for word in words[first:at]):
+        elif (is_left or is_noun) and any(word in be for word in words[first:at]):
             if ends or words[at + 1] in (*prepositions, remaining[-1]):
                 text.drop(at, at + 1)
 

@@ -188,6 +188,7 @@ class UnknownWords:
                 self._context.latest[kind] = named
         span = Span(text.source, text.begin(at), text.ends[end - 1])
         is_behind = why is None and self._tokens[-1:] != [] and self._tokens[-1].kind == "comma"
+        is_behind = is_behind or find(vocabulary.opinions, text.words, at) is not None
         if (why is not None or is_behind) and self._is_idle(at if why is None else why[1], end):
             return end, diagnostic("BT158", span, words=span.text)
         return end, diagnostic("BT164" if why is None else "BT165", span, words=span.text)
