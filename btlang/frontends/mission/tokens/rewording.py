@@ -77,6 +77,7 @@ def _say_at_door(text: Words, vocabulary: Lexicon) -> None:
         found = find(vocabulary.outside, words, at)
         room = find(rooms, words, found[1]) if found is not None else None
         is_verb = at > 0 and (words[at - 1] in stays or words[at - 1] in vocabulary.forms_of_be)
+        is_verb = is_verb or _is_of_thing(text, at, vocabulary)
         if found is None or room is None or is_verb or not moves.isdisjoint(words[text.earlier(at)[1] : at]):
             continue  # `stay outside the lab`, `put the sign outside the lab`
         said = set(words[found[1] : room[1]])
@@ -86,6 +87,14 @@ def _say_at_door(text: Words, vocabulary: Lexicon) -> None:
             named = find(vocabulary.values.names_tree(DOOR), words, found[1])
             text.drop(at + 1, max(room[1], named[1] if named is not None else 0))  # `in front of the lab door`
             text.replace(at, [vocabulary.asking["located"][-1], *doors[0]])
+
+
+def _is_of_thing(text: Words, at: int, vocabulary: Lexicon) -> bool:
+    """Whether words before a place say where a thing is: `the cup is standing in front of the lab`."""
+    things, words = vocabulary.values.names_tree(OBJECT), text.words
+    be = (i for i in range(text.earlier(at)[1], at) if words[i] in vocabulary.forms_of_be)
+    named = ((i, find(things, words, first)) for i in be for first in range(max(i - _MOST_ADJECTIVES, 0), i))
+    return any(thing is not None and thing[1] == i for i, thing in named)
 
 
 def _drop_words_of_turns(text: Words, vocabulary: Lexicon) -> None:
