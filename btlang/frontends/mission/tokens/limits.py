@@ -29,6 +29,8 @@ _TIME = "duration"
 _LIMITS = ("within", "delay", "for", "held", "by_time")
 """What may say how long a command may take, behind words that ask how it went."""
 
+_MEETING = ["open", "command", "and", "command", "close"]
+"""The kinds of tokens of a wait for somebody, with the journey to where that is."""
 
 class Limits(GoingOn):
     """Those of one text."""
@@ -107,6 +109,16 @@ class Limits(GoingOn):
         if token.kind != "command" or not isinstance(value, Called | Listed) or not value.entry.achieves:
             return False
         return self._words_of(token)[:1] == [*self._vocabulary.asking["waiting"]][:1]
+
+    def _free_wait(self, form: int) -> int:
+        """Take `wait 5 min for Bob at the door` out of its brackets, as its statement; return how many tokens went."""
+        tokens, last = self._tokens, run_start(self._tokens, form, STATEMENT_ENDS) - 1
+        first = last - len(_MEETING) + 1
+        is_one = first >= 0 and [token.kind for token in tokens[first : last + 1]] == _MEETING
+        if not is_one or not self._awaits(tokens[last - 1]) or statement_start(tokens, form - 1) != first:
+            return 0
+        tokens[first : last + 1] = [tokens[first + 1], Token("then", tokens[last].end, tokens[last].end), tokens[last - 1]]
+        return 2
 
     def _make_fail(self, at: int) -> None:
         """Let a wait for the condition at a place fail when its time is over; alone it works in any case."""

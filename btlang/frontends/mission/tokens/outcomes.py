@@ -118,6 +118,7 @@ class Outcomes(Limits):
         form = len(tokens) - (3 if denied else 2)
         if form < 1 or tokens[form].kind not in _ASKING:
             return end
+        form -= self._free_wait(form)
         wait = self._waited(form, lambda token: self._is_settled(token, asked))
         if wait is not None and tokens[wait + 1].kind == "until_time":
             self._deny_before(form)
