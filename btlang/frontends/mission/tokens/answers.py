@@ -16,10 +16,10 @@ from btlang.frontends.mission.token import (
     statement_start,
 )
 from btlang.frontends.mission.tokens.addressed_texts import AddressedTexts
+from btlang.frontends.mission.tokens.replies import REPLIES, missing_words, person_in, told_since
 from btlang.frontends.mission.tokens.sentence_reader import is_answer, is_question, latest_question
 from btlang.frontends.mission.tokens.silent_words import begins
 from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of
-from btlang.text.source import Span
 from btlang.tree.answers import (
     ABOUT_ANSWERS,
     ANSWERED,
@@ -39,11 +39,10 @@ from btlang.vocabulary.word_tree import find
 
 _LIMITS = frozenset(("within", "up_to"))
 _BEFORE_NAME = 3  # words: `and if Bob`
-_REPLIES = (PERSON_SAYS, SOMEBODY_SAYS, ANSWERED)
 _BEFORE_REPLY = BEFORE_CONDITIONS | {"semi", "newline", "stop", "comma", "and", "then", "or"}
 _OF_REPLY = frozenset(("if", "unless", "until", "not", "condition", "or", "and", "comma", "then"))
 _STOPS = frozenset(("semi", "newline"))
-_GO_AHEAD, _WHILE = "go ahead", ["while", "condition"]
+_WHILE = ["while", "condition"]
 
 
 class Answers(AddressedTexts):
@@ -174,7 +173,7 @@ class Answers(AddressedTexts):
     def said(self, token: Token, at: int) -> None:
         """What a condition is about that was read at a word."""
         self._hear(token, at)
-        self._miss_words(token)
+        self._calls.problems += missing_words(token, self._text.source, self._vocabulary)
         self._end_reply(token)
         if isinstance(token.value, Called) and token.value.entry.id in ABOUT_ANSWERS:
             self.note_answerer()
@@ -183,7 +182,7 @@ class Answers(AddressedTexts):
         """`if he says picture book, A`: all words of an answer without quotes. Returns where the condition ends."""
         said, words, end = token.value, self._text.words, match.last
         value = match.values[-1] if match.values else None
-        if value is None or value.type != TEXT or not isinstance(said, Called) or said.entry.id not in _REPLIES:
+        if value is None or value.type != TEXT or not isinstance(said, Called) or said.entry.id not in REPLIES:
             return end
         first, number, asking = value.first, self._context.values.is_number, self._vocabulary.asking
         known = (*asking["answers"], *asking["silence"], *asking["any_answer"])
@@ -197,17 +196,6 @@ class Answers(AddressedTexts):
         self._set_text(token, value.name, " ".join(words[first:end]))
         token.end = self._text.ends[end - 1]
         return end
-
-    def _miss_words(self, token: Token) -> None:
-        """BT012 for `wait until Bob says so`, `if somebody calls you`, which don't say in which words."""
-        value, asking, words = token.value, self._vocabulary.asking, Span(self._text.source, token.start, token.end)
-        if isinstance(value, Called) and value.entry.id in _REPLIES:
-            said, _, last = words.text.rpartition(" ")
-            vague = {*asking["so"], *asking["told_pronouns"], *asking["hearing"]}
-            vague |= self._vocabulary.values.role_words.speaker
-            if said and last.lower() in vague and value.arguments[-1][1] == last.lower():
-                example = f'{said} "{_GO_AHEAD}"'
-                self._calls.problems.append(diagnostic("BT012", words, words=said, wanted="a text", example=example))
 
     def note_question(self, command: Token) -> None:
         """Remember of whom pronouns behind the answers to a question to nobody by name speak."""
@@ -226,7 +214,7 @@ class Answers(AddressedTexts):
         question = latest_question(self._tokens)
         if question is None:
             return
-        met = self._met if self._question_before() is not None else _person_in(question.value)
+        met = self._met if self._question_before() is not None else person_in(question.value)
         asked = self._asked_person() or met
         choice = choice_of(asked)
         if asked:
@@ -258,7 +246,7 @@ class Answers(AddressedTexts):
 
     def _hear(self, token: Token, at: int) -> None:
         """`wait until she says stop` where nobody is asked is what is heard; `she says nothing` is silence."""
-        value, may_ask = token.value, self._may_ask and not self._is_done_until()
+        value, may_ask = token.value, self._may_ask and not (self._is_done_until() or self._speaks_of_another())
         if isinstance(value, Called) and value.entry.id in (PERSON_SAYS, SOMEBODY_SAYS) and may_ask:
             value = token.value = self._answer_of_asked(value)
         if not isinstance(value, Called) or value.entry.id != ANSWERED:
@@ -274,6 +262,12 @@ class Answers(AddressedTexts):
         if heard is not None:
             by_type = {PERSON: person, TEXT: words}
             token.value = Called(heard, tuple((slot.name, by_type[slot.type]) for slot in heard.slots))
+
+    def _speaks_of_another(self) -> bool:
+        """Whether someone else was told something since: `ask Bob "Tea?", then tell Alice "Hi". If she says no, A`."""
+        question, others = latest_question(self._tokens), told_since(self._tokens)
+        asked = person_in(question.value) if question is not None else ""
+        return asked[:1] not in ("", "{") and self._context.latest.get(PERSON, "") in others - {"", asked}
 
     def _is_done_until(self) -> bool:
         """Whether something else than a question is done until what is said then: `follow Bob until he says stop`."""
@@ -357,7 +351,7 @@ class Answers(AddressedTexts):
 
     def _asked_person(self) -> str:
         """Who is asked by the question that a condition may be about whose form has begun; "" if nobody alone is."""
-        return _person_in(self._question_before())
+        return person_in(self._question_before())
 
     def _question_before(self) -> Called | Listed | None:
         """The question that a condition may be about whose form has begun."""
@@ -391,10 +385,3 @@ class Answers(AddressedTexts):
                 return None
             last = run_start(tokens, begin, JOINTS) if begin > first else first
         return None
-
-
-def _person_in(question: object) -> str:
-    """Return the one person whom a question names, "" for none or several."""
-    if not isinstance(question, Called):
-        return ""
-    return next(iter(question.entry.given(PERSON, question.arguments)), "")

@@ -53,7 +53,7 @@ def placed_before(asked: Token, tokens: Sequence[Token], vocabulary: Lexicon, so
             placed = before if {*dict(value.arguments).values()} <= {*dict(before.arguments).values()} else placed
         elif token.kind == "command" and drives(before):
             placed = None  # `if Bob isn't in the lab, go to the hall, and if he isn't there, ...`
-    asked.value = placed or value
+    asked.value = placed or asked.value
 
 
 def with_words_before(

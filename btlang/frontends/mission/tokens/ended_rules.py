@@ -35,6 +35,7 @@ from btlang.frontends.mission.token import (
 from btlang.text.source import Span
 from btlang.text.time_of_day import seconds_of, shown
 from btlang.tree.answers import PERSON_SAYS, SOMEBODY_SAYS
+from btlang.tree.sums import COUNTING
 from btlang.vocabulary.antecedents import says_there
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
@@ -270,9 +271,11 @@ def say_there(asked: Token, tokens: Sequence[Token], vocabulary: Lexicon, words:
 
 
 def _place_asked(tokens: Sequence[Token], slot: str) -> str:
-    """The place of the last condition of some tokens, "" where none is about a place or the robot has left since."""
+    """The place of the last condition, or count, of some tokens, "" for none or where the robot has left since."""
     for token in reversed(tokens):
         before = token.value
+        if isinstance(before, Called) and before.entry.id in COUNTING:
+            return next(iter(before.entry.given(PLACE, before.arguments)), "")  # it has looked all round there
         if drives(before) or isinstance(before, Listed):
             return ""
         if token.kind == "condition" and isinstance(before, Called) and before.entry.id in THERE.values():

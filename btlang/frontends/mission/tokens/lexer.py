@@ -42,7 +42,6 @@ from btlang.frontends.mission.tokens.rules_behind import (
 from btlang.frontends.mission.tokens.rules_inside import with_rules_inside
 from btlang.frontends.mission.tokens.settling import (
     find_brief_stays,
-    find_unclear_people,
     find_unclear_things,
     turn_branches,
     with_either_end,
@@ -50,6 +49,7 @@ from btlang.frontends.mission.tokens.settling import (
     with_stays,
     with_watched_waits,
 )
+from btlang.frontends.mission.tokens.unclear_people import find_unclear_people
 from btlang.frontends.mission.tokens.visitors import with_meetings, with_sightings
 from btlang.frontends.mission.tokens.word_reader import WordReader
 from btlang.text.source import Source, Span

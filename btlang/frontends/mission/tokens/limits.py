@@ -32,6 +32,7 @@ _LIMITS = ("within", "delay", "for", "held", "by_time")
 _MEETING = ["open", "command", "and", "command", "close"]
 """The kinds of tokens of a wait for somebody, with the journey to where that is."""
 
+
 class Limits(GoingOn):
     """Those of one text."""
 
@@ -117,7 +118,8 @@ class Limits(GoingOn):
         is_one = first >= 0 and [token.kind for token in tokens[first : last + 1]] == _MEETING
         if not is_one or not self._awaits(tokens[last - 1]) or statement_start(tokens, form - 1) != first:
             return 0
-        tokens[first : last + 1] = [tokens[first + 1], Token("then", tokens[last].end, tokens[last].end), tokens[last - 1]]
+        goes, wait, here = tokens[first + 1], tokens[last - 1], tokens[last].end
+        tokens[first : last + 1] = [goes, Token("then", here, here), wait]
         return 2
 
     def _make_fail(self, at: int) -> None:

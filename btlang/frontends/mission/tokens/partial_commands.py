@@ -328,6 +328,8 @@ class PartialCommands:
         said = said_before(self._tokens)
         if said is None or [token.kind for token in self._tokens[-2:]] in _EITHER_END:
             return None
+        if self._vocabulary.values.exception(self._text, at):
+            return None  # `take all cups to the lab, except the red one`
         words = self._said.get(said.start) or words_of(self._text, said)
         if not words:
             return None  # an answer

@@ -44,6 +44,8 @@ def with_replacements(tokens: list[Token], vocabulary: Lexicon, source: Source) 
 
     BT166 for `A. If C, B instead` where it isn't clear what B replaces.
     """
+    for at in reversed([at for at, token in enumerate(tokens) if token.kind == "before"]):
+        _prepare(tokens, at)
     for at in reversed(range(1, len(tokens))):
         if tokens[at].kind == "but" and tokens[at + 1 : at + 2] and _follows(tokens, at + 1):
             yield from _turn(tokens, at, vocabulary, source)
@@ -55,6 +57,16 @@ def with_replacements(tokens: list[Token], vocabulary: Lexicon, source: Source) 
             begin = source.text.index(said, begin)
             span = Span(source, begin, begin + len(said))
             yield diagnostic("BT166", span, words=span.text, otherwise=vocabulary.word("otherwise"))
+
+
+def _prepare(tokens: list[Token], at: int) -> None:
+    """`if the battery is low, charge before you go to the lab`: only the first of both depends on the condition."""
+    first, end = statement_of(tokens, at)
+    here = tokens[at].start
+    is_form = tokens[first].kind in ("if", "unless") and _form(tokens[first:at]) is not None
+    if is_form and all(token.kind in _PLAIN for token in tokens[at + 1 : end]):
+        tokens[at : at + 1] = [Token("close", here, here), Token("then", tokens[at].start, tokens[at].end)]
+        tokens.insert(first, Token("open", tokens[first].start, tokens[first].start))
 
 
 def _find_moved_again(tokens: Sequence[Token], vocabulary: Lexicon, source: Source) -> Iterator[Diagnostic]:

@@ -35,6 +35,7 @@ def reworded(text: Words, vocabulary: Lexicon) -> list[Diagnostic]:
     part_each(text, vocabulary)
     list_days(text, vocabulary)
     say_hour_first(text, vocabulary)
+    _say_time_before_event(text, vocabulary)
     _say_as_soon_as(text, vocabulary)
     _drop_again(text, vocabulary)
     _drop_back(text, vocabulary)
@@ -232,6 +233,21 @@ def _say_there(text: Words, vocabulary: Lexicon) -> None:
         found = find(vocabulary.entering, words, at)
         if found is not None and (words[found[1]][0] in ENDING or words[found[1]] in vocabulary.joining):
             text.replace(found[1] - 1, [words[found[1] - 1], *there])
+
+
+def _say_time_before_event(text: Words, vocabulary: Lexicon) -> None:
+    """Put the time in front of two ends: `dance until Bob comes or until 5 pm` as `until 5 pm or until Bob comes`."""
+    words, values = text.words, vocabulary.values
+    until, alternatives = vocabulary.word("until"), vocabulary.roles["or"]
+    if until not in text.distinct or text.distinct.isdisjoint(alternatives):
+        return  # as often
+    for at in reversed([at for at in range(2, len(words) - 2) if words[at] in alternatives and words[at + 1] == until]):
+        first = next((i for i in range(at - 1, text.earlier(at)[1] - 1, -1) if words[i] == until), 0)
+        time = values.time_of_day(text, at + 2)
+        if first and time is not None and values.time_of_day(text, first + 1) is None:
+            ends = [until, *words[at + 2 : time[1]], words[at], until]
+            text.drop(at, time[1])
+            text.replace(first, ends)
 
 
 def _say_as_soon_as(text: Words, vocabulary: Lexicon) -> None:

@@ -30,7 +30,6 @@ from btlang.text.source import Source, Span
 from btlang.text.words import Words
 from btlang.vocabulary.antecedents import pronouns_for
 from btlang.vocabulary.capabilities import HOLDING
-from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import ALL, choice_of
@@ -43,8 +42,6 @@ IMPLIED = "implied"
 """The role of a search that nobody has asked for: `tell me where the cup is`."""
 TURNED = "turned"
 """The role of an `otherwise` behind words about a failure."""
-_ABOUT_IT = ("until", "while", "if", "unless")
-"""Forms whose condition may be about somebody else than the command before it."""
 MEASURES = frozenset(("for", "up_to", "within", "count"))
 """What may stand between a command and the words that ask how it went."""
 WAITS = ("wait_until", "wait_for", "wait_up_to")
@@ -258,39 +255,6 @@ def find_unclear_things(tokens: Sequence[Token], vocabulary: Lexicon, text: Word
             if pronoun:
                 yield diagnostic("BT151", span, words=pronoun, one=carried, other=asked)
         carried = "" if _is_delivered(value) else thing
-
-
-def find_unclear_people(tokens: Sequence[Token], vocabulary: Lexicon, text: Words) -> Iterator[Diagnostic]:
-    """Report `wave at Alice if you see Bob. Tell her "Bye"`: whom the command or its condition is about."""
-    about, asked = "", ""
-    pronouns = {*pronouns_for(vocabulary.values.pronouns, PERSON, alone=True)}
-    if text.distinct.isdisjoint(pronouns) or all(token.kind not in _ABOUT_IT for token in tokens):
-        return
-    for at, token in enumerate(tokens):
-        said = _person_of(token.value) if isinstance(token.value, Called) else ""
-        if not said:
-            continue
-        span = Span(text.source, token.start, token.end)
-        pronoun = next((word for word in span.text.lower().split() if word in pronouns), "")
-        if pronoun and said == asked:
-            yield diagnostic("BT151", span, words=pronoun, one=about, other=asked)
-            asked = ""
-        elif token.kind == "command" and not pronoun:
-            about, asked = said, ""
-        elif token.kind == "condition" and not pronoun and about not in ("", said):
-            form = run_start(tokens, at, IN_CONDITIONS) - 1
-            first = statement_start(tokens, at)
-            ends = form > first and tokens[form].kind in _ABOUT_IT
-            asked = said if ends and any(_person_of(each.value) == about for each in tokens[first:form]) else ""
-
-
-def _person_of(said: object) -> str:
-    """The name of the person whom a phrase is about, "" for none, or for one who is chosen elsewhere."""
-    if not isinstance(said, Called):
-        return ""
-    chosen = next(iter(said.entry.given(PERSON, said.arguments)), "")
-    choice = choice_of(chosen)
-    return chosen if chosen[:1] != "{" else dict(choice.parts).get(NAME, "") if choice is not None else ""
 
 
 def _is_delivered(said: object) -> bool:

@@ -178,10 +178,12 @@ class Visitors(SentenceReader):
         question = question_to_set(asked.value, self._context.keys.get(PERSON, PERSON))
         people = choice_of(next(iter(question.entry.given(PERSON, question.arguments)), ""))
         reply = next((value.text for value in event.values if value.type == TEXT), "")
-        if people is None or people.how != ALL or not reply:
+        who = next(iter(question.entry.given(PERSON, question.arguments)), "")
+        in_round = people is None and self._context.met.get(who[1:-1], False)  # `and ask each of them "Tea?"`
+        if not reply or not (in_round or (people is not None and people.how == ALL)):
             return False
         asked.value = question
-        here, one = tokens[-1].start, f"{{{people.key}}}"
+        here, one = tokens[-1].start, who if people is None else f"{{{people.key}}}"
         arguments = tuple((name, one if text == everyone else text) for name, text in said.arguments)
         condition = Token("condition", here, here, Called(answered, ((answered.slots[0].name, reply),)))
         form = [Token(kind, here, here) for kind in ("comma", "and", "if")]
