@@ -86,12 +86,14 @@ def bring(robot: BringingRobot, object: str, person: str | None = None, manner: 
     """Pick up an object unless a hand holds it, drive to a person and hand it over.
 
     Without a person it is the last speaker, else the nearest person in view; if there is nobody, the object is put down
-    where the mission began. Fails if the person is gone or doesn't want it.
+    where the mission began. Fails if the person is gone or doesn't want it. Who has it already needn't get it.
     """
     yield from keep_pace(robot, manner, _bring(robot, object, person or speaker(robot)))
 
 
 def _bring(robot: BringingRobot, object: str, person: str | None) -> Steps:
+    if person is not None and object in robot.described("object", {"held_by": person}):
+        return
     hand = yield from _hold(robot, object)
     if person is None:
         yield from _return(robot)

@@ -306,7 +306,7 @@ _ALL = (
     Code("BT248", "Nothing declares the node '{id}': this mission can be shown, but not run.",
          "If a keyword file has it, add: --keywords FILE", "warning", "undeclared node"),
     Code("BT251", "'{words}' is read as {time}, but could also be {other}.", "Write which: {am}, or {pm}", "warning",
-         "time of the day"),
+         "early time"),
     Code("BT250", "'{sign}' isn't a word.", "Write comparisons in words."),
 )  # fmt: skip
 

@@ -170,10 +170,7 @@ class Words:
         self.picked: tuple[Words, Sequence[int]] | None = None
         """Where these are words of another text, side by side: that text, and the place of each in it."""
         self.assumed: dict[int, tuple[str, int, Span | None]] = {}
-        """The times of day that don't say in which half of the day they are, by their first words: time and end.
-
-        Behind them stands the other time that says it, None where none does.
-        """
+        """Times of day without am or pm, by their first words: time, end, and the other time that says it, if any."""
         self.memo: dict[object, dict[tuple[int, str], object]] = {}
         """What readers found at its words, each for itself: the same words are read again and again."""
         self.has_shared_places = False

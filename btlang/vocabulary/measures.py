@@ -19,7 +19,7 @@ _LARGEST = 1e12  # beyond it no quantity of a robot makes sense, and sums stay e
 _MOST_NUMBER_WORDS = 12
 _MOST_TIME_WORDS, _HALF_DAY = 4, 720  # minutes
 _MORNING = 7
-"""The hour from which on one without am or pm is in the morning."""
+"""The hour from which on a time such as 7:30 is hardly meant for the afternoon."""
 _FARTHEST = 1e6  # metres, as in a world file
 
 
@@ -94,8 +94,8 @@ class Measures:
     def later_time(self, text: Words, at: int) -> tuple[str, int] | None:
         """A time that doesn't say in which half of the day it is, `9:30` behind `9 pm`: the next such one.
 
-        The last such one before the end of a span: `from 8 to 10 pm`. Where no other one says it, that of the day: 9:00
-        for `9 o'clock`, 15:00 for `quarter past three`. That it is assumed is written down in the text.
+        The last such one before the end of a span: `from 8 to 10 pm`. Where no other one says it, `5:30`
+        is as it is written. That it is assumed is written down in the text.
         """
         clock = self.clock(text, at) if text.picked is None else None
         if clock is None or not 1 <= clock[0] <= 12 or text.words[at].startswith("0"):
@@ -120,17 +120,11 @@ class Measures:
         return time, end
 
     def _of_day(self, text: Words, at: int, clock: tuple[float, int | None, int]) -> tuple[str, int] | None:
-        """The time of an hour from 7 in the morning on, where words say that it is one: `9 o'clock`, `half past two`.
-
-        One with figures is as it is written, `5:30` in the early morning; None for a number alone.
-        """
+        """`5:30` as it is written, on a clock of 24 hours; None for a time without figures, or later in the day."""
         hour, minutes, end = clock
-        is_written = ":" in text.words[at]
-        is_said = minutes is not None or text.words[end - 1] in self._hour_words
-        if hour % 1 or not is_said or (is_written and not 1 <= hour < _MORNING):
+        if ":" not in text.words[at] or hour >= _MORNING:
             return None
-        meant = hour if is_written or hour >= _MORNING else hour + 12
-        text.assumed[at] = f"{int(meant):02}:{minutes or 0:02}", end, None
+        text.assumed[at] = f"{int(hour):02}:{minutes or 0:02}", end, None
         return text.assumed[at][:2]
 
     def _end_of_span(self, text: Words, at: int, end: int) -> tuple[str, Span] | None:

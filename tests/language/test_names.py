@@ -114,3 +114,22 @@ def test_one_door_is_never_all_of_them(tmp_path: Path) -> None:
         for said in ("close the doors", "go to the cold room and close the door")
     ]
     assert doors == [["cold room door", "shop door"], ["cold room door"]]
+
+
+AREAS = """
+start = { x = 1, y = 1 }
+places = [
+  { name = "kitchen", x = 1, y = 1, points = [[0, 0], [2, 0], [2, 2], [0, 2]] },
+  { name = "boiler room", x = 4, y = 1, points = [[3, 0], [5, 0], [5, 2], [3, 2]] },
+]
+"""
+
+
+def test_every_room_is_refused_where_only_some_names_say_that_they_are_rooms(tmp_path: Path) -> None:
+    world = str(tmp_path / "areas.toml")
+    Path(world).write_text(AREAS, encoding="utf-8")
+    with pytest.raises(btlang.MissionError, match="doesn't say whether 'kitchen' is one"):
+        btlang.parse_tree("visit every room", world=world)
+    Path(world).write_text(AREAS.replace('name = "kitchen"', 'name = "kitchen", kind = "room"'), encoding="utf-8")
+    tree = btlang.parse_tree("visit every room", world=world).tree
+    assert [node.port("place") for node in tree.walk() if node.port("place")] == ["kitchen", "boiler room"]

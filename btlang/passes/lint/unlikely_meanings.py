@@ -219,6 +219,7 @@ def find_distant_questions(compilation: Compilation) -> Iterator[Diagnostic]:
     sights = {id(node.condition) for node in nodes if isinstance(node, ast.If)}
     in_rules = {id(each) for node in nodes if isinstance(node, ast.Whenever)
                 for part in (node.condition, node.body) for each in ast.parents_first(part)}  # fmt: skip
+    met = ""
     for phrase in sorted(phrases, key=lambda each: each.span.start):
         if id(phrase) in in_rules or phrase.entry.constrains:
             continue  # what a rule does is done at some time
@@ -230,7 +231,7 @@ def find_distant_questions(compilation: Compilation) -> Iterator[Diagnostic]:
         drives = MOVES in phrase.entry.resources or "navigation" in phrase.entry.needs
         stays = phrase.entry.sort == "action" and not drives
         is_far = there != "" and (stays or (phrase.entry.id in _SIGHTS and id(phrase) in sights))
-        if (phrase.entry.id == ASK or is_far) and goal and goal[:1] != "{":
+        if (phrase.entry.id == ASK or is_far) and goal and goal[:1] != "{" and goal != met:
             words = phrase.span.text
             journey = " ".join((*vocabulary.asking["journey"], goal, vocabulary.word("then")))
             is_verb = words.split()[0].lower() in asking_verbs(vocabulary)  # but not `keep asking Bob`
@@ -239,7 +240,10 @@ def find_distant_questions(compilation: Compilation) -> Iterator[Diagnostic]:
             return
         is_at_thing = {phrase.entry.slot(name).type for name, _ in phrase.arguments} == {OBJECT}
         leads = MOVES in phrase.entry.resources and not (is_at_thing or phrase.entry.first)
-        if named or leads or phrase.entry.sort == "name":
+        leads = leads and phrase.entry.id not in COUNTING
+        if drives and len(named) == 1 and goal:
+            met = goal  # `bring the cup to Bob and ask Alice "Tea?"` goes to Bob
+        elif named or leads or phrase.entry.sort == "name":
             return
 
 

@@ -95,7 +95,7 @@ def assumed_between(text: Words, first: int, last: int) -> Iterator[Diagnostic]:
 
 
 def _either_half(span: Span, time: str) -> Diagnostic:
-    """BT251 for `9 o'clock` alone, and for `5:30`."""
+    """BT251 for `5:30` alone."""
     other = f"{(int(time[:2]) + 12) % 24:02}{time[2:]}"
     am, pm = (f"{span.text} {half}" for half in ("am", "pm"))
     problem = diagnostic("BT251", span, words=span.text, time=time, other=other, am=am, pm=pm)

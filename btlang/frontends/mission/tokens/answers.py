@@ -246,7 +246,10 @@ class Answers(AddressedTexts):
 
     def _hear(self, token: Token, at: int) -> None:
         """`wait until she says stop` where nobody is asked is what is heard; `she says nothing` is silence."""
-        value, may_ask = token.value, self._may_ask and not (self._is_done_until() or self._speaks_of_another())
+        value = token.value
+        if not isinstance(value, Called) or value.entry.id not in REPLIES:
+            return  # as nearly always
+        may_ask = self._may_ask and not (self._is_done_until() or self._speaks_of_another())
         if isinstance(value, Called) and value.entry.id in (PERSON_SAYS, SOMEBODY_SAYS) and may_ask:
             value = token.value = self._answer_of_asked(value)
         if not isinstance(value, Called) or value.entry.id != ANSWERED:

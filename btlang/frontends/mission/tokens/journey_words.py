@@ -16,7 +16,7 @@ from btlang.vocabulary.word_tree import find
 
 _ASKED = ("condition", "negated")
 COMES, ANYBODY_COMES, _COMES_BACK, _DURATION = "WaitForPerson", "WaitForSomeone", "ComeBack", "duration"
-_SEES, _AT = "SeesPerson", "PersonIsAt"
+SEES, _AT = "SeesPerson", "PersonIsAt"
 _ANY = "seen"  # how one of those in view is chosen
 _TAKES, _FROM = "Take", ("off", "at", "inside", "on")
 _LOOPED = frozenset(("command", "name", "wait", "every", "count", "repeat", "open", "close", "comma", "and", "then"))
@@ -279,7 +279,7 @@ class JourneyWords(SentenceReader):
 
     def _wait_for_one(self, match: Match, at: int) -> bool:
         """`wait for a guest`, `wait for the first guest`: until any of that kind is in view, who is the one then."""
-        entry, who = self._vocabulary.entry(_SEES), _whoever(match)
+        entry, who = self._vocabulary.entry(SEES), _whoever(match)
         if entry is None or who is None or {name for name, _ in who.parts} != {"kind"}:
             return False
         start, end = self._text.starts[at], self._text.ends[match.last - 1]

@@ -154,7 +154,7 @@ class Limits(GoingOn):
         last = run_start(tokens, form, STATEMENT_ENDS)
         limits = [token.kind for token in (tokens[at - 1], *tokens[at + 1 : last])]
         waits = tokens[at].kind == "condition" and (limits == ["wait_up_to"] or limits[1:] in (["for"], ["up_to"]))
-        return waits and self._time_behind(end) is None
+        return waits and self._time_behind(end) is None and not self._is_event(tokens[-1])
 
     def _is_event(self, asked: Token) -> bool:
         """Whether a condition says that something happens: `somebody comes`."""

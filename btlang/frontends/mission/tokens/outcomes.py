@@ -16,8 +16,10 @@ from btlang.frontends.mission.token import (
     go_on,
     run_start,
     statement_start,
+    texts_of,
 )
 from btlang.frontends.mission.tokens.going_on import BRANCHES
+from btlang.frontends.mission.tokens.journey_words import SEES
 from btlang.frontends.mission.tokens.limits import Limits
 from btlang.frontends.mission.tokens.sentence_reader import may_fail, searches
 from btlang.frontends.mission.tokens.settling import (
@@ -25,6 +27,7 @@ from btlang.frontends.mission.tokens.settling import (
     MEASURES,
     WAITS,
     WORKS,
+    achieves,
     asked_about,
     is_about,
     is_presence,
@@ -156,7 +159,7 @@ class Outcomes(Limits):
             if then and tokens[then - 1].kind == "stop":
                 return self._turn(wait, then, form, end)
         has_found = not denied and searches(tokens[command]) and _has_it(tokens[command], asked)
-        if has_found or any(_achieves(tokens[at], asked) for at in range(command, first - 1, -1)):
+        if has_found or any(achieves(tokens[at], asked) for at in range(command, first - 1, -1)):
             said = tokens[command]
             self._join(command, form, asked.end, denied)
             return self._limit(said, end) if denied else end
@@ -180,9 +183,13 @@ class Outcomes(Limits):
     def _is_settled(self, token: Token, asked: Token) -> bool:
         """Whether a command, or what is waited for, is what a condition asks."""
         if token.kind == "command":
-            return _achieves(token, asked) or (misses(token, asked) and not self._is_event(asked))
-        somebody = self._vocabulary.negative_subjects
-        return token.value == asked.value or all(is_presence(each.value, somebody) for each in (token, asked))
+            return achieves(token, asked) or (misses(token, asked) and not self._is_event(asked))
+        somebody, awaited = self._vocabulary.negative_subjects, token.value
+        is_kind = isinstance(awaited, Called) and awaited.entry.id == SEES and self._is_event(asked)
+        is_anybody = is_presence(asked.value, somebody) and (is_kind or is_presence(awaited, somebody))
+        said = {*texts_of(asked.value)} if isinstance(asked.value, Called) else {""}
+        is_same = is_kind and isinstance(awaited, Called) and said <= named_by(awaited)
+        return awaited == asked.value or is_anybody or is_same  # `wait for a guest. If nobody comes, A`
 
     def _settle(self, at: int, form: int, stop: int, end: int) -> int:
         """Makes words from a form up to a character, and a word, ask whether the command at a place failed."""
@@ -390,11 +397,3 @@ def _has_it(search: Token, asked: Token) -> bool:
     if not isinstance(said, Called) or said.entry.id != _HOLDS or not isinstance(value, Called | Listed):
         return False
     return {text for _, text in said.arguments} <= named_by(value)
-
-
-def _achieves(command: Token, asked: Token) -> bool:
-    """Whether a condition holds once a command has succeeded: it is about the same things."""
-    value, condition = command.value, asked.value
-    if not isinstance(value, Called | Listed) or not isinstance(condition, Called):
-        return False
-    return condition.entry.id in value.entry.achieves and {text for _, text in condition.arguments} <= named_by(value)

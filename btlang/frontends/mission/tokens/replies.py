@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.frontends.mission.token import STATEMENT_ENDS, Called, Token, run_start, statement_start
+from btlang.frontends.mission.token import Called, Token, statement_start
 from btlang.frontends.mission.tokens.addressed_texts import TELL
 from btlang.frontends.mission.tokens.sentence_reader import is_question
 from btlang.text.source import Source, Span
@@ -28,17 +28,14 @@ def person_in(question: object) -> str:
 def told_since(tokens: Sequence[Token]) -> set[str]:
     """The persons who were told something in any case since the last question, before the statement that is read."""
     found: set[str] = set()
-    last = run_start(tokens, statement_start(tokens, len(tokens)), STATEMENT_ENDS)
-    while last > 0:
-        first = statement_start(tokens, last)
-        said = tokens[first:last]
-        asks = next((at for at in reversed(range(len(said))) if is_question(said[at])), -1)
-        if all(token.kind not in ("if", "unless", "otherwise") for token in said):
-            told = (token.value for token in said[asks + 1 :] if token.kind == "command")
-            found |= {person_in(value) for value in told if isinstance(value, Called) and value.entry.id == TELL}
-        if asks >= 0:
+    last = statement_start(tokens, len(tokens))
+    for at in reversed(range(last)):
+        if is_question(tokens[at]):
             return found
-        last = run_start(tokens, first, STATEMENT_ENDS)
+        value, first = tokens[at].value, statement_start(tokens, at)
+        depends = any(token.kind in ("if", "unless", "otherwise") for token in tokens[first:at])
+        if tokens[at].kind == "command" and isinstance(value, Called) and value.entry.id == TELL and not depends:
+            found.add(person_in(value))
     return set()
 
 

@@ -349,6 +349,14 @@ def misses(command: Token, asked: Token) -> bool:
     return condition.entry.id in _THERE and bool(things) and things <= named_by(value)
 
 
+def achieves(command: Token, asked: Token) -> bool:
+    """Whether a condition holds once a command has succeeded: it is about the same things."""
+    value, condition = command.value, asked.value
+    if not isinstance(value, Called | Listed) or not isinstance(condition, Called):
+        return False
+    return condition.entry.id in value.entry.achieves and {text for _, text in condition.arguments} <= named_by(value)
+
+
 def is_presence(value: object, somebody: Container[str]) -> bool:
     """Whether a condition is about somebody whom it doesn't name."""
     if not isinstance(value, Called) or any(slot.type == PERSON for slot in value.entry.slots):

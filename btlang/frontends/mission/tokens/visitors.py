@@ -18,6 +18,7 @@ from btlang.frontends.mission.token import (
     run_start,
     statement_start,
     texts_of,
+    with_arguments,
 )
 from btlang.frontends.mission.tokens.addressed_texts import TELL
 from btlang.frontends.mission.tokens.ended_rules import GO, journey_to
@@ -251,9 +252,23 @@ def with_meetings(tokens: list[Token], vocabulary: Lexicon) -> None:
         if parts.keys() == {"inside", "named"}:
             journey = Token("command", start, start, journey_to(parts["inside"], goes))
             tokens[at].value = said.replace(arguments=((said.arguments[0][0], parts["named"]), *said.arguments[1:]))
+            _name_behind(tokens[at + 1 :], who.key if who is not None else "", parts["named"])
             tokens[at : at + 1] = [
                 Token("open", start, start), journey, Token("then", start, start), tokens[at], Token("close", end, end),
             ]  # fmt: skip
+
+
+def _name_behind(tokens: Sequence[Token], key: str, name: str) -> None:
+    """Write a name for the reference to what is chosen no more, up to where another one is chosen for it."""
+    for token in tokens:
+        value = token.value
+        if not isinstance(value, Called | Listed):
+            continue
+        if any(choice is not None and choice.key == key for choice in map(choice_of, texts_of(value))):
+            return
+        named = {f"{{{key}}}": name}
+        rows = [tuple((slot, named.get(text, text)) for slot, text in row) for row in arguments_of(value)]
+        token.value = with_arguments(value, rows)
 
 
 def with_sightings(tokens: list[Token], vocabulary: Lexicon, source: Source) -> None:
