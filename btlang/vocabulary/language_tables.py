@@ -54,7 +54,7 @@ ASKING = (
     "until_none", "rounds", "obliging", "failing", "found", "counted", "replied",
     "so", "being", "causing", "asking_for", "plea_for", "helping", "plea_for_help",
     "speaking", "spoken_of", "still", "motionless", "who", "somebody", "answering", "likewise",
-    "foremost", "numbers", "in_all", "throughout", "postures", "opinions", "supposing", "rooms",
+    "foremost", "numbers", "in_all", "throughout", "postures", "opinions", "supposing", "rooms", "left_there",
     "remaining", "entering", "turning_to", "ended", "fewer", "having", "putting", "denied",
 )  # fmt: skip
 """What the table `asking` of a language may have; without it there are no questions, and no remarks."""

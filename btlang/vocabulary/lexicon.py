@@ -150,6 +150,8 @@ class Lexicon:
         self.numbers = tree_of((words, True) for words in self.asking["numbers"])
         self.in_all = tree_of((words, True) for words in self.asking["in_all"])
         self.opinions = tree_of((words, True) for words in self.asking["opinions"])
+        self.left_there = tree_of((words, True) for words in self.asking["left_there"])
+        self.excepting = tree_of((words, True) for words in ways(self.roles.get("except", ()), self.articles))
         self.throughout = tree_of((words, True) for words in self.asking["throughout"])
         self.in_turn = tree_of((words, True) for words in self.asking["in_turn"])
         """The words beside a list that say nothing: `in that order`."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from btlang.diagnostics.diagnostic import diagnostic
-from btlang.frontends.mission.explanations.kinds import find_unclear_rooms
 from btlang.frontends.mission.explanations.times import assumed_times
 from btlang.frontends.mission.symbols.nodes import GivenTwice, is_detail, read_details, unreadable
 from btlang.frontends.mission.token import Called, Listed, Token, arguments_of
@@ -63,7 +62,10 @@ class Calls(Mentions):
         for value in values if self._owners else ():
             self._note_owners(value)
         self.problems += assumed_times(text, values) if text.assumed else ()
-        self.problems += find_unclear_rooms(text, values, self._vocabulary)
+        if any(value.group and value.type == PLACE for value in values):
+            from btlang.frontends.mission.explanations.kinds import find_unclear_rooms  # most missions have no such set
+
+            self.problems += find_unclear_rooms(text, values, self._vocabulary)
         twice = two_goals(match, at, text, self._vocabulary) if len(values) > 1 else None
         if twice is not None:
             self.problems.append(twice)

@@ -36,6 +36,8 @@ def reworded(text: Words, vocabulary: Lexicon) -> list[Diagnostic]:
     list_days(text, vocabulary)
     say_hour_first(text, vocabulary)
     _say_time_before_event(text, vocabulary)
+    _say_pace_first(text, vocabulary)
+    _drop_where_it_is(text, vocabulary)
     _say_as_soon_as(text, vocabulary)
     _drop_again(text, vocabulary)
     _drop_back(text, vocabulary)
@@ -233,6 +235,38 @@ def _say_there(text: Words, vocabulary: Lexicon) -> None:
         found = find(vocabulary.entering, words, at)
         if found is not None and (words[found[1]][0] in ENDING or words[found[1]] in vocabulary.joining):
             text.replace(found[1] - 1, [words[found[1] - 1], *there])
+
+
+def _drop_where_it_is(text: Words, vocabulary: Lexicon) -> None:
+    """Take out `where it is` behind what is left out of a set: `take all cups, but leave the red one where it is`."""
+    words, left, excepting = text.words, vocabulary.left_there, vocabulary.excepting
+    if text.distinct.isdisjoint(left):
+        return  # as nearly always
+    for at in reversed([at for at, word in enumerate(words) if word in left]):
+        said = find(left, words, at)
+        front = (i for i in range(text.earlier(at)[1], at - 2) if find(excepting, words, i) is not None)
+        if said is not None and words[said[1]][0] in ENDING and next(front, None) is not None:
+            text.drop(at, said[1])
+
+
+def _say_pace_first(text: Words, vocabulary: Lexicon) -> None:
+    """Put how often something is checked in front: `check every 5 min if C` as `every 5 min, check if C`."""
+    words, checks = text.words, vocabulary.roles["check"]
+    every = {phrase.split()[0] for phrase in vocabulary.roles["every"]}
+    whether = {"".join(phrase.split()[-1:]) for phrase in checks}
+    if text.distinct.isdisjoint(every):
+        return  # as nearly always
+    for at in reversed([at for at in range(1, len(words) - 3) if words[at] in every]):
+        verb = text.earlier(at)[1]
+        end = next((i for i in range(at + 2, min(at + _LONGEST_TRY, len(words))) if words[i] in whether), 0)
+        if (
+            end
+            and verb == at - 1
+            and f"{words[verb]} {words[end]}" in {plain for each in checks for plain in ways([each])}
+        ):
+            pace = words[at:end]
+            text.drop(at, end)
+            text.replace(verb, [*pace, ",", words[verb]])
 
 
 def _say_time_before_event(text: Words, vocabulary: Lexicon) -> None:
