@@ -1,0 +1,87 @@
+"""Words that are read in another place of their sentence: `check every 5 min if C` as `every 5 min, check if C`."""
+
+from __future__ import annotations
+
+from btlang.frontends.mission.tokens.each_and_any import ENDING
+from btlang.text.words import Words
+from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.pattern import ways
+from btlang.vocabulary.word_tree import find
+
+_LONGEST_PACE = 6  # words
+
+
+def say_opinion_first(text: Words, vocabulary: Lexicon) -> None:
+    """Put `I think` before what it is said of: `bring it to Bob, he's in the lab I think` asks for one thing.
+
+    So does `It should be in the lab`.
+    """
+    words, opinions, asking = text.words, vocabulary.opinions, vocabulary.asking
+    supposing, opinion = asking["supposing"], next(iter(asking["opinions"]), "").split()
+    robot = {*asking["hearing"], *asking["subject"][:1], *vocabulary.joining}
+    robot |= vocabulary.subjects if not text.distinct.isdisjoint(asking["subject"][:1]) else set()
+    for at in reversed(range(1, len(words) - 2)) if not text.distinct.isdisjoint(supposing) else ():
+        first = text.earlier(at)[1]
+        subject = words[first:at]
+        is_placed = words[at] in supposing and words[at + 1] in asking["being"] and words[at + 2] in asking["located"]
+        if is_placed and subject and robot.isdisjoint(subject):
+            text.drop(at + 1, at + 2)
+            text.replace(at, asking["asking_be"][:1])
+            text.replace(first, [*opinion, words[first]])
+    for at in reversed(range(2, len(words) - 2)) if not text.distinct.isdisjoint(opinions) else ():
+        said = find(opinions, words, at)
+        if said is None or words[said[1]][0] not in ENDING:
+            continue
+        at_end = at - (words[at - 1] == ",")
+        first = next((i + 1 for i in range(at_end - 1, text.earlier(at)[1] - 1, -1) if words[i] == ","), at_end)
+        if first < at_end:
+            opinion = words[at : said[1]]
+            text.drop(at_end, said[1])
+            text.replace(first, [*opinion, words[first]])
+
+
+def say_time_before_event(text: Words, vocabulary: Lexicon) -> None:
+    """Put the time in front of two ends: `dance until Bob comes or until 5 pm` as `until 5 pm or until Bob comes`."""
+    words, values = text.words, vocabulary.values
+    until, alternatives = vocabulary.word("until"), vocabulary.roles["or"]
+    if until not in text.distinct or text.distinct.isdisjoint(alternatives):
+        return  # as often
+    for at in reversed([at for at in range(2, len(words) - 2) if words[at] in alternatives and words[at + 1] == until]):
+        first = next((i for i in range(at - 1, text.earlier(at)[1] - 1, -1) if words[i] == until), 0)
+        time = values.time_of_day(text, at + 2)
+        if first and time is not None and values.time_of_day(text, first + 1) is None:
+            ends = [until, *words[at + 2 : time[1]], words[at], until]
+            text.drop(at, time[1])
+            text.replace(first, ends)
+
+
+def say_pace_first(text: Words, vocabulary: Lexicon) -> None:
+    """Put how often something is checked in front: `check every 5 min if C` as `every 5 min, check if C`."""
+    words, checks = text.words, vocabulary.roles["check"]
+    every = {phrase.split()[0] for phrase in vocabulary.roles["every"]}
+    whether = {"".join(phrase.split()[-1:]) for phrase in checks}
+    if text.distinct.isdisjoint(every):
+        return  # as nearly always
+    for at in reversed([at for at in range(1, len(words) - 3) if words[at] in every]):
+        verb = text.earlier(at)[1]
+        end = next((i for i in range(at + 2, min(at + _LONGEST_PACE, len(words))) if words[i] in whether), 0)
+        if (
+            end
+            and verb == at - 1
+            and f"{words[verb]} {words[end]}" in {plain for each in checks for plain in ways([each])}
+        ):
+            pace = words[at:end]
+            text.drop(at, end)
+            text.replace(verb, [*pace, ",", words[verb]])
+
+
+def drop_where_it_is(text: Words, vocabulary: Lexicon) -> None:
+    """Take out `where it is` behind what is left out of a set: `take all cups, but leave the red one where it is`."""
+    words, left, excepting = text.words, vocabulary.left_there, vocabulary.excepting
+    if text.distinct.isdisjoint(left):
+        return  # as nearly always
+    for at in reversed([at for at, word in enumerate(words) if word in left]):
+        said = find(left, words, at)
+        front = (i for i in range(text.earlier(at)[1], at - 2) if find(excepting, words, i) is not None)
+        if said is not None and words[said[1]][0] in ENDING and next(front, None) is not None:
+            text.drop(at, said[1])
