@@ -152,6 +152,7 @@ class Lexicon:
         self.opinions = tree_of((words, True) for words in self.asking["opinions"])
         self.left_there = tree_of((words, True) for words in self.asking["left_there"])
         self.excepting = tree_of((words, True) for words in ways(self.roles.get("except", ()), self.articles))
+        self.forbidding = tree_of((words, True) for words in ways(self.roles.get("never", ()), self.articles))
         self.throughout = tree_of((words, True) for words in self.asking["throughout"])
         self.in_turn = tree_of((words, True) for words in self.asking["in_turn"])
         """The words beside a list that say nothing: `in that order`."""

@@ -80,8 +80,11 @@ def drop_where_it_is(text: Words, vocabulary: Lexicon) -> None:
     words, left, excepting = text.words, vocabulary.left_there, vocabulary.excepting
     if text.distinct.isdisjoint(left):
         return  # as nearly always
+    conditional = {word for role in ("if", "while") for phrase in vocabulary.roles[role] for word in phrase.split()}
     for at in reversed([at for at, word in enumerate(words) if word in left]):
         said = find(left, words, at)
-        front = (i for i in range(text.earlier(at)[1], at - 2) if find(excepting, words, i) is not None)
-        if said is not None and words[said[1]][0] in ENDING and next(front, None) is not None:
+        first = max(text.earlier(at)[1], *(i for i in range(at) if words[i] == ","), 0)  # in the same clause
+        front = [found for i in range(first, at - 2) if (found := find(excepting, words, i)) is not None]
+        leaves = front and words[front[0][1]] not in conditional  # but not `except if`
+        if said is not None and words[said[1]][0] in ENDING and leaves:
             text.drop(at, said[1])

@@ -86,9 +86,9 @@ def _say_at_door(text: Words, vocabulary: Lexicon) -> None:
         found = find(vocabulary.outside, words, at)
         room = find(rooms, words, found[1]) if found is not None else None
         is_verb = at > 0 and (words[at - 1] in stays or words[at - 1] in vocabulary.forms_of_be)
-        is_verb = is_verb or _is_of_thing(text, at, vocabulary)
+        is_verb = is_verb or _is_of_thing(text, at, vocabulary) or _is_forbidden(text, at - 1, vocabulary)
         if found is None or room is None or is_verb or not moves.isdisjoint(words[text.earlier(at)[1] : at]):
-            continue  # `stay outside the lab`, `put the sign outside the lab`
+            continue  # `stay outside the lab`, `never drive outside the lab`, `put the sign outside the lab`
         said = set(words[found[1] : room[1]])
         doors = [vocabulary.orthography.words(name) for name in vocabulary.values.listed(DOOR)]
         doors = [door for door in doors if said.issubset(door) and len(door) == len(said) + 1]
@@ -96,6 +96,12 @@ def _say_at_door(text: Words, vocabulary: Lexicon) -> None:
             named = find(vocabulary.values.names_tree(DOOR), words, found[1])
             text.drop(at + 1, max(room[1], named[1] if named is not None else 0))  # `in front of the lab door`
             text.replace(at, [vocabulary.asking["located"][-1], *doors[0]])
+
+
+def _is_forbidden(text: Words, at: int, vocabulary: Lexicon) -> bool:
+    """Whether words that forbid something end before a word: `without driving`."""
+    said = (find(vocabulary.forbidding, text.words, i) for i in range(text.earlier(at)[1], at))
+    return any(found is not None and found[1] == at for found in said)
 
 
 def _is_of_thing(text: Words, at: int, vocabulary: Lexicon) -> bool:
