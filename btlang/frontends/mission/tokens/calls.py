@@ -115,6 +115,7 @@ class Calls(Mentions):
     def end_statement(self) -> None:
         """A round doesn't reach beyond its statement: there `them` is another one of the same things."""
         self._lists.clear()
+        self.end_otherwise()
 
     @staticmethod
     def is_set(token: Token) -> bool:

@@ -45,6 +45,7 @@ class Mentions:
         """Where somebody was named last by a command."""
         self._lists: dict[str, tuple[Token, SlotValue]] = {}
         self._alternatives: dict[str, tuple[Token, SlotValue]] = {}  # by the reference to the one that succeeds
+        self._otherwise: set[str] = set()  # the types whose latest values are those of `otherwise`, and only in it
         # in most missions nobody is spoken of by a pronoun
         self.speaks_of_people = not text.distinct.isdisjoint(pronouns_for(vocabulary.values.pronouns, PERSON))
         self._owners = not text.distinct.isdisjoint(vocabulary.values.names_tree(OWNER))
@@ -53,9 +54,12 @@ class Mentions:
         """To the value that stands for the one of several alternatives that succeeds."""
         return f"{{{free_key(kind, self._context.known or {})}}}"
 
-    def note(self, match: Match, is_alternative: bool = False) -> None:
-        """What pronouns stand for from here on: of alternatives only the run knows which one it was."""
-        before = dict(self._context.latest) if is_alternative else {}
+    def note(self, match: Match, joint: str = "") -> None:
+        """What pronouns stand for from here on: of alternatives only the run knows which one it was.
+
+        `joint` is the kind of the token before: what follows `otherwise` is known until `end_otherwise`.
+        """
+        before = dict(self._context.latest) if joint in ("or", "otherwise") else {}
         if self.speaks_of_people and match.meaning.entry is not None and match.meaning.role != "negated":
             self._note_somebody(match.meaning.entry, match)
         self._note_values(match)
@@ -63,8 +67,18 @@ class Mentions:
             self._note_counted(match.meaning.entry, match)
             self._note_held(match.meaning.entry, match)
         for kind, value in before.items():
-            if self._context.latest.get(kind, value) != value:
+            if self._context.latest.get(kind, value) == value:
+                continue
+            if joint == "otherwise":
+                self._otherwise.add(kind)
+            else:
                 del self._context.latest[kind]
+
+    def end_otherwise(self) -> None:
+        """Let pronouns stand for nothing that was spoken of last in what is done otherwise."""
+        for kind in self._otherwise:
+            self._context.latest.pop(kind, None)
+        self._otherwise.clear()
 
     def _note_somebody(self, entry: Entry, match: Match) -> None:
         """`wait until someone comes, then greet them`, `if someone is in the lab, greet them`: the nearest one."""

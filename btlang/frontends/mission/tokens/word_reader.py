@@ -67,6 +67,7 @@ _ROLES = {"if_it_works": ("if_possible", "if_works"), "in_parallel": ("in_parall
 _NOT_READ = frozenset((*SEPARATORS, INCLUDE, *NOT_ALONE))
 _CONDITIONS = frozenset(("condition", *NEGATED))
 _JOINING = ("and", "or")
+_END_OTHERWISE = (";", ")")
 _ASKING = BEFORE_CONDITIONS | {"wait_until", "wait_for", "wait_up_to", "check"}
 
 TYPE_CHECKING = False
@@ -132,6 +133,8 @@ class WordReader:
                 tokens.append(Token(MARKS[words[at]], self._text.starts[at], self._text.ends[at]))
                 if words[at] == END_OF_STATEMENT and at + 1 < last and at + 1 not in self._text.going_on:
                     self.end_statement()
+                elif words[at] in _END_OTHERWISE:
+                    self._calls.end_otherwise()
                 at += 1
             else:
                 at = self._phrase(at, last)
@@ -394,7 +397,7 @@ class WordReader:
             return end
         end = self._connect(match, role, at) if match.meaning.entry is None else match.last
         if match.values or self._calls.speaks_of_people:
-            self._calls.note(match, len(tokens) > 1 and tokens[-2].kind in ("or", "otherwise"))
+            self._calls.note(match, tokens[-2].kind if len(tokens) > 1 else "")
         return end
 
     def _read_otherwise(self, match: Match, role: str, at: int) -> int:
