@@ -6,6 +6,8 @@ from collections.abc import Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.token import IN_CONDITIONS, Called, Listed, Token, run_start, statement_start
+from btlang.frontends.mission.tokens.hearers import persons_in
+from btlang.frontends.mission.tokens.word_matches import words_of
 from btlang.text.source import Span
 from btlang.text.words import Words
 from btlang.vocabulary.antecedents import pronouns_for
@@ -19,8 +21,12 @@ _ABOUT_IT = ("until", "while", "if", "unless")
 
 
 def find_unclear_people(tokens: Sequence[Token], vocabulary: Lexicon, text: Words) -> Iterator[Diagnostic]:
-    """BT151 for `wave at Alice if you see Bob. Tell her "Bye"`, `find Alice and Bob. Tell him "Bye"`: whom?"""
+    """BT151 for `wave at Alice if you see Bob. Tell her "Bye"`, `find Alice and Bob. Tell him "Bye"`: whom?
+
+    BT038 for `go to Alice and tell her "Hi" if he is near`: he isn't Alice.
+    """
     about, asked = "", ""
+    subjects = dict[str, str]()  # by the person whom they stand for
     several: tuple[str, ...] = ()
     pronouns = {*pronouns_for(vocabulary.values.pronouns, PERSON, alone=True)}
     if text.distinct.isdisjoint(pronouns):
@@ -32,6 +38,14 @@ def find_unclear_people(tokens: Sequence[Token], vocabulary: Lexicon, text: Word
         if not said:
             continue
         span = Span(text.source, token.start, token.end)
+        words = words_of(text, token)
+        who = [*persons_in(text, words.start, words.stop, vocabulary)]
+        is_named = said.lower().split()[0] in text.words[words.start : words.stop]
+        if len(who) == 1 and not is_named and who[0] not in vocabulary.values.plural_pronouns:
+            if subjects.setdefault(said, who[0]) != who[0]:
+                names = vocabulary.values.said_names(PERSON)
+                example = next((name for name in names if name != said), said)
+                yield diagnostic("BT038", span, words=who[0], type=PERSON, example=example)
         pronoun = next((word for word in span.text.lower().split() if word in pronouns), "")
         if pronoun and len(several) > 1 and said == several[-1]:
             yield diagnostic("BT151", span, words=pronoun, one=several[0], other=said)
