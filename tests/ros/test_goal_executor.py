@@ -247,7 +247,7 @@ def test_values_as_in_a_mission(phrase: str, values: dict[str, str], port: str):
         ("Wave", "move forward", [], [], "'move forward' isn't served here: this is Wave, with the phrase 'wave"),
         ("Wave", "", ["times"], [], "1 name and 0 values are given"),
         ("GoTo", "", ["plac"], ["lab"], "GoTo has no parameter 'plac': its parameters are place"),
-        ("Nod", "", ["speed"], ["1"], "Nod has no parameter 'speed': it has no parameters"),
+        ("ShakeHead", "", ["speed"], ["1"], "ShakeHead has no parameter 'speed': it has no parameters"),
         ("GoTo", "", ["place", "place"], ["lab", "lab"], "place is given twice"),
         ("GoTo", "", ["place"], ["the labb"], "place is 'the labb', which isn't a place; similar: lab"),
         ("GoTo", "", ["place"], ["xyz"], "place is 'xyz', which isn't a place; there are "),

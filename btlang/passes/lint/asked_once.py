@@ -108,7 +108,8 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
         advice = f"All rounds are over by then. To do it in each round, write: {each}"
         yield _with_reading(node, words, advice, whole, each)
         return
-    if isinstance(timed, ast.Repeat | ast.Apart) and timed.rounds != "-1" and _visits(timed.body):
+    is_block = timed is not None and "\n" in timed.span.text  # its indentation shows what is done in each round
+    if isinstance(timed, ast.Repeat | ast.Apart) and timed.rounds != "-1" and _visits(timed.body) and not is_block:
         yield _after_rounds(node, timed, words, vocabulary)
         return
     if isinstance(timed, ast.WaitTime) and not _SENTENCE_END.search(
