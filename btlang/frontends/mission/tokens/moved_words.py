@@ -57,11 +57,10 @@ def say_time_before_event(text: Words, vocabulary: Lexicon) -> None:
 
 def say_pace_first(text: Words, vocabulary: Lexicon) -> None:
     """Put how often something is checked in front: `check every 5 min if C` as `every 5 min, check if C`."""
-    words, checks = text.words, vocabulary.roles["check"]
-    every = {phrase.split()[0] for phrase in vocabulary.roles["every"]}
-    whether = {"".join(phrase.split()[-1:]) for phrase in checks}
+    words, checks, every = text.words, vocabulary.roles["check"], vocabulary.firsts["every"]
     if text.distinct.isdisjoint(every):
         return  # as nearly always
+    whether = {"".join(phrase.split()[-1:]) for phrase in checks}
     for at in reversed([at for at in range(1, len(words) - 3) if words[at] in every]):
         verb = text.earlier(at)[1]
         end = next((i for i in range(at + 2, min(at + _LONGEST_PACE, len(words))) if words[i] in whether), 0)

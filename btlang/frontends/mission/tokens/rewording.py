@@ -235,9 +235,9 @@ def _say_as_soon_as(text: Words, vocabulary: Lexicon) -> None:
 
 def _drop_again(text: Words, vocabulary: Lexicon) -> None:
     """Take out `again` between times before what is done: `at 9 am and again at 3 pm, wave`."""
-    words, again, joints = text.words, {*vocabulary.roles["again"]}, {",", *vocabulary.roles["and"]}
-    if text.distinct.isdisjoint(again):
+    if text.distinct.isdisjoint(vocabulary.firsts["again"]):
         return  # as nearly always
+    words, again, joints = text.words, {*vocabulary.roles["again"]}, {",", *vocabulary.roles["and"]}
     times = {phrase.split()[0] for phrase in vocabulary.roles["at"]}
     fronts = {*times, *(phrase.split()[0] for phrase in (*vocabulary.roles["on_days"], *vocabulary.roles["every_day"]))}
     for at in reversed([at for at in range(2, len(words) - 2) if words[at] in again]):

@@ -25,6 +25,8 @@ def find_unclear_people(tokens: Sequence[Token], vocabulary: Lexicon, text: Word
 
     BT038 for `go to Alice and tell her "Hi" if he is near`: he isn't Alice.
     """
+    if text.distinct.isdisjoint(vocabulary.values.pronouns):
+        return  # as often
     about, asked = "", ""
     subjects = dict[str, str]()  # by the person whom they stand for
     several: tuple[str, ...] = ()
