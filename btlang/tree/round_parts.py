@@ -6,22 +6,21 @@ what is taken behind it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from btlang.tree import ast
 from btlang.tree.visit import fold
+from btlang.vocabulary.capabilities import TRAVELS
 from btlang.vocabulary.references import ALL, Choice, choice_of
 from btlang.vocabulary.value_type import PLACE
-
-TRAVELS = "navigation"
 
 
 def gathered(root: ast.Ast) -> ast.Ast:
     """Return a mission in which the chains have as parts what is done in one round, or before it."""
     if any(isinstance(node, ast.Remember) for node in ast.parents_first(root)):
-        root = fold(root, ast.parts, _with_what_says_it)
+        root = fold(root, ast.parts, lambda node, done: _joined(node, done, _says_it))
     root = fold(root, ast.parts, _with_tours_apart)
-    return fold(root, ast.parts, _with_both_cases)
+    return fold(root, ast.parts, lambda node, done: _joined(node, done, _is_other_case))
 
 
 def set_of(node: ast.Ast) -> Choice | None:
@@ -35,19 +34,24 @@ def set_of(node: ast.Ast) -> Choice | None:
     return None
 
 
-def _with_what_says_it(node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
-    """Keep `A and say the battery` together: the command that says a value stays with the one that measures it."""
+def _joined(node: ast.Ast, done: Sequence[ast.Ast], goes_on: Callable[[ast.Chain, ast.Ast], bool]) -> ast.Ast:
+    """Return a sequence in which what goes on with the commands before it, joined by `and`, is one of these."""
     if not isinstance(node, ast.Chain) or node.operator != "sequence":
         return ast.with_parts(node, done)
     made: list[ast.Ast] = []
     for item in done:
         before = made[-1] if made else None
-        last = before.items[-1] if isinstance(before, ast.Chain) and before.operator == "and" else None
-        if isinstance(before, ast.Chain) and isinstance(last, ast.Remember) and last.span.start == item.span.start:
-            made[-1] = ast.Chain("and", (*before.items, item), before.bracketed, before.span)
+        if isinstance(before, ast.Chain) and before.operator == "and" and goes_on(before, item):
+            made[-1] = before.replace(items=(*before.items, item))
         else:
             made.append(item)
-    return made[0] if len(made) == 1 else ast.Chain("sequence", tuple(made), node.bracketed, node.span)
+    return made[0] if len(made) == 1 else node.replace(items=tuple(made))
+
+
+def _says_it(before: ast.Chain, item: ast.Ast) -> bool:
+    """Whether a command says the value that is measured before it: `A and say the battery`."""
+    last = before.items[-1]
+    return isinstance(last, ast.Remember) and last.span.start == item.span.start
 
 
 def _with_tours_apart(node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
@@ -67,23 +71,14 @@ def _with_tours_apart(node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
     return ast.with_parts(node, done) if len(made) == len(done) else node.replace(items=tuple(made))
 
 
-def _with_both_cases(node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
-    """Keep both cases of a condition in one round: `in each room, if nobody is there, wave; if somebody is, nod`."""
-    if not isinstance(node, ast.Chain) or node.operator != "sequence":
-        return ast.with_parts(node, done)
-    made: list[ast.Ast] = []
-    for item in done:
-        before = made[-1] if made else None
-        goes_on = isinstance(before, ast.Chain) and before.operator == "and" and _is_tour(before.items[0])
-        if goes_on and isinstance(before, ast.Chain) and _is_other_case(before.items[-1], item):
-            made[-1] = ast.Chain("and", (*before.items, item), before.bracketed, before.span)
-        else:
-            made.append(item)
-    return made[0] if len(made) == 1 else node.replace(items=tuple(made))
+def _is_other_case(before: ast.Chain, other: ast.Ast) -> bool:
+    """Whether a condition of a tour is denied next: `in each room, if nobody is there, wave; if somebody is, nod`.
 
-
-def _is_other_case(case: ast.Ast, other: ast.Ast) -> bool:
-    """Whether a condition is asked where another one is denied, and neither has an alternative."""
+    Neither case may have an alternative.
+    """
+    case = before.items[-1]
+    if not _is_tour(before.items[0]):
+        return False
     if not (isinstance(case, ast.If) and isinstance(other, ast.If)) or case.otherwise or other.otherwise:
         return False
     (asked, is_so), (asked_then, is_so_then) = map(_case, (case, other))

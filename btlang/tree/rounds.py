@@ -14,9 +14,10 @@ from btlang.text.source import Source
 from btlang.text.words import split
 from btlang.tree import ast
 from btlang.tree.answers import ABOUT_ANSWERS, ASK, asks
-from btlang.tree.round_parts import TRAVELS, gathered, is_journey, set_of
+from btlang.tree.round_parts import gathered, is_journey, set_of
 from btlang.tree.sums import COMPARED, COUNTING
 from btlang.tree.visit import fold
+from btlang.vocabulary.capabilities import TRAVELS
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import ALL, Choice, choice_of
 from btlang.vocabulary.trie import longest

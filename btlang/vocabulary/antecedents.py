@@ -117,21 +117,25 @@ class Antecedents:
 
         Of what is chosen in rounds it isn't known which it is: the noun may be that of any.
         """
-        article = text.articles.get(at)
-        is_definite = article is not None and text.source.text[slice(*article)].lower() == self._definite
-        return is_definite and (latest[:1] == "{" or text.words[at] == self._likenesses.kind_of(PLACE, latest))
+        return self._is_definite(text, at) and (
+            latest[:1] == "{" or text.words[at] == self._likenesses.kind_of(PLACE, latest)
+        )
 
     def of_its_kind(
         self, context: Reading, kind: str, text: Words, at: int, chosen: tuple[str, int]
     ) -> tuple[str, int]:
         """`pick up the red cup. Put the cup on the table`: the one that was spoken of, not another one of its kind."""
-        noun, choice, article = find(self._names("kind"), text.words, at), choice_of(chosen[0]), text.articles.get(at)
+        noun, choice = find(self._names("kind"), text.words, at), choice_of(chosen[0])
         if noun is None or noun[1] != chosen[1] or choice is None or choice.parts != (("kind", noun[0]),):
             return chosen
         spoken = context.of_kind.get(noun[0], "")
-        is_definite = article is not None and text.source.text[slice(*article)].lower() == self._definite
         is_known = spoken[:1] != "{" or spoken == context.latest.get(kind, "")
-        return (spoken, chosen[1]) if spoken and is_definite and is_known else chosen
+        return (spoken, chosen[1]) if spoken and is_known and self._is_definite(text, at) else chosen
+
+    def _is_definite(self, text: Words, at: int) -> bool:
+        """Whether the article of what was spoken of stands before a word."""
+        article = text.articles.get(at)
+        return article is not None and text.source.text[slice(*article)].lower() == self._definite
 
     def another(
         self, context: Reading, kind: str, text: Words, end: int, descriptions: Modifiers

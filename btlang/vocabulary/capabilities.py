@@ -19,11 +19,11 @@ class Capability(Record):
 
 
 _ARMS = ("left arm", "right arm")
-HOLDING = "holding"
+HOLDING, TRAVELS = "holding", "navigation"
 CAPABILITIES = {
     "base": Capability("base", ("base",)),
     "pose": Capability("base"),
-    "navigation": Capability("navigation", ("base",)),
+    TRAVELS: Capability("navigation", ("base",)),
     "docking": Capability("dock", ("base",)),
     "docked": Capability("dock"),
     "battery": Capability("battery"),

@@ -12,6 +12,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.text.source import Source, Span
 from btlang.text.spelling import nearest
 from btlang.text.words import Orthography, split
+from btlang.vocabulary.antecedents import pronouns_for
 from btlang.vocabulary.cache import recent
 from btlang.vocabulary.entry import COMPARISONS, About, Entry, Meaning, Role, SlotSpec
 from btlang.vocabulary.language_tables import (
@@ -30,7 +31,7 @@ from btlang.vocabulary.pattern import Form, PatternError, Slot, forms, replaced,
 from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.references import HOME
 from btlang.vocabulary.trie import TrieNode, add, collisions, copied, unshare
-from btlang.vocabulary.value_type import PLACE, WORLD, ZONE, ValueType
+from btlang.vocabulary.value_type import PERSON, PLACE, WORLD, ZONE, ValueType
 from btlang.vocabulary.values import Values
 from btlang.vocabulary.verbs import Beginnings, Frame, beginnings_of, parts_of, phrases_of
 from btlang.vocabulary.word_tree import NO_WORDS, VERBS, WordTree, tree_of, words_of
@@ -151,7 +152,6 @@ class Lexicon:
         self.in_all = tree_of((words, True) for words in self.asking["in_all"])
         self.opinions = tree_of((words, True) for words in self.asking["opinions"])
         self.left_there = tree_of((words, True) for words in self.asking["left_there"])
-        self.excepting = tree_of((words, True) for words in ways(self.roles.get("except", ()), self.articles))
         self.forbidding = tree_of((words, True) for words in ways(self.roles.get("never", ()), self.articles))
         self.throughout = tree_of((words, True) for words in self.asking["throughout"])
         self.in_turn = tree_of((words, True) for words in self.asking["in_turn"])
@@ -228,6 +228,8 @@ class Lexicon:
         """Words that are read as others: `whoever says` as `everyone who says`."""
         self.persons: dict[str, list[str]] = language["persons"]
         """The other words for the person for whom a word stands: of `he`, `him` and `his`."""
+        self.pronouns_for_people = frozenset(pronouns_for(self.values.pronouns, PERSON, alone=True))
+        """The pronouns that stand for nothing else: `her`."""
         self.of_hearer: dict[str, str] = language["of_hearer"]
         """The verbs of what is said of somebody, and to them: `is`, `are`."""
         self._openings: dict[tuple[tuple[str, ...], ...], frozenset[str]] = {}

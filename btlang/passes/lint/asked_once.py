@@ -14,8 +14,9 @@ from btlang.passes.compilation import Compilation
 from btlang.text.source import Span
 from btlang.tree import ast
 from btlang.tree.answers import ABOUT_ANSWERS
+from btlang.tree.round_parts import is_journey
 from btlang.vocabulary.antecedents import says_there
-from btlang.vocabulary.capabilities import MOVES
+from btlang.vocabulary.capabilities import MOVES, TRAVELS
 from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import ALL, choice_of
@@ -147,7 +148,7 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
 
 def _visits(body: ast.Ast) -> bool:
     """Whether rounds lead somewhere, where something may have changed each time."""
-    return any(isinstance(each, ast.Phrase) and "navigation" in each.entry.needs for each in ast.parents_first(body))
+    return any(map(is_journey, ast.parents_first(body)))
 
 
 def _after_rounds(node: ast.If, rounds: ast.Repeat | ast.Apart, words: str, vocabulary: Lexicon) -> Diagnostic:
@@ -248,7 +249,7 @@ def _is_about_driving(asked: ast.Phrase, node: ast.If, journeys: Sequence[ast.Ph
     """Return whether a condition is about what happens on journeys, and not at their end."""
     is_watched = asked.entry.id in _WHILE_DRIVING or (asked is not node.condition and asked.entry.id == _FREE)
     is_watched = is_watched or (_is_low(asked) and any(map(_drives, ast.parents_first(node.body))))
-    is_driving = is_watched and any("navigation" in each.entry.needs for each in journeys)
+    is_driving = is_watched and any(TRAVELS in each.entry.needs for each in journeys)
     return is_driving or asked.entry.id in ON_THE_WAY
 
 

@@ -28,7 +28,7 @@ from btlang.text.time_of_day import seconds_of
 from btlang.tree import ast
 from btlang.tree.answers import ABOUT_ANSWERS, ASK, asking_verbs, asks
 from btlang.tree.sums import COMPARED, COUNTING, asks_for_number
-from btlang.vocabulary.capabilities import MOVES
+from btlang.vocabulary.capabilities import MOVES, TRAVELS
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import choice_of
 from btlang.vocabulary.value_type import OBJECT, PERSON
@@ -228,7 +228,7 @@ def find_distant_questions(compilation: Compilation) -> Iterator[Diagnostic]:
         parts = dict(choice.parts) if choice is not None else {}
         there = next((parts[relation] for relation in ("at", "inside") if relation in parts), "")
         goal = there or (named[0] if named and named[0] in vocabulary.values.listed(PERSON) else "")
-        drives = MOVES in phrase.entry.resources or "navigation" in phrase.entry.needs
+        drives = MOVES in phrase.entry.resources or TRAVELS in phrase.entry.needs
         stays = phrase.entry.sort == "action" and not drives
         is_far = there != "" and (stays or (phrase.entry.id in _SIGHTS and id(phrase) in sights))
         if (phrase.entry.id == ASK or is_far) and goal and goal[:1] != "{" and goal != met:

@@ -12,7 +12,6 @@ from btlang.frontends.mission.tokens.silent_words import BEGINS
 from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of
 from btlang.text.words import Words
 from btlang.tree.answers import ASK
-from btlang.vocabulary.antecedents import pronouns_for
 from btlang.vocabulary.entry import RECIPIENT, Entry
 from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE, TEXT, ZONE
@@ -255,7 +254,7 @@ class AddressedTexts(Hearers):
         """Ask the one whom a question is about where nobody is named: `go to Bob and ask if he needs help`."""
         value, latest = command.value, self._context.latest.get(PERSON, "")
         slot = next((slot.name for slot in entry.slots if slot.type == PERSON), "")
-        pronouns = pronouns_for(self._vocabulary.values.pronouns, PERSON, alone=True)
+        pronouns = self._vocabulary.pronouns_for_people
         if not isinstance(value, Called) or not slot or not latest or self._text.words[at] not in pronouns:
             return
         if slot not in dict(value.arguments):

@@ -23,7 +23,8 @@ from btlang.vocabulary.value_type import DOOR, KINDS, OBJECT, PERSON, PLACE, TEX
 from btlang.vocabulary.word_tree import find
 
 _SEVERAL = {"PeopleAt": PERSON, "ObjectsAt": OBJECT}  # conditions about so many of them
-_HOLDS = "Holding"  # the condition that holds once a thing is taken up
+HOLDS = "Holding"
+"""The condition that holds once a thing is taken up."""
 _MEETS = "SomeoneNear"  # the condition that holds once a command for nobody in particular is done
 _UNKNOWN = "{"
 ODD = ("", "{", "(")
@@ -117,7 +118,7 @@ class Mentions:
         """Keep what the robot holds apart from a thing that it only goes to, or looks at."""
         things = [value for value in match.values if value.type == OBJECT]
         latest = self._context.latest.get(OBJECT, "")
-        if _HOLDS in entry.achieves:
+        if HOLDS in entry.achieves:
             self._held, self._passed = latest if things else "", ""
         elif HOLDING in entry.needs:
             self._held, self._passed = "", ""
@@ -130,7 +131,7 @@ class Mentions:
     def _with_held(self, match: Match) -> Match:
         """`pick up the cup, go to the book and put it down`: the cup. BT150 where it isn't clear."""
         entry = match.meaning.entry
-        if entry is None or not self._passed or HOLDING not in entry.needs or _HOLDS in entry.achieves:
+        if entry is None or not self._passed or HOLDING not in entry.needs or HOLDS in entry.achieves:
             return match
         pronouns, values = self._vocabulary.values.pronoun_words, list[SlotValue]()
         for value in match.values:

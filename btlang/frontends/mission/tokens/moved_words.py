@@ -17,10 +17,12 @@ def say_opinion_first(text: Words, vocabulary: Lexicon) -> None:
     So does `It should be in the lab`.
     """
     words, opinions, asking = text.words, vocabulary.opinions, vocabulary.asking
+    if text.distinct.isdisjoint((*asking["supposing"], *opinions)):
+        return  # as nearly always
     supposing, opinion = asking["supposing"], next(iter(asking["opinions"]), "").split()
     robot = {*asking["hearing"], *asking["subject"][:1], *vocabulary.joining}
     robot |= vocabulary.subjects if not text.distinct.isdisjoint(asking["subject"][:1]) else set()
-    for at in reversed(range(1, len(words) - 2)) if not text.distinct.isdisjoint(supposing) else ():
+    for at in reversed(range(1, len(words) - 2)):
         first = text.earlier(at)[1]
         subject = words[first:at]
         is_placed = words[at] in supposing and words[at + 1] in asking["being"] and words[at + 2] in asking["located"]
@@ -28,7 +30,7 @@ def say_opinion_first(text: Words, vocabulary: Lexicon) -> None:
             text.drop(at + 1, at + 2)
             text.replace(at, asking["asking_be"][:1])
             text.replace(first, [*opinion, words[first]])
-    for at in reversed(range(2, len(words) - 2)) if not text.distinct.isdisjoint(opinions) else ():
+    for at in reversed(range(2, len(words) - 2)):
         said = find(opinions, words, at)
         if said is None or words[said[1]][0] not in ENDING:
             continue
@@ -57,18 +59,15 @@ def say_time_before_event(text: Words, vocabulary: Lexicon) -> None:
 
 def say_pace_first(text: Words, vocabulary: Lexicon) -> None:
     """Put how often something is checked in front: `check every 5 min if C` as `every 5 min, check if C`."""
-    words, checks, every = text.words, vocabulary.roles["check"], vocabulary.firsts["every"]
+    words, every = text.words, vocabulary.firsts["every"]
     if text.distinct.isdisjoint(every):
         return  # as nearly always
-    whether = {"".join(phrase.split()[-1:]) for phrase in checks}
+    checks = {*ways(vocabulary.roles["check"])}
+    whether = {way.split()[-1] for way in checks}
     for at in reversed([at for at in range(1, len(words) - 3) if words[at] in every]):
         verb = text.earlier(at)[1]
         end = next((i for i in range(at + 2, min(at + _LONGEST_PACE, len(words))) if words[i] in whether), 0)
-        if (
-            end
-            and verb == at - 1
-            and f"{words[verb]} {words[end]}" in {plain for each in checks for plain in ways([each])}
-        ):
+        if end and verb == at - 1 and f"{words[verb]} {words[end]}" in checks:
             pace = words[at:end]
             text.drop(at, end)
             text.replace(verb, [*pace, ",", words[verb]])
@@ -76,14 +75,13 @@ def say_pace_first(text: Words, vocabulary: Lexicon) -> None:
 
 def drop_where_it_is(text: Words, vocabulary: Lexicon) -> None:
     """Take out `where it is` behind what is left out of a set: `take all cups, but leave the red one where it is`."""
-    words, left, excepting = text.words, vocabulary.left_there, vocabulary.excepting
+    words, left = text.words, vocabulary.left_there
     if text.distinct.isdisjoint(left):
         return  # as nearly always
-    conditional = {word for role in ("if", "while") for phrase in vocabulary.roles[role] for word in phrase.split()}
     for at in reversed([at for at, word in enumerate(words) if word in left]):
         said = find(left, words, at)
         first = max(text.earlier(at)[1], *(i for i in range(at) if words[i] == ","), 0)  # in the same clause
-        front = [found for i in range(first, at - 2) if (found := find(excepting, words, i)) is not None]
-        leaves = front and words[front[0][1]] not in conditional  # but not `except if`
+        excepted = next(filter(None, (vocabulary.values.exception(text, i) for i in range(first, at - 2))), 0)
+        leaves = excepted and words[excepted] not in vocabulary.before_conditions  # but not `except if`
         if said is not None and words[said[1]][0] in ENDING and leaves:
             text.drop(at, said[1])

@@ -17,12 +17,12 @@ from btlang.frontends.mission.token import (
 )
 from btlang.frontends.mission.tokens.ended_rules import GO, journey_to
 from btlang.frontends.mission.tokens.settling import STAYS
-from btlang.frontends.mission.tokens.silent_words import TRAVELS
 from btlang.frontends.mission.tokens.word_matches import words_of
 from btlang.support.record import Record
 from btlang.text.source import Source, Span
 from btlang.text.words import Words
 from btlang.vocabulary.antecedents import says_there
+from btlang.vocabulary.capabilities import TRAVELS
 from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import ALL, COUNT, NAMES, RELATIONS, Choice, Parts, choice_of

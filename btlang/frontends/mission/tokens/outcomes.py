@@ -21,6 +21,7 @@ from btlang.frontends.mission.token import (
 from btlang.frontends.mission.tokens.going_on import BRANCHES
 from btlang.frontends.mission.tokens.journey_words import SEES
 from btlang.frontends.mission.tokens.limits import Limits
+from btlang.frontends.mission.tokens.mentions import HOLDS
 from btlang.frontends.mission.tokens.sentence_reader import may_fail, searches
 from btlang.frontends.mission.tokens.settling import (
     FAILS,
@@ -49,7 +50,7 @@ from btlang.vocabulary.word_tree import find
 
 _ASKING = frozenset(("if", "as_soon_as", "once"))
 _DENIED = (("not", "condition"), ("unless", "condition"))
-_HOLDS, _WHERE, _DONE = "Holding", ("PersonIsAt", "ObjectIsAt"), ("command", "name")
+_WHERE, _DONE = ("PersonIsAt", "ObjectIsAt"), ("command", "name")
 
 
 class Outcomes(Limits):
@@ -394,6 +395,6 @@ class Outcomes(Limits):
 def _has_it(search: Token, asked: Token) -> bool:
     """`find the ball. Once you have it, A`: whether what was looked for is asked for as if it was held then."""
     said, value = asked.value, search.value
-    if not isinstance(said, Called) or said.entry.id != _HOLDS or not isinstance(value, Called | Listed):
+    if not isinstance(said, Called) or said.entry.id != HOLDS or not isinstance(value, Called | Listed):
         return False
     return {text for _, text in said.arguments} <= named_by(value)

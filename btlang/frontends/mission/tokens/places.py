@@ -23,8 +23,9 @@ from btlang.frontends.mission.token import (
 )
 from btlang.frontends.mission.tokens.repeated_statements import ELSEWHERE
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, leads_to
-from btlang.frontends.mission.tokens.silent_words import TRAVELS, begins
+from btlang.frontends.mission.tokens.silent_words import begins
 from btlang.text.source import Span
+from btlang.vocabulary.capabilities import TRAVELS
 from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.references import ALL, NAMES, choice_of
 from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE

@@ -8,6 +8,7 @@ from itertools import pairwise
 from btlang.frontends.mission.token import JOINTS, LINES, STATEMENT_ENDS, Called, Token, constraint_of, statement_start
 from btlang.frontends.mission.tokens.settling import STAYS, first_word
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
+from btlang.vocabulary.capabilities import TRAVELS
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import ReadingContext
@@ -15,7 +16,6 @@ from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import PERSON, PLACE
 from btlang.vocabulary.word_tree import find
 
-TRAVELS = "navigation"
 """What a command needs that drives by itself: it takes a place in its own way, or none."""
 MARKS = {",": "comma", ";": "semi", ":": "colon", "(": "open", ")": "close"}
 """The raw kinds of marks."""

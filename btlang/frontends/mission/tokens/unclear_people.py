@@ -10,7 +10,6 @@ from btlang.frontends.mission.tokens.hearers import persons_in
 from btlang.frontends.mission.tokens.word_matches import words_of
 from btlang.text.source import Span
 from btlang.text.words import Words
-from btlang.vocabulary.antecedents import pronouns_for
 from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import choice_of
@@ -25,14 +24,12 @@ def find_unclear_people(tokens: Sequence[Token], vocabulary: Lexicon, text: Word
 
     BT038 for `go to Alice and tell her "Hi" if he is near`: he isn't Alice.
     """
-    if text.distinct.isdisjoint(vocabulary.values.pronouns):
+    pronouns = vocabulary.pronouns_for_people
+    if text.distinct.isdisjoint(pronouns):
         return  # as often
     about, asked = "", ""
     subjects = dict[str, str]()  # by the person whom they stand for
     several: tuple[str, ...] = ()
-    pronouns = {*pronouns_for(vocabulary.values.pronouns, PERSON, alone=True)}
-    if text.distinct.isdisjoint(pronouns):
-        return
     for at, token in enumerate(tokens):
         said = _person_of(token.value)
         if isinstance(token.value, Listed):
