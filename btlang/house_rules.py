@@ -65,6 +65,11 @@ class HouseRules:
         return inner
 
     @property
+    def words(self) -> list[str]:
+        """The words of each rule as they were written, in a line."""
+        return ["" if rule.span is None else one_line(" ".join(rule.span.text.split())) for rule in self.rules]
+
+    @property
     def reactions(self) -> list[str]:
         """The paths of what the rules do, in the tree of a mission under them."""
         return ["/" + "2/" * depth + "1" for depth in range(len(self.rules))]

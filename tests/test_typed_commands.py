@@ -55,16 +55,20 @@ def test_a_file_wins_over_a_mission_of_the_same_words(capsys: pytest.CaptureFixt
         ("add wave", "btc: there's no verb or file 'add'\nDid you mean: btc task add wave\n"),
         ("hello", "btc: there's no verb or file 'hello'\nDid you mean: btc run hello\n"),
         ("patrol --watch", "btc: there's no verb or file 'patrol'\nDid you mean: btc run patrol --watch\n"),
-        ("list", "btc: there's no verb or file 'list'\nDid you mean: btc task list\n"),
+        ("list", "btc: there's no verb or file 'list'\nDid you mean: btc robot list, btc task list, btc components list or btc user list\n"),
         ("worlds", "btc: there's no verb or file 'worlds'\nDid you mean: btc world\n"),
         ("missions", "btc: there's no verb or file 'missions'\nDid you mean: btc examples\n"),
         ("simulate tea.txt", "btc: there's no verb or file 'simulate'\nDid you mean: btc run tea.txt\n"),
         ("start", "btc: there's no verb or file 'start'\nDid you mean: btc robot up\n"),
+        ("start robot", "btc: there's no verb or file 'start'\nDid you mean: btc robot up\n"),
+        ("task watch 1", "btc task: there's no act 'watch'\nDid you mean: btc watch\n"),
+        ("robot rules", "btc robot: there's no act 'rules'\nDid you mean: btc robot status\n"),
         ("gesture", "btc gesture: say what to do: play, check, picture, record\nRun 'btc help gesture' for help.\n"),
         ("fly x", "btc: there's no verb or file 'fly'\nRun 'btc help' for help.\n"),
         ("--world x.toml", "btc: unexpected option '--world'\nA verb comes first: btc VERB --world x.toml\n"),
-        ("help rnu", "btc: there's no verb 'rnu'\nDid you mean: btc help run\n"),
-        ("help wave", "btc: there's no verb 'wave'\nRun 'btc help' for help.\n"),
+        ("help rnu", "btc: there's no verb 'rnu'\nDid you mean: btc help run\n"
+         "Words of missions: btc words rnu\n"),
+        ("help wave", "btc: there's no verb 'wave'\nWords of missions: btc words wave\n"),
         ("run --sped max -c wave", "btc run: there's no option '--sped'\nDid you mean: --speed\n"),
         ("run --verbose tea.txt", "btc run: there's no option '--verbose'\nRun 'btc help run' for help.\n"),
         ("tea.txt --xyz", "btc run: there's no option '--xyz'\nRun 'btc help run' for help.\n"),
@@ -98,6 +102,32 @@ def test_stop_alone_is_refused_while_a_robot_is_up(
     assert out == ""
     assert "stops a simulation, not the robot that is up\nTo stop the robot that is up: btc robot stop\n" in err
     assert typed("go to the lab, then stop", *RUN) == 0
+
+
+def test_release_is_refused_while_a_robot_is_up(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(client, "names_up", lambda: ["museum"])
+    assert typed("release") == 2
+    assert capsys.readouterr().err == (
+        "btc: 'release' as a mission opens the gripper in a simulation\n"
+        "To let the robot that is up move again: btc robot release\n"
+    )
+
+
+@pytest.mark.parametrize("words", [["round", "every", "day", "at", "17:30"], ["every day at 17:30", "round"]])
+def test_a_rule_among_the_words_of_a_schedule_is_shown_in_its_option(
+    words: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert typed("task", "schedule", *words) == 2
+    assert 'btc task schedule "round" --every "every day at 17:30"' in capsys.readouterr().err
+
+
+def test_names_that_are_nearly_those_of_examples(capsys: pytest.CaptureFixture[str]) -> None:
+    for name, said in (("gretter", "Examples with a similar name: greeter\n"),
+                       ("rover", "To copy it: btc examples --copy FOLDER rover\n")):  # fmt: skip
+        assert typed("run", name) == 2
+        assert said in capsys.readouterr().err
 
 
 def test_no_word_stands_for_two_acts_or_verbs() -> None:

@@ -6,10 +6,12 @@ import os
 import re
 import textwrap
 from collections.abc import Iterable, Sequence
+from functools import partial
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.diagnostics.files import unwritable
 from btlang.support.record import Record
+from btlang.support.test_files import ENDING
 from btlang.text.source import Source, Span
 from btlang.vocabulary.shipped import shipped
 
@@ -59,26 +61,31 @@ def find_examples(names: Iterable[str]) -> list[Example]:
     return [known[name] for name in dict.fromkeys(wanted)]
 
 
-def path_of(name: str) -> str:
-    """Return the file of a shipped mission, "" where none has this name."""
-    path = shipped("examples", f"{name}.txt")
+def path_of(name: str, test: bool = False) -> str:
+    """Return the file of a shipped mission, or that of its tests; "" where none has this name."""
+    path = shipped("examples", *(("tests", f"{name}{ENDING}") if test else (f"{name}.txt",)))
     return path if os.path.isfile(path) else ""
+
+
+def describe_near(name: str) -> str:
+    """Say what there is in place of a mission of this name: a folder of missions, or a name like it; "" for nothing."""
+    if os.path.isfile(shipped("examples", name, _README)):
+        return f"It is a robot with several missions. To copy it: btc examples --copy FOLDER {name}"
+    near = _nearest(name, [example.name for example in examples()])
+    return f"Examples with a similar name: {near}" if near else ""
 
 
 def list_examples(width: int = 80) -> list[str]:
     """Return a line for each mission with what it does; then the folders."""
-    listed = all_examples()
+    missions, listed = examples(), all_examples()
     column = max(len(example.name) for example in listed) + 4
-    lines = []
-    for example in listed:
-        about = example.about.removesuffix(":")
-        if example.file.endswith(_README):
-            about = f"a folder with its robot: {about}"
-        lines.append(f"  {example.name:{column - 2}}{textwrap.shorten(about, width - column, placeholder=' ...')}")
+    shorten = partial(textwrap.shorten, width=width - column, placeholder=" ...")
+    lines = [f"  {each.name:{column - 2}}{shorten(each.about.removesuffix(':'))}" for each in listed]
     return [
-        "Missions that ship:", *lines, "",
-        "To run one:     btc run NAME", "To read one:    btc examples NAME",
-        "To copy them:   btc examples --copy FOLDER [NAME ...]",
+        "Missions that ship:", *lines[: len(missions)], "",
+        "Folders with a robot, its missions and its rules:", *lines[len(missions) :], "",
+        "To run a mission:  btc run NAME", "To test it:        btc test NAME", "To read it:        btc examples NAME",
+        "To copy any:       btc examples --copy FOLDER [NAME ...]",
     ]  # fmt: skip
 
 
@@ -155,7 +162,11 @@ def _same(path: str, data: bytes) -> bool:
 
 
 def _unknown(name: str, known: Iterable[str]) -> Diagnostic:
+    near = _nearest(name, known)
+    return diagnostic("BT008", Span(Source("", name), 0, 0), name=name, help=f"Similar: {near}" if near else "")
+
+
+def _nearest(name: str, known: Iterable[str]) -> str:
     from btlang.text.spelling import nearest
 
-    near = ", ".join(nearest(name.lower(), known))
-    return diagnostic("BT008", Span(Source("", name), 0, 0), name=name, help=f"Similar: {near}" if near else "")
+    return ", ".join(nearest(name.lower(), known))

@@ -103,8 +103,17 @@ def _advice_on_world(error: MissionError, source: Source, options: argparse.Name
 
 def _read_file(options: argparse.Namespace) -> Source:
     """Read the file, or the example of this name. The error may say how to give a mission as text."""
-    with hint_at_text(options.file, options.verb):
-        return read_source(_example(options.file) or options.file, options.include_root)
+    name = options.file
+    with hint_at_text(name, options.verb):
+        try:
+            return read_source(_example(name) or name, options.include_root)
+        except MissionError as error:
+            if not name.isidentifier() or os.path.lexists(name) or reads_as_mission(name):
+                raise
+            from btlang.cli.examples import describe_near
+
+            advice = describe_near(name)
+            raise error.advising(advice) if advice else error from None
 
 
 def _example(name: str) -> str:

@@ -13,6 +13,7 @@ from itertools import takewhile
 from btlang.cli.options import OneOf, Option, Verb
 from btlang.cli.verbs import VERBS
 from btlang.frontends.mission.reader import DEFAULT_PARSER
+from btlang.text.formatting import joined
 from btlang.text.output import WIDEST, columns, show
 from btlang.vocabulary.shipped import ENGLISH
 
@@ -126,8 +127,9 @@ def print_help(options: argparse.Namespace) -> int:
     elif verb in VERBS:
         verb_parser(VERBS[verb]).print_help()
     else:
-        near = _near_verbs(verb)
-        _main_parser().refuse(f"there's no verb '{verb}'", f"Did you mean: btc help {near[0]}" if near else "")
+        near, said = _near_verbs(verb), f"Words of missions: btc words {shlex.quote(verb)}"
+        hint = f"Did you mean: btc help {near[0]}" if near else ""
+        _main_parser().refuse(f"there's no verb '{verb}'", "\n".join(filter(None, (hint, said))))
     return 0
 
 
@@ -167,7 +169,8 @@ def _near_acts(verb: Verb, text: str) -> list[str]:
     word = text.lower()
     found = [verb.name + " " + name for name, each in verb.acts.items() if word == name or word in each.also]
     found += [f"{verb.name} {name}" for name in respellings(word, verb.acts) if name in verb.acts]
-    return found + [f"{other.name} {word}" for other in VERBS.values() if word in other.acts and other is not verb]
+    found += [f"{other.name} {word}" for other in VERBS.values() if word in other.acts and other is not verb]
+    return found + [word] * (word in VERBS)  # `btc task watch 1`
 
 
 def _settings(option: Option) -> dict[str, Any]:
@@ -209,23 +212,33 @@ def _with_verb(words: list[str]) -> list[str]:
         _main_parser().refuse(f"unexpected option '{first}'", f"A verb comes first: btc VERB {shlex.join(words)}")
     if is_alone and (looks_like_path(first) or not near or reads_as_mission(first)):
         return ["run", *([] if looks_like_path(first) else ["-c"]), *words]
-    hint = f"Did you mean: btc {shlex.join((*near[0].split(), *words[1:]))}" if near else ""
+    meant = near[0].split() if near else []
+    rest = [word for word in words[1:] if word not in meant]  # `btc start robot`
+    others = [f"btc {each}" for each in near[1:] if each.split()[1:] == [first]] if len(words) == 1 else []
+    hint = f"Did you mean: {joined([f'btc {shlex.join((*meant, *rest))}', *others], 'or')}" if near else ""
     if not is_alone and reads_as_mission(mission):
         hint = f"Put a mission in quotes: btc {quote_mission(mission)}"
     return _main_parser().refuse(f"there's no verb or file '{first}'", hint)
 
 
 def _refuse_stop(text: str) -> None:
-    """End with a usage error if somebody wants to stop a robot: a simulated mission that stops would look the same."""
+    """End with a usage error if somebody wants to stop a robot, or to let it go on after a stop: a simulated mission
+    that does would look the same.
+    """
     word = "-".join(text.lower().rstrip("!. ").split())
     parser, hint = _main_parser(), "To stop the robot that is up: btc robot stop"
     if word in VERBS["robot"].acts["stop"].also and not reads_as_mission(text):
         parser.refuse(f"there's no verb or file '{text}'", hint)
-    if "stop" not in word and "halt" not in word:
+    if word != "release" and "stop" not in word and "halt" not in word:
         return
     from btlang.task.commands.client import names_up
 
-    if names_up() and _only_stops(text):
+    if not names_up():
+        return
+    if word == "release":
+        hint = "To let the robot that is up move again: btc robot release"
+        parser.refuse(f"'{text}' as a mission opens the gripper in a simulation", hint)
+    if _only_stops(text):
         parser.refuse(f"'{text}' as a mission stops a simulation, not the robot that is up", hint)
 
 

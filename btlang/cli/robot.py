@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import signal
 import sys
 import threading
+import time
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from functools import partial
@@ -14,25 +16,33 @@ from functools import partial
 from btlang.cli.parser import check_act, check_count
 from btlang.cli.robot_log import RobotLog
 from btlang.cli.robots import note_silent_voice
-from btlang.cli.task import ask
+from btlang.cli.task import ask, print_answer
 from btlang.components.words import words_of
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.robots.ears import read_answers
 from btlang.robots.registry import connector, runs_in_real_time
 from btlang.run.controls import emergency_signal
 from btlang.task import messages
-from btlang.task.commands.client import USUAL_NAME, RobotClient, data_folder, emergency_stop
+from btlang.task.commands.client import (
+    USUAL_NAME,
+    RobotClient,
+    data_folder,
+    emergency_stop,
+    find_listening,
+    robots_known,
+)
 from btlang.task.commands.companion import companions, require_companions
 from btlang.task.commands.socket_server import SocketServer
 from btlang.task.commands.store_handlers import latest_text
 from btlang.task.execution.manager import DAY
 from btlang.task.execution.missions import MissionReader
 from btlang.task.layer import KEPT, TaskLayer, keep_ticks_in_time, make_robot_layer
+from btlang.task.schedule.calendar import format_moment
 from btlang.task.store.backup import restore_backup
 from btlang.task.store.location import latest_store, usual_store, without_password
 from btlang.task.store.records import ACTIVE, WAITING, LibraryKind
 from btlang.task.store.task_store import TaskStore, open_store
-from btlang.text.formatting import one_line
+from btlang.text.formatting import joined, one_line
 from btlang.text.output import pass_on, show
 
 TYPE_CHECKING = False
@@ -83,6 +93,8 @@ def run_act(options: argparse.Namespace) -> int:
         return change_invitations(options)
     if act == "up":
         return _up(options)
+    if act == "list":
+        return _list_robots(options.json)
     if act in ("check", "show", "urdf", "import"):
         from btlang.cli.robot_file import read_robot_file
 
@@ -108,7 +120,24 @@ def run_act(options: argparse.Namespace) -> int:
         "release": messages.Release, "pause": messages.Pause, "resume": messages.Resume,
         "step": messages.Step, "say": partial(messages.Say, " ".join(options.item)), "visitor": messages.InviteVisitor,
     }  # fmt: skip
+    if act == "status" and not options.json:
+        return _show_status(options.name)
     return ask(options.name, commands[act](), options.json)
+
+
+def _show_status(name: str) -> int:
+    """Print what the robot does, and what it has to do by its rules and schedules; return the exit code."""
+    with RobotClient(name) as client:
+        answer = client.send(messages.Status())
+    code, data = print_answer(answer, as_json=False), answer.data
+    if answer.ok:
+        if data["next_schedule"] is not None:
+            show(f"The next schedule is due at {format_moment(data['next_schedule'], time.time())}.")
+        if data["battery"] is not None:
+            show(f"The battery is at {data['battery']:.0f}%.")
+        for rule in data["rules"]:
+            show(f"House rule: {rule}")
+    return code
 
 
 def layer_options(options: argparse.Namespace, name: str) -> dict[str, Any]:
@@ -171,7 +200,8 @@ def _up(options: argparse.Namespace) -> int:
                 layer.start()
                 server.start()
                 keep_ticks_in_time()
-                show(f"The robot '{name}' is up. Give it work with: btc task add")
+                for line in _greeting(name):
+                    show(line)
                 for line in left:
                     show(line)
                 if layer.emergency.is_latched:
@@ -191,6 +221,26 @@ def _up(options: argparse.Namespace) -> int:
             ended_well = layer.close()
     show(f"The robot '{name}' is down.")
     return code or (0 if ended_well else 1)
+
+
+def _greeting(name: str) -> list[str]:
+    """Say that a robot is up and how to give it work, also where others are up."""
+    others = [each for each in find_listening() if each != name]
+    which = f" --name {name}" if others else ""
+    lines = [f"The robot '{name}' is up. Give it work with: btc task add{which}"]
+    return [*lines, f"Up as well: {joined(others)}. Each command needs --name now."] if others else lines
+
+
+def _list_robots(as_json: bool) -> int:
+    """List the robots of this computer that are up, and those that were."""
+    up = find_listening()
+    states = {name: "up" if name in up else "down" for name in sorted({*up, *robots_known()})}
+    if as_json:
+        show(json.dumps(states, ensure_ascii=False, indent=2))
+    else:
+        width = max(map(len, states), default=0)
+        show("\n".join(f"{name:{width}}  {state}" for name, state in states.items()) or "No robot was up so far.")
+    return 0
 
 
 def left_over(store: TaskStore, body: str) -> list[str]:

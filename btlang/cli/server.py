@@ -109,6 +109,7 @@ def serve(options: argparse.Namespace) -> int:
         stop.close()
         stop_listener.close()
         accounts.close()
+        show("The server is down.")
     return 0
 
 

@@ -8,6 +8,7 @@ import shutil
 import sys
 import time
 from collections.abc import Callable
+from contextlib import suppress
 
 from btlang.cli.parser import check_act, check_count, quote_mission
 from btlang.cli.verbs import VERBS
@@ -121,6 +122,10 @@ def _check_words(options: argparse.Namespace) -> None:
     act, given = options.act, check_act(options)
     if "code" in given and len(options.item) == VERBS["task"].acts[act].words:
         raise wrong(act, f"it takes -c TEXT or '{options.item[-1]}', but not both")
+    if act == "schedule" and (parts := _rule_in(" ".join(options.item))):
+        what, rule = parts
+        command = f"btc task schedule {quote_mission(what)} --every {quote_mission(rule)}"
+        raise wrong(act, f"say when with --every: {command}")
     if act in ("add", "schedule") and len(options.item) > 1:
         raise wrong(act, f"put the mission in quotes: btc task {act} {quote_mission(' '.join(options.item))}")
     check_count(options, "code" in given)
@@ -131,6 +136,19 @@ def _check_words(options: argparse.Namespace) -> None:
         raise wrong(act, "it takes one --label")
     if not all(options.label):
         raise wrong(act, "--label needs a text")
+
+
+def _rule_in(text: str) -> tuple[str, str] | None:
+    """Return what stands before or behind the rule of a schedule, and the rule: `round every day at 9`."""
+    from btlang.task.schedule.recurrence import read_rule
+
+    words = text.split()
+    for at in range(1, len(words)):
+        for what, rule in ((words[:at], words[at:]), (words[at:], words[:at])):
+            with suppress(MissionError):
+                read_rule(" ".join(rule))
+                return " ".join(what), " ".join(rule)
+    return None
 
 
 def print_answer(answer: Answer, as_json: bool) -> int:

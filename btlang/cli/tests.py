@@ -11,10 +11,11 @@ from contextlib import suppress
 from functools import cache, partial
 from xml.etree import ElementTree
 
-from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.cli.examples import path_of
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.diagnostics.files import read_source, write_file
 from btlang.support.record import Record
-from btlang.support.test_files import ENDING
+from btlang.support.test_files import ENDING, is_test_file
 from btlang.testing.observations import measure_coverage
 from btlang.testing.runner import Result, brief_time, run_chaos, run_test
 from btlang.testing.test import MissionTest
@@ -127,16 +128,20 @@ def _tests(options: argparse.Namespace) -> list[tuple[str, int, MissionTest]]:
         try:
             read = read_tests(read_source(path, options.include_root))
         except MissionError as error:
-            problems += error.diagnostics
+            is_mission = not is_test_file(path) and all(each.code == "BT180" for each in error.diagnostics)
+            problems += [_no_tests(path)] if is_mission else error.diagnostics
             continue
         wanted = (options.name or "").casefold()
         found += [(path, number, test) for number, test in enumerate(read) if wanted in test.name.casefold()]
     if not problems and not found:
-        path = ", ".join(options.path or ["this folder"])
-        problems.append(diagnostic("BT184", Span(Source("", path), 0, 0), path=path))
+        problems.append(_no_tests(", ".join(options.path or ["this folder"])))
     if problems:
         raise MissionError(problems)
     return found
+
+
+def _no_tests(path: str) -> Diagnostic:
+    return diagnostic("BT184", Span(Source("", path), 0, 0), path=path)
 
 
 def find_files(paths: Sequence[str]) -> list[str]:
@@ -144,12 +149,22 @@ def find_files(paths: Sequence[str]) -> list[str]:
     found: list[str] = []
     for path in paths:
         if not os.path.isdir(path):
-            found.append(path)
+            found.append(_test_of(path))
             continue
         for folder, folders, files in os.walk(path):
             folders[:] = sorted(name for name in folders if name[0] != "." and name not in _SKIPPED)
             found += [os.path.normpath(os.path.join(folder, name)) for name in sorted(files) if name.endswith(ENDING)]
     return list(dict.fromkeys(found))
+
+
+def _test_of(path: str) -> str:
+    """Return the file of tests of a mission or of an example, where that is named; any other path stays."""
+    folder, name = os.path.split(path)
+    if name.endswith(ENDING):
+        return path
+    beside = (os.path.join(folder, *place, f"{name.removesuffix('.txt')}{ENDING}") for place in ((), ("tests",)))
+    there = next(filter(os.path.isfile, beside), "")
+    return there or (path_of(path, test=True) if not os.path.lexists(path) and path.isidentifier() else "") or path
 
 
 def _results(

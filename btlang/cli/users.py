@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import getpass
 import json
+import shlex
 import socket
 import sys
 import time
@@ -85,10 +86,13 @@ def _change(options: argparse.Namespace, accounts: Accounts) -> str:
     act, name, item = options.act, options.name, options.item
     if act == "add":
         _check_name(name)
-        accounts.add(name, _role(options.role, act), hash_password(_ask_password(name, act)))
+        if accounts.user(name) is not None:
+            change = f"exists already. For another role: btc user role {shlex.quote(name)} {options.role}"
+            raise refusal_error(f"The user '{one_line(name)}'", change)
+        accounts.add(name, _role(options.role, act), hash_password(_ask_password(name)))
         return f"'{one_line(name)}' can log in, with the role {options.role}."
     if act == "passwd":
-        accounts.set_password(name, hash_password(_ask_password(name, act)))
+        accounts.set_password(name, hash_password(_ask_password(name)))
         return f"The password of '{one_line(name)}' is changed, and all their sessions are ended."
     if act == "role":
         accounts.set_role(name, _role(item or options.role, act))
@@ -119,19 +123,19 @@ def _role(role: str, act: str) -> UserRole:
     return choose_member(UserRole, role, "role", act)
 
 
-def _ask_password(name: str, act: str) -> str:
+def _ask_password(name: str) -> str:
     """Ask for a password: twice at a terminal, else a line of standard input."""
     from btlang.server.accounts.passwords import problem
 
     if sys.stdin is not None and sys.stdin.isatty():
         password = getpass.getpass("Password: ")
         if getpass.getpass("Again: ") != password:
-            raise wrong(act, "the two passwords aren't the same")
+            raise refusal_error("The password", "wasn't the same the second time")
     else:
         password = sys.stdin.readline().rstrip("\n") if sys.stdin is not None else ""
     reason = problem(password, name)
     if reason:
-        raise wrong(act, reason)
+        raise refusal_error("This password", f"can't be taken: {reason}")
     return password
 
 

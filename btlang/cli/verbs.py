@@ -381,8 +381,9 @@ _TABLE = (
             "down": VerbAct("ends the process of the robot", ("json",), 0, also=("shutdown", "quit", "exit")),
             "status": VerbAct(
                 "shows what the robot is doing, or why it can't work", ("json",), 0,
-                also=("state", "info"),
+                also=("state", "info", "rules", "rule", "battery"),
             ),
+            "list": VerbAct("lists the robots of this computer, up or down", ("json",), 0, also=("ls", "names")),
             "report": VerbAct(
                 'reports what was done, and why something wasn\'t: btc robot report --since "2 hours ago"',
                 ("since", "json"), 0, also=("log", "logs", "history"),

@@ -115,7 +115,8 @@ class Story:
 
     def _noted(self) -> list[tuple[float, str]]:
         unfinished = [
-            (began, f"{self._label(node)}: not over when the recording ended") for began, node in self._began.values()
+            (began, f"{self._label(node)}: still under way as the recording ends")
+            for began, node in self._began.values()
         ]
         done = [
             (t, words + (f": {_ENDINGS[ending]}" if ending in _ENDINGS else "") + (f" ({reason})" if reason else ""))
@@ -127,7 +128,7 @@ class Story:
         """Yield how it ended, and why."""
         ended = self._ended
         if ended is None:
-            yield f"The recording ends after {self._latest:.1f} s, before the mission did."
+            yield f"The recording ends after {self._latest:.1f} s. The mission goes on, or was cut off there."
             return
         who = {"interrupted": "It was interrupted", "emergency stop": "An emergency stop ended it"}
         if ended.stopped:

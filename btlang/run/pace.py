@@ -102,14 +102,15 @@ class Overruns:
     """A ticker of an engine that was made with a stopwatch, which reports each tick that took too long.
 
     `period` is in seconds of real time. `count` is the number of such ticks, `worst` the slowest leaf in one of them
-    and its seconds.
+    and its seconds. A leaf that took less than `allowed` seconds isn't to blame.
     """
 
-    def __init__(self, engine: Engine, stopwatch: LeafTimer, period: float, bus: Bus) -> None:
+    def __init__(self, engine: Engine, stopwatch: LeafTimer, period: float, bus: Bus, allowed: float = 0.0) -> None:
         self._engine = engine
         self._stopwatch = stopwatch
         self._period = period
         self._bus = bus
+        self._allowed = max(_TO_BLAME * period, _NOISE, allowed)
         self.count = 0
         self.worst: tuple[Node, float] | None = None
 
@@ -126,7 +127,7 @@ class Overruns:
     def _report(self, seconds: float) -> None:
         self.count += 1
         slowest = self._stopwatch.slowest()
-        if slowest is None or slowest[1] <= max(_TO_BLAME * self._period, _NOISE):
+        if slowest is None or slowest[1] <= self._allowed:
             self._bus.emit(Overrun, seconds, self._period)
             return
         index, spent = slowest

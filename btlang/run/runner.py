@@ -143,7 +143,8 @@ class Runner:
         self._pace = pace(speed, self.controls)
         self._overruns: Overruns | None = None
         if isinstance(engine, Engine) and engine.stopwatch is not None and speed < math.inf:
-            self._overruns = Overruns(engine, engine.stopwatch, self._pause, self._bus)
+            allowed = self._period if speed > 1 else 0.0  # which is all that it may take on a robot
+            self._overruns = Overruns(engine, engine.stopwatch, self._pause, self._bus, allowed)
         self.ticks = 0
         self.after_tick: Callable[[], object] | None = None
         """A function to call after each tick of the tree, in the thread of the run."""

@@ -152,6 +152,8 @@ def run_mission(
         show("\n".join((outcome.why(colour=has_colour(sys.stderr)), *outcome.unanswered)), stream=sys.stderr)
     elif not quiet:
         show(outcome.summary)
+    if unused := world_input.unused_answers():
+        show(unused, sys.stderr)
     lost = [error for error in run.sink_errors if isinstance(error, OSError)]
     for failed in [error for error in run.sink_errors if not isinstance(error, OSError)]:
         show(f"An event sink failed: {failed}", sys.stderr)

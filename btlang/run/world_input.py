@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 
 from btlang.run.bus import INLINE
 from btlang.run.events import Asked, Ended, Event, PeriodPassed
+from btlang.text.formatting import one_line
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -28,6 +29,8 @@ class WorldInput:
     def __init__(self, answers: Mapping[str, list[str]] | None = None) -> None:
         self._answers = {words.lower(): list(texts) for words, texts in (answers or {}).items()}
         self._calls: deque[Callable[[Any], object]] = deque(maxlen=_MOST)
+        self._unasked = [words for words in self._answers if words != _ANY]
+        self._missed = False
         self.question = ""
         """The open question, "" while there is none."""
 
@@ -54,7 +57,18 @@ class WorldInput:
         self._calls.append(lambda robot: robot.invite() if hasattr(robot, "invite") else None)
 
     def _take_answer(self, question: str) -> str | None:
-        texts = next((texts for words, texts in self._answers.items() if words in question), self._answers.get(_ANY))
+        found = next((words for words in self._answers if words in question), _ANY)
+        texts = self._answers.get(found)
+        if found in self._unasked:
+            self._unasked.remove(found)
         if not texts:
+            self._missed = True
             return None
         return texts.pop(0) if len(texts) > 1 else texts[0]
+
+    def unused_answers(self) -> str:
+        """Say which answers no question had, where a question had none; "" otherwise."""
+        if not (self._missed and self._unasked):
+            return ""
+        words = ", ".join(f'"{one_line(each)}"' for each in self._unasked)
+        return f'No question had the words {words}. Answers stand under words of their question: "tea" = "yes".'

@@ -178,6 +178,8 @@ class Lexicon:
         """The words for soon behind whom somebody tells something: `right away`."""
         self.outside = tree_of((words, True) for words in self.asking["outside"])
         """The words before a room at whose door something is done."""
+        self.some_time = tree_of((words, True) for words in ways(self.asking["some_time"], self.articles))
+        """The words for a time of which nobody knows how long it is: `a moment`."""
         self.until_none = tree_of((words, True) for words in self.asking["until_none"])
         """The words that say nothing behind all things of a kind: `until none are left`."""
         self.and_back = tree_of((words, True) for words in self.asking["and_back"])

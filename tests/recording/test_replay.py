@@ -152,8 +152,8 @@ def test_why_says_that_a_run_was_stopped_or_its_recording_cut(
     assert "It was stopped (time limit) after 3.0 s." in printed(capsys, "why", str(path))[1]
     path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
     story = printed(capsys, "why", str(path))[1]
-    assert "go to lab: not over when the recording ended" in story
-    assert re.search(r"The recording ends after 1\.\d s, before the mission did\.", story)
+    assert "go to lab: still under way as the recording ends" in story
+    assert re.search(r"The recording ends after 1\.\d s\. The mission goes on", story)
 
 
 def test_the_mission_runs_again(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -209,7 +209,7 @@ def test_what_changes_about_a_user_is_said(
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))
     monkeypatch.setattr("sys.stdin", io.StringIO("short\na long password\n"))
     assert main(["user", "add", "ann"]) == 2
-    assert "The command 'add' can't be read: a password must have 8 to 4096 characters." in capsys.readouterr().err
+    assert "This password can't be taken: a password must have 8 to 4096 characters." in capsys.readouterr().err
     for act in (["add", "ann"], ["role", "ann", "operator"], ["remove", "ann"]):
         assert main(["user", *act]) == 0
     assert capsys.readouterr().out.splitlines() == [

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
@@ -9,7 +10,7 @@ import pytest
 from btlang.cli.robot import left_over
 from btlang.task.commands.client import data_folder
 from btlang.task.layer import TaskLayer
-from btlang.task.store.location import latest_store, note_store
+from btlang.task.store.location import latest_store, note_store, usual_store
 from btlang.task.store.records import MissionText, Task, TaskState
 from btlang.task.store.task_store import open_store
 
@@ -63,6 +64,32 @@ def test_a_robot_that_is_down_still_says_what_it_did(name: str, btc: Btc, short:
     for words in ("task add -c wave", "task cancel 2", "robot status", "task list --live", "robot resume"):
         code, text = btc(*words.split())
         assert (code, "No robot is up" in text) == (2, True), text
+
+
+def test_of_several_that_are_down_the_one_used_last_answers(btc: Btc, short: Path) -> None:
+    for name in ("robot", "museum"):
+        with robot_up(Path(data_folder(name)), name) as layer:
+            wait_for(layer, submit(layer, "wave" if name == "museum" else "nod"), TaskState.COMPLETED)
+    os.utime(usual_store(data_folder("robot")), (0, 0))
+    code, text = btc("task", "list")
+    assert code == 0
+    assert "The robot 'museum' is down" in text
+    assert "For robot: --name NAME\n" in text
+    assert "To see the one that is over: btc task list --all\n" in text
+    assert "nod" in btc("task", "list", "--all", "--name", "robot")[1]
+    assert btc("robot", "list") == (0, "museum  down\nrobot   down\n")
+
+
+def test_a_status_has_the_house_rules_and_the_next_schedule(btc: Btc, short: Path) -> None:
+    rules = short / "rules.txt"
+    rules.write_text("whenever the battery is below 20%,\n    charge\n", encoding="utf-8")
+    with robot_up(Path(data_folder("robot")), rules=str(rules)) as layer:
+        ask(layer, "schedule", rule="every day at 9:00", text="wave")
+        code, text = btc("robot", "status")
+        assert btc("robot", "list") == (0, "robot  up\n")
+    assert code == 0
+    assert "The next schedule is due at " in text
+    assert "The battery is at 100%.\nHouse rule: whenever the battery is below 20%, charge\n" in text
 
 
 def test_the_recording_of_a_task_is_replayed_by_its_number(btc: Btc, short: Path) -> None:

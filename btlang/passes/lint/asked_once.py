@@ -133,7 +133,8 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
     if is_timed or is_driving or (is_seen and is_front):
         each = f"{vocabulary.word('whenever')} {node.span.text[len(words.split(maxsplit=1)[0]) :].lstrip()}"
         place, each = _as_sentence(node, each, vocabulary)
-        advice = f"'{last}' is over by then. To do it {'meanwhile' if is_timed else 'on the way'}, write: {each}"
+        when = "meanwhile" if is_timed else "on the way"
+        advice = f"'{last}' is over by then. To do it {when}, and all through the mission, write: {each}"
         yield _with_reading(node, words, advice, place, each)
     elif isinstance(asked, ast.Phrase) and (
         any(_leads_through(journey, asked) for journey in journeys)

@@ -123,30 +123,33 @@ class Board:
         if over and not self._begun:
             return []
         if over:
-            return [*frame.tree_lines(state, self._words, height - 2, width, over, signs), *below]
+            return [*self._shown(width, height - len(below), over), *below]
         below.append(frame.keys_line(doing == "paused", keys, signs))
         if explained:
             below = [*frame.legend_lines(width, signs)[: height - LEAST_HEIGHT - 4], *below]
-        rows = height - 1 - len(below)
-        shown = self._beside(width, rows) if width >= _BESIDE else self._above_each_other(width, rows)
+        shown = self._shown(width, height - 1 - len(below), over)
         return [frame.header(self._title, state, doing, signs), *shown, *below]
 
-    def _beside(self, width: int, rows: int) -> list[Line]:
+    def _shown(self, width: int, rows: int, over: bool) -> list[Line]:
+        """Return the tree and the map, which stays as it was at the end of the run."""
+        return (self._beside if width >= _BESIDE else self._above_each_other)(width, rows, over)
+
+    def _beside(self, width: int, rows: int, over: bool) -> list[Line]:
         """Return the tree, and the map to the right of it."""
         columns, lines = self._map_size(width * _MAP_PART // 100, rows)
         left = width - columns - _APART if columns else width
-        return frame.side_by_side(self._tree(left, rows), self._map(columns, lines), left + _APART)
+        return frame.side_by_side(self._tree(left, rows, over), self._map(columns, lines), left + _APART)
 
-    def _above_each_other(self, width: int, rows: int) -> list[Line]:
+    def _above_each_other(self, width: int, rows: int, over: bool) -> list[Line]:
         """Return the tree, and the map in the rows that it leaves, or in half of them."""
-        tree = self._tree(width, rows)
+        tree = self._tree(width, rows, over)
         columns, lines = self._map_size(width, max(rows // 2, rows - len(tree)))
         if len(tree) > rows - lines:
-            tree = self._tree(width, rows - lines)
+            tree = self._tree(width, rows - lines, over)
         return [*tree, *self._map(columns, lines)]
 
-    def _tree(self, width: int, rows: int) -> list[Line]:
-        return frame.tree_lines(self.state, self._words, rows, width, False, self.signs)
+    def _tree(self, width: int, rows: int, over: bool) -> list[Line]:
+        return frame.tree_lines(self.state, self._words, rows, width, over, self.signs)
 
     def _map(self, columns: int, lines: int) -> list[Line]:
         return self.map.lines(self.state.robot, columns, lines) if self.map is not None and columns else []

@@ -40,8 +40,8 @@ def task_data(task: Task, waits: str = "") -> dict[str, Any]:
 def task_line(task: Mapping[str, Any]) -> str:
     """Return a task of `task_data` in one line: id, state, priority, mission, and why it waits or ended."""
     why = task["waits"] or task["reason"]
-    priority = f" ({task['priority']:+d})" if task["priority"] else ""
-    return f"{task['id']:>4}  {task['state']:<9}{priority}  {task['mission']}" + (f"  [{one_line(why)}]" if why else "")
+    priority = f"  (priority {task['priority']:+d})" if task["priority"] else ""
+    return f"{task['id']:>4}  {task['state']:<9}  {task['mission']}{priority}" + (f"  [{one_line(why)}]" if why else "")
 
 
 def shorten(mission: MissionText) -> str:

@@ -15,6 +15,7 @@ from btlang.task.execution.manager import TaskManager
 from btlang.task.messages import Answer, Command
 from btlang.task.store.location import latest_store
 from btlang.task.store.task_store import open_store
+from btlang.text.formatting import joined
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -75,13 +76,25 @@ def open_reader(name: str, command: Command, note: Callable[[str], object]) -> R
     client = DownRobot(down)
     start = "btc robot up" if down == USUAL_NAME else f"btc robot up --name {down}"
     note(f"The robot '{down}' is down; this is from its store. To bring it up: {start}")
+    others = [] if name else [each for each in _robots_with_store() if each != down]
+    if others:
+        note(f"For {joined(others, 'or')}: --name NAME")
     return client
 
 
 def _name_of_one_down(name: str) -> str:
-    """Return the name of a robot with a store: this one, or else the usual or the only one; "" if there's none."""
-    known = [each for each in ([name] if name else robots_known()) if _has_store(_store_of(each))]
-    return USUAL_NAME if USUAL_NAME in known else known[0] if len(known) == 1 else ""
+    """Return the name of a robot with a store: this one, or else the one that was used last; "" if there's none."""
+    known = [name] * _has_store(_store_of(name)) if name else _robots_with_store()
+    return max(known, key=lambda each: _last_use(_store_of(each)), default="")
+
+
+def _robots_with_store() -> list[str]:
+    return [each for each in robots_known() if _has_store(_store_of(each))]
+
+
+def _last_use(place: str) -> float:
+    """Return when a store was last written, in seconds since 1970; 0 where that can't be seen."""
+    return os.path.getmtime(place) if os.path.isfile(place) else 0.0
 
 
 def _store_of(name: str) -> str:

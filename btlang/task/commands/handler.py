@@ -316,6 +316,7 @@ class Handler:
             "battery": None if state is None else state.battery,
             "waiting": self._store.count_tasks(WAITING),
             "question": "" if task is None else self._world_input.question,
+            "rules": self._executor.rules.words, "next_schedule": self._next_schedule(),
         }  # fmt: skip
         running = f": {', '.join(data['running'])}" if data["running"] else ""
         doing = "It has nothing to do" if task is None else f"Task {task.id} is under way{running}"
@@ -327,6 +328,10 @@ class Handler:
             lines.append(at)
         lines.append(f"{data['waiting']} waiting." if data["waiting"] else "Nothing waits.")
         return Answer(True, "\n".join(lines), data)
+
+    def _next_schedule(self) -> float | None:
+        """Return when a schedule is due next, None if none is."""
+        return min((each.next for each in self._store.schedules() if each.next is not None), default=None)
 
     def _mission(self, command: messages.Submit | messages.AddSchedule) -> Warned:
         """Return the mission of a command, which this robot can do, and what it is warned of."""

@@ -47,9 +47,17 @@ class StoreReader:
         hindrance, now = self._hindrance(), self._now()
         first = self._manager.first(now)
         tasks = [task_data(task, self._why_waiting(task, now, hindrance, first)) for task in found]
-        lines = [task_line(task) for task in tasks] or ["There are no tasks."]
+        lines = [task_line(task) for task in tasks] or [self._none(not wanted)]
         lines += [f"and {more} more: --limit N lists so many, --all every one"] if more else []
         return Answer(True, "\n".join(lines), {"tasks": tasks, "more": more, "hindrance": hindrance})
+
+    def _none(self, only_open: bool) -> str:
+        """Say that there are no tasks to list, and how many are over where only the others were asked for."""
+        over = self._store.count_tasks(FINAL) if only_open else 0
+        if not over:
+            return "There are no tasks."
+        which = "one that is" if over == 1 else f"{over} that are"
+        return f"No task waits or is under way. To see the {which} over: btc task list --all"
 
     def show(self, command: messages.Show, person: str) -> Answer:
         """Show a task with all that became of it. Raises MissionError (BT187)."""

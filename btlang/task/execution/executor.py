@@ -67,7 +67,7 @@ class Executor:
         sinks: Callable[[Task | None, Mission, Run], list[Sink]] = lambda task, mission, run: [],
     ) -> None:
         self._session, self._store, self._manager, self._emergency = session, store, manager, emergency
-        self._rules, self._idle_mission = rules, rules.idle or idle
+        self.rules, self._idle_mission = rules, rules.idle or idle
         self._missions, self._now, self._trouble = missions, now, trouble
         self._recordings, self._speed, self._rate, self._idle_rate = recordings, speed, rate, idle_rate
         self._sinks = sinks
@@ -248,7 +248,7 @@ class Executor:
     def _idle(self) -> None:
         """Follow the house rules until there is something to do."""
         run = self._session.prepare(self._idle_mission, speed=self._speed, rate=self._idle_rate)
-        self._watch = RunWatch(indices_of(run, self._rules.reactions), (), self._leave_idle)
+        self._watch = RunWatch(indices_of(run, self.rules.reactions), (), self._leave_idle)
         add_sinks(run, self._watch, *self._sinks(None, self._idle_mission, run))
         run.after_ticks(self._leave_idle)
         outcome = self._execute(run)
@@ -290,7 +290,7 @@ class Executor:
                 self._changed.notify_all()
 
     def _prepare(self, task: Task) -> Run:
-        mission = self._rules.around(self._missions(task.mission))
+        mission = self.rules.around(self._missions(task.mission))
         recorder = self._recordings.recorder(mission, task) if self._recordings is not None else None
         if recorder is not None:
             self._outbox.write(partial(self._store.amend, task.id, recording=os.path.abspath(recorder.path)))
@@ -302,7 +302,7 @@ class Executor:
             for name, value in task.mission.values.items():
                 run.nodes.blackboard.set(value_key(name), value)
         commands = commands_of(run, mission)
-        self._watch = RunWatch(indices_of(run, self._rules.reactions), commands, self.wake)
+        self._watch = RunWatch(indices_of(run, self.rules.reactions), commands, self.wake)
         samplers = [Sampler(run.bus, run.nodes.blackboard, _SCANS)] if recorder is not None else []
         add_sinks(run, self._watch, *self._sinks(task, mission, run), *samplers)
         run.after_ticks(partial(self._after_tick, task, run, self._watch))
@@ -361,7 +361,7 @@ class Executor:
         def change(state: TaskState, cause: str, *person: str, **fields: Any) -> None:
             self._change(task, state, "; ".join(filter(None, (cause, warning))), *person, **fields)
 
-        if outcome.failure is not None and self._rules.is_own(outcome.failure.path):
+        if outcome.failure is not None and self.rules.is_own(outcome.failure.path):
             reason = outcome.failure.reason
             change(TaskState.BLOCKED, f"a house rule failed: {reason}", saved=self._latest)
             self._ask_for_help(reason)

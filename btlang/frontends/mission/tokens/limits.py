@@ -18,7 +18,16 @@ from btlang.frontends.mission.token import (
 )
 from btlang.frontends.mission.tokens.going_on import GoingOn
 from btlang.frontends.mission.tokens.sentence_reader import hears, searches
-from btlang.frontends.mission.tokens.settling import FAILS, MEASURES, STAYS, WORKS, asked_about, lasting, misses
+from btlang.frontends.mission.tokens.settling import (
+    FAILS,
+    MEASURES,
+    STAYS,
+    WORKS,
+    achieves,
+    asked_about,
+    lasting,
+    misses,
+)
 from btlang.frontends.mission.tokens.silent_words import BEGINS
 from btlang.text.source import Span
 from btlang.vocabulary.antecedents import says_there
@@ -56,11 +65,19 @@ class Limits(GoingOn):
         tokens.insert(at, Token("retry", tokens[at].start, tokens[at].start))
         return tries.last
 
-    def _misses_before(self, at: int, asked: Token) -> int | None:
-        """The place of the command before one that takes the same thing, and fails where it isn't there."""
-        if self._tokens[at].kind != "command" or not misses(self._tokens[at], asked):
+    def _settled_before(self, at: int, asked: Token) -> int | None:
+        """The place of a command that settles a condition before another one at a place does: it fails first.
+
+        That is one that takes the same thing, or goes to the same person, with no journey elsewhere between both.
+        """
+        tokens = self._tokens
+        if tokens[at].kind != "command":
             return None
-        return asked_about(self._tokens, at, lambda token: token.kind == "command" and misses(token, asked))
+        is_same = misses if misses(tokens[at], asked) else achieves
+        before = asked_about(tokens, at, lambda token: token.kind == "command" and is_same(token, asked))
+        if before is None or (is_same is achieves and any(drives(token.value) for token in tokens[before + 1 : at])):
+            return None
+        return before
 
     def _ask_later(self) -> None:
         """`if nobody is near five minutes later, A`: it waits, and asks then."""

@@ -134,8 +134,8 @@ class Outcomes(Limits):
         if denied and tokens[form].kind == "if" and tokens[form - 1].kind in ("semi", "newline"):
             waited = asked_about(tokens, form, lambda token: token.kind != "command" and self._is_settled(token, asked))
             at = asked_about(tokens, form, lambda token: self._is_settled(token, asked)) if waited is None else waited
-            while at is not None and (before := self._misses_before(at, asked)) is not None:
-                at = before  # `grab the cup from the lab and take it to the hall. If it isn't there, A`
+            while at is not None and (before := self._settled_before(at, asked)) is not None:
+                at = before  # `bring Bob the cup and tell him "Tea!". If he isn't there, A`
             is_free = BRANCHES.isdisjoint(self._statement(form - 1)[1])
             may_ask = at is None or not is_free or self._may_ask_again(at, form, end)
             if at is None and is_free and self._is_event(asked):

@@ -16,6 +16,7 @@ from btlang.frontends.mission.tokens.moved_words import (
     say_time_before_event,
 )
 from btlang.frontends.mission.tokens.parted import part_each
+from btlang.text.source import Span
 from btlang.text.words import Words
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.pattern import ways
@@ -59,7 +60,8 @@ def reworded(text: Words, vocabulary: Lexicon) -> list[Diagnostic]:
     _wait_once(text, vocabulary)
     _drop_commas(text, vocabulary)
     _list_ranges(text, vocabulary)
-    return [*_drop_untold_sizes(text, vocabulary), *_drop_untold_contents(text, vocabulary)]
+    problems = [*_drop_untold_sizes(text, vocabulary), *_drop_untold_contents(text, vocabulary)]
+    return [*problems, *_refuse_some_time(text, vocabulary)]
 
 
 def _say_plainly(text: Words, vocabulary: Lexicon) -> None:
@@ -495,3 +497,24 @@ def _drop_untold_contents(text: Words, vocabulary: Lexicon) -> Iterator[Diagnost
             span = text.span(at, inside[1])
             text.drop(at, inside[1])
             yield diagnostic("BT158", span, words=span.text)
+
+
+def _refuse_some_time(text: Words, vocabulary: Lexicon) -> Iterator[Diagnostic]:
+    """BT011 for `wait a moment` and `stay there for a while`, which are read with a time in its place."""
+    words, wait = text.words, vocabulary.word("wait")
+    if text.distinct.isdisjoint(vocabulary.some_time):
+        return  # as nearly always
+    fronts = {wait, *vocabulary.firsts["for"], *vocabulary.asking["waiting"]}
+    for at in reversed([at for at in range(1, len(words)) if words[at] in vocabulary.some_time]):
+        found = find(vocabulary.some_time, words, at)
+        if found is None or words[at - 1] not in fronts:
+            continue
+        behind = words[found[1]]
+        if behind[0] in ENDING or behind in vocabulary.joining:
+            example, front = vocabulary.types["duration"].example, text.span(at - 1, at).text
+            start, _ = text.articles.get(at, (text.starts[at], 0))
+            span = Span(text.source, start, text.ends[found[1] - 1])
+            text.drop(at + 1, found[1])
+            text.replace(at, example.split())
+            wanted = "it doesn't say how long"
+            yield diagnostic("BT011", span, words=span.text, wanted=wanted, example=f"{front} {example}")
