@@ -55,7 +55,8 @@ def test_a_file_wins_over_a_mission_of_the_same_words(capsys: pytest.CaptureFixt
         ("add wave", "btc: there's no verb or file 'add'\nDid you mean: btc task add wave\n"),
         ("hello", "btc: there's no verb or file 'hello'\nDid you mean: btc run hello\n"),
         ("patrol --watch", "btc: there's no verb or file 'patrol'\nDid you mean: btc run patrol --watch\n"),
-        ("list", "btc: there's no verb or file 'list'\nDid you mean: btc robot list, btc task list, btc components list or btc user list\n"),
+        ("list", "btc: there's no verb or file 'list'\n"
+         "Did you mean: btc robot list, btc task list, btc components list or btc user list\n"),
         ("worlds", "btc: there's no verb or file 'worlds'\nDid you mean: btc world\n"),
         ("missions", "btc: there's no verb or file 'missions'\nDid you mean: btc examples\n"),
         ("simulate tea.txt", "btc: there's no verb or file 'simulate'\nDid you mean: btc run tea.txt\n"),

@@ -210,7 +210,7 @@ def accept_anything(**ports: object) -> None:
 
 
 def _make_placeholder(call: Callable[..., Any]) -> Callable[..., Any]:
-    """Make a function with the parameters of a leaf."""
+    """Make a function with the parameters of a leaf: those of a class's `start`, or of a component's method."""
     from inspect import isclass, signature
 
     def leaf(**ports: object) -> None:
@@ -221,7 +221,8 @@ def _make_placeholder(call: Callable[..., Any]) -> Callable[..., Any]:
     except (AttributeError, TypeError, ValueError):
         return accept_anything
     parameters = list(found.parameters.values())
-    leaf.__signature__ = found.replace(parameters=parameters[1:] if isclass(call) else parameters)  # type: ignore[attr-defined]
+    has_self = isclass(call) or next(iter(found.parameters), "") == "self"
+    leaf.__signature__ = found.replace(parameters=parameters[has_self:])  # type: ignore[attr-defined]
     return leaf
 
 

@@ -188,8 +188,8 @@ class _Check:
     def _fits(self, node_id: str, vocabulary: Lexicon) -> bool:
         """Return whether a model, if there is one, describes the entry of this id."""
         model = self._project.models.get(node_id)
-        slots = {slot.name for entry in vocabulary.entries[node_id] for slot in entry.slots}
-        return model is None or all(port.name in slots for port in model.ports)
+        own = {name for entry in vocabulary.entries[node_id] for name in entry.ports}
+        return model is None or all(port.name in own for port in model.ports)
 
     def _wrong_ports(self) -> Iterator[Diagnostic]:
         described: dict[int, tuple[NodeModel, list[Node]]] = {}

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from btlang.support.record import Record
 from btlang.text.source import Span
 
@@ -141,6 +143,18 @@ class Entry(Record, uncompared=("span",)):
         return [text for name, text in arguments if name in names]
 
     @property
+    def ports(self) -> tuple[str, ...]:
+        """The names of the ports of its node: its slots, and those of what it measures."""
+        return (*(slot.name for slot in self.slots), *((*COMPARISONS, MEASURED) if self.measures else ()))
+
+    @property
+    def needed_slots(self) -> frozenset[str]:
+        """The slots that every phrase has, and no point stands for."""
+        said = [frozenset(_SLOT.findall(_without_options(phrase))) for phrase in self.phrases]
+        needed = said[0].intersection(*said[1:]) if said else frozenset[str]()
+        return needed.difference(slot.name for slot in self.slots if self.point_ports and slot.type == "place")
+
+    @property
     def point_ports(self) -> frozenset[str]:
         """The ports that take a point in the place of a place; none where the function takes only names."""
         ports = frozenset(slot.name for slot in self.slots if slot.name in POINT)
@@ -154,6 +168,15 @@ class Entry(Record, uncompared=("span",)):
     def slots_of(self, role: str) -> frozenset[str]:
         """The slots that a role of its verbs fills."""
         return frozenset(each.slot for _, roles in self.verbs for each in roles if each.name == role)
+
+
+_SLOT, _OPTION = re.compile(r"\{(\w+)\}"), re.compile(r"\[[^\[\]]*\]")
+
+
+def _without_options(phrase: str) -> str:
+    """Leave out what may be left out of a phrase, also one option inside another one."""
+    shorter = _OPTION.sub("", phrase)
+    return phrase if shorter == phrase else _without_options(shorter)
 
 
 class About(Record):

@@ -129,12 +129,15 @@ class Uses:
         return model.replace(ports=model.ports + used) if used else model
 
     def _entry_ports(self, entry: Entry) -> Iterator[PortModel]:
+        """Give the ports of an entry. Those that its words may leave out have an empty default."""
+        needed = entry.needed_slots
         for slot in entry.slots:
             direction = "output" if slot.name in entry.outputs else "input"
-            yield PortModel(slot.name, direction, self._type(slot.type), slot.default)
+            may_lack = slot.default is None and direction == "input" and slot.name not in needed
+            yield PortModel(slot.name, direction, self._type(slot.type), "" if may_lack else slot.default)
         if entry.measures:
             kind = self._type(entry.measures)
-            yield from (PortModel(name, "input", kind) for name in COMPARISONS)
+            yield from (PortModel(name, "input", kind, "") for name in COMPARISONS)
             yield PortModel(MEASURED, "output", kind)
 
     def _type(self, name: str) -> str:
