@@ -27,6 +27,9 @@ if TYPE_CHECKING:
     from typing import TypeGuard
 
 _SENTENCE_END = re.compile(r"[.;!?\n]")
+_QUOTED_OR_END = re.compile(r'"[^"\n]*"|([.;!?\n])')
+_STOPS = ".!?"
+"""What also ends a sentence where it stands before the quotes."""
 _QUOTES = ('"', "\N{RIGHT DOUBLE QUOTATION MARK}")
 _QUOTED_ENDS = ('."', '!"', '?"')
 ON_THE_WAY = ("SomeoneInTheWay", "SomethingInTheWay")
@@ -316,6 +319,17 @@ def _is_statement(node: ast.If, body: ast.Ast, vocabulary: Lexicon) -> bool:
     return halts or ends or not _has_more(span, body)
 
 
+def _rest_of_sentence(span: Span, vocabulary: Lexicon) -> Span | None:
+    """Return the rest of a sentence behind a place, if that begins with `and`: `stop if bumped, and say "ouch"`."""
+    text = span.source.text
+    parts = (found for found in _QUOTED_OR_END.finditer(text, span.end) if found[1] or found[0][-2] in _STOPS)
+    end = next((found.end() - bool(found[1]) for found in parts), len(text))
+    behind = Span(span.source, span.end, end)
+    start = span.end + len(behind.text) - len(behind.text.lstrip(" \t,"))
+    rest = Span(span.source, start, behind.end)
+    return rest if rest.text.lower().split(maxsplit=1)[:1] in ([each] for each in vocabulary.roles["and"]) else None
+
+
 def _has_more(span: Span, body: ast.Ast) -> bool:
     """Whether something of a body begins behind a place in the same sentence."""
     text = span.source.text
@@ -328,7 +342,12 @@ def _warn(node: ast.If, before: ast.Ast | None, vocabulary: Lexicon, is_first: b
     """Report a condition that is asked once, behind a command or, if it `is_first`, before all others."""
     source, condition = node.span.source, node.condition.span
     if node.body.span.start < condition.start:
-        if before is not None and node.body.span.text.lower() in vocabulary.halting and "\n" not in before.span.text:
+        rest = _rest_of_sentence(node.span, vocabulary)
+        if rest is not None and node.body.span.text.lower() in vocabulary.halting:
+            each = f"{vocabulary.word('whenever')} {condition.text}, {node.body.span.text.lower()} {rest.text}"
+            advice = f"What stands behind it is done in any case. To do it then, write: {each}"
+            yield _with_reading(node, node.span.text, advice, Span(source, node.span.start, rest.end), each)
+        elif before is not None and node.body.span.text.lower() in vocabulary.halting and "\n" not in before.span.text:
             fixed = f"{before.span.text} {vocabulary.word('stop_when')} {condition.text}"
             advice = f"To stop what comes before, write: {fixed}"
             yield _with_reading(node, node.span.text, advice, Span(source, before.span.start, node.span.end), fixed)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.frontends.mission.token import Called, Listed, Token, arguments_of
+from btlang.frontends.mission.token import Called, Listed, Token, arguments_of, drives
+from btlang.frontends.mission.tokens.settling import is_presence
 from btlang.text.source import Source, Span
 from btlang.tree.sums import COMPARED, COUNTING
 from btlang.vocabulary.antecedents import says_there
@@ -23,19 +24,25 @@ def with_counted_things(tokens: list[Token], vocabulary: Lexicon, source: Source
     """Leave out of a comparison what it says that was counted; report it where something else was (BT150).
 
     Where nothing was counted, it is asked where the robot has gone: `go to the lab. If there are 3 people there, wave`.
+    `count the people. If nobody is there, wave` is about the count, too.
     """
-    said_of = (token.value for token in tokens if isinstance(token.value, Called))
-    if all(value.entry.id != COMPARED for value in said_of):
+    said_of = (token.value.entry.id for token in tokens if isinstance(token.value, Called))
+    if (COUNTING | {COMPARED}).isdisjoint(said_of):
         return  # as nearly always
     last: Called | Listed | None = None
+    here: Called | Listed | None = None  # the count, where the robot still is
     goal = ""
-    for token in tokens:
+    for at, token in enumerate(tokens):
         said = token.value
         if not isinstance(said, Called | Listed):
             continue
         goal = next(iter(said.entry.given(PLACE, arguments_of(said)[-1])), goal)
         if said.entry.id in COUNTING:
-            last = said
+            last = here = said
+        elif token.kind == "command" and drives(said):
+            here = None
+        elif here is not None and isinstance(said, Called) and _asks_if_any(tokens, at, here, vocabulary, source):
+            token.value = Called(vocabulary.entries[COMPARED][0], ())
         elif said.entry.id == COMPARED and isinstance(said, Called):
             things = {name: text for name, text in said.arguments if name in (KINDS, _SORT)}
             compared: Called = said.replace(arguments=tuple(each for each in said.arguments if each[0] not in things))
@@ -47,6 +54,17 @@ def with_counted_things(tokens: list[Token], vocabulary: Lexicon, source: Source
                 reason = "what was counted last is something else"
                 example = f"count the {span.text.split()[-1]}. If {span.text}, wave"
                 yield diagnostic("BT150", span, words=span.text, reason=reason, example=example)
+
+
+def _asks_if_any(tokens: list[Token], at: int, counted: Called | Listed, vocabulary: Lexicon, source: Source) -> bool:
+    """Whether `if` and a condition at a place ask for anybody where people were counted."""
+    said, form = tokens[at].value, tokens[at - 1 - (tokens[at - 1].kind == "not")]
+    if COUNTED.get(counted.entry.id) != PERSON or form.kind not in ("if", "unless") or not isinstance(said, Called):
+        return False
+    where = [*said.entry.given(PLACE, said.arguments)]
+    is_there = not where or where == [*counted.entry.given(PLACE, arguments_of(counted)[-1])]
+    is_event = vocabulary.says_event(source.text[tokens[at].start : tokens[at].end])
+    return is_there and not is_event and is_presence(said, vocabulary.negative_subjects)
 
 
 def _asked_there(said: Called, things: dict[str, str], goal: str, vocabulary: Lexicon) -> Called:

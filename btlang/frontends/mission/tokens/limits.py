@@ -112,11 +112,16 @@ class Limits(GoingOn):
         behind = run_start(tokens, len(tokens) - 1, ("comma",)) if limit.kind == "up_to" else 0
         if behind and searches(tokens[behind - 1]):
             limit.kind = "within"
-        elif behind and self._awaits(tokens[behind - 1]):
+        elif behind and (self._awaits(tokens[behind - 1]) or self._is_meeting(behind)):
             pass  # it may be over without anybody, unless that is asked about
         elif is_last or not behind or self._words_of(limit)[0] not in self._vocabulary.roles["but"]:
             return
         del tokens[behind:-1]  # `charge, but no longer than 5 min, then wave`
+
+    def _is_meeting(self, end: int) -> bool:
+        """Whether a wait for somebody with the journey to where that is ends at a place."""
+        meeting = self._tokens[max(end - len(_MEETING), 0) : end]
+        return [token.kind for token in meeting] == _MEETING and self._awaits(meeting[-2])
 
     def _words_of(self, token: Token) -> list[str]:
         return self._text.source.text[token.start : token.end].lower().split()
@@ -132,8 +137,7 @@ class Limits(GoingOn):
         """Take `wait 5 min for Bob at the door` out of its brackets, as its statement; return how many tokens went."""
         tokens, last = self._tokens, run_start(self._tokens, form, STATEMENT_ENDS) - 1
         first = last - len(_MEETING) + 1
-        is_one = first >= 0 and [token.kind for token in tokens[first : last + 1]] == _MEETING
-        if not is_one or not self._awaits(tokens[last - 1]) or statement_start(tokens, form - 1) != first:
+        if not self._is_meeting(last + 1) or statement_start(tokens, form - 1) != first:
             return 0
         goes, wait, here = tokens[first + 1], tokens[last - 1], tokens[last].end
         tokens[first : last + 1] = [goes, Token("then", here, here), wait]

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.token import Token
 from btlang.frontends.mission.tokens.counted_things import COUNTED
+from btlang.frontends.mission.tokens.settling import HOLDS
 from btlang.text.source import Source
 from btlang.text.words import END_OF_TEXT, Words, split
 from btlang.tree.answers import ASK, SOMEBODY_SAYS
@@ -23,8 +24,6 @@ from btlang.vocabulary.value_type import DOOR, KINDS, OBJECT, PERSON, PLACE, TEX
 from btlang.vocabulary.word_tree import find
 
 _SEVERAL = {"PeopleAt": PERSON, "ObjectsAt": OBJECT}  # conditions about so many of them
-HOLDS = "Holding"
-"""The condition that holds once a thing is taken up."""
 _MEETS = "SomeoneNear"  # the condition that holds once a command for nobody in particular is done
 _UNKNOWN = "{"
 ODD = ("", "{", "(")

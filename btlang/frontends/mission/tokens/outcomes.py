@@ -11,7 +11,6 @@ from btlang.frontends.mission.token import (
     JOINTS,
     STATEMENT_ENDS,
     Called,
-    Listed,
     Token,
     go_on,
     run_start,
@@ -21,7 +20,6 @@ from btlang.frontends.mission.token import (
 from btlang.frontends.mission.tokens.going_on import BRANCHES
 from btlang.frontends.mission.tokens.journey_words import SEES
 from btlang.frontends.mission.tokens.limits import Limits
-from btlang.frontends.mission.tokens.mentions import HOLDS
 from btlang.frontends.mission.tokens.sentence_reader import may_fail, searches
 from btlang.frontends.mission.tokens.settling import (
     FAILS,
@@ -30,6 +28,7 @@ from btlang.frontends.mission.tokens.settling import (
     WORKS,
     achieves,
     asked_about,
+    has_it,
     is_about,
     is_presence,
     is_somebody_else,
@@ -138,6 +137,10 @@ class Outcomes(Limits):
                 at = before  # `bring Bob the cup and tell him "Tea!". If he isn't there, A`
             is_free = BRANCHES.isdisjoint(self._statement(form - 1)[1])
             may_ask = at is None or not is_free or self._may_ask_again(at, form, end)
+            if (
+                waited is not None and not is_free and self._is_event(asked)
+            ):  # `wait ... If he says yes, A. If nobody comes, B`
+                self._unclear(Span(self._text.source, tokens[form].start, asked.end))
             if at is None and is_free and self._is_event(asked):
                 at, may_ask = self._wait_before(form, asked, end), False
                 form = len(tokens) - 3
@@ -159,7 +162,7 @@ class Outcomes(Limits):
             then = next((at for at in range(wait, form) if tokens[at].kind == "then"), 0)
             if then and tokens[then - 1].kind == "stop":
                 return self._turn(wait, then, form, end)
-        has_found = not denied and searches(tokens[command]) and _has_it(tokens[command], asked)
+        has_found = not denied and searches(tokens[command]) and has_it(tokens[command], asked)
         if has_found or any(achieves(tokens[at], asked) for at in range(command, first - 1, -1)):
             said = tokens[command]
             self._join(command, form, asked.end, denied)
@@ -200,10 +203,11 @@ class Outcomes(Limits):
         command = tokens[at]
         self._make_fail(at)
         role = self._settle_command(at)
+        tries = self._tries_of(tokens.index(command), end)
         if not role:
             self._unclear(Span(self._text.source, start, stop))
         tokens.append(Token("otherwise" if role == "otherwise" else "or", start, stop, FAILS))
-        return self._limit(command, end)
+        return tries or self._limit(command, end)
 
     def read(self, at: int) -> int:
         """Words that go on with what has happened to the command before them. Returns where to go on, 0 for others."""
@@ -390,11 +394,3 @@ class Outcomes(Limits):
             while tokens and tokens[-1].kind in ("comma", "stop"):
                 tokens.pop()
             tokens += [Token("stop", form.start, form.start), Token(WORKS, form.start, form.end)]
-
-
-def _has_it(search: Token, asked: Token) -> bool:
-    """`find the ball. Once you have it, A`: whether what was looked for is asked for as if it was held then."""
-    said, value = asked.value, search.value
-    if not isinstance(said, Called) or said.entry.id != HOLDS or not isinstance(value, Called | Listed):
-        return False
-    return {text for _, text in said.arguments} <= named_by(value)

@@ -47,6 +47,8 @@ MEASURES = frozenset(("for", "up_to", "within", "count"))
 WAITS = ("wait_until", "wait_for", "wait_up_to")
 """The raw kinds before a condition that is waited for."""
 _THERE = ("SeesObject", "ObjectIsAt")
+HOLDS = "Holding"
+"""The condition that holds once a thing is taken up."""
 _SIMPLE = frozenset(("command", "name", "wait", "nothing", *JOINTS))
 _BETWEEN = _SIMPLE | STATEMENT_ENDS | MEASURES | {"open", "close", "meanwhile"}
 _HEADS = frozenset(("every", "every_day", "at", "repeat", "comma", "then", "colon", "open"))
@@ -81,6 +83,8 @@ def settle(tokens: list[Token], at: int) -> str:
     first, behind = statement_start(tokens, at), run_end(tokens, at + 1, MEASURES)
     start = at - 1 if tokens[at].kind == "condition" else at
     before, rest = tokens[first:start], tokens[behind:end]
+    timed = run_end(before, 1, JOINTS) if before[:1] != [] and before[0].kind == "at" else 0
+    times, before = before[:timed], before[timed:]  # `at 9 am wait at the door for 5 min. If nobody comes, A`
     is_tried = before[:1] != [] and before[0].kind == "try"
     before = before[is_tried:]
     if any(token.kind not in _BETWEEN or token.value == FAILS for token in rest):
@@ -108,7 +112,7 @@ def settle(tokens: list[Token], at: int) -> str:
     if splits and before:
         joint = run_start(before, len(before), JOINTS)
         before = [*before[:joint], Token("semi", before[joint - 1].end, before[joint - 1].end)]
-    tokens[first:end] = [*before, *made]
+    tokens[first:end] = [*times, *before, *made]
     return "otherwise" if rest else FAILS
 
 
@@ -355,6 +359,14 @@ def achieves(command: Token, asked: Token) -> bool:
     if not isinstance(value, Called | Listed) or not isinstance(condition, Called):
         return False
     return condition.entry.id in value.entry.achieves and {text for _, text in condition.arguments} <= named_by(value)
+
+
+def has_it(search: Token, asked: Token) -> bool:
+    """`find the ball. Once you have it, A`: whether what was looked for is asked for as if it was held then."""
+    said, value = asked.value, search.value
+    if not isinstance(said, Called) or said.entry.id != HOLDS or not isinstance(value, Called | Listed):
+        return False
+    return {text for _, text in said.arguments} <= named_by(value)
 
 
 def is_presence(value: object, somebody: Container[str]) -> bool:

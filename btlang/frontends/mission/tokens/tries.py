@@ -207,8 +207,10 @@ class Tries(SentenceReader):
             return 0
         number, behind, pace = self._attempts(match)
         first = _first_of_form(tokens, statement_start(tokens, last), last)
-        first += tokens[first].kind in ("try", "retry")
-        tried = [Token(each.kind, each.start, each.end, each.value, each.role) for each in tokens[first:last]]
+        until = last
+        while first < until and tokens[first].kind in ("try", "retry"):  # `pick it up up to 3 times` is tried once more
+            first, until = first + 1, run_start(tokens, until, ("count", "every"))
+        tried = [Token(each.kind, each.start, each.end, each.value, each.role) for each in tokens[first:until]]
         start, stop = self._text.starts[at], self._text.ends[behind - 1]
         is_once = pace is not None and number == _TWICE
         if not number or is_once or any(token.kind in FORMS for token in tried):
