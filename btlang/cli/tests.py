@@ -102,8 +102,8 @@ _SKIPPED = ("node_modules", "__pycache__", "venv")
 
 
 def run_tests(options: argparse.Namespace) -> int:
-    """Run the tests that the options name; return the exit code. Raises MissionError with all that can't be read."""
-    tests = _tests(options)
+    """Run the tests that the options name; return the exit code. Raises MissionError at the end for unread files."""
+    tests, unread = _tests(options)
     seeds = tuple(range(options.seed, options.seed + options.repeat))
     summaries: list[Summary] = []
     for summary in _results(tests, seeds, options):
@@ -118,12 +118,17 @@ def run_tests(options: argparse.Namespace) -> int:
     if options.junit is not None:
         write_file(options.junit, junit(summaries))
     show(format_ending(summaries))
+    if unread:
+        raise MissionError(unread)
     return 1 if any(summary.failures for summary in summaries) else 0
 
 
-def _tests(options: argparse.Namespace) -> list[tuple[str, int, MissionTest]]:
-    """Return path, number and content of each test. Raises MissionError."""
-    problems, found = [], list[tuple[str, int, MissionTest]]()
+def _tests(options: argparse.Namespace) -> tuple[list[tuple[str, int, MissionTest]], list[Diagnostic]]:
+    """Return path, number and content of each test, and what is wrong with files that can't be read.
+
+    Raises MissionError if there are no tests.
+    """
+    problems, found = list[Diagnostic](), list[tuple[str, int, MissionTest]]()
     for path in find_files(options.path or ["."]):
         try:
             read = read_tests(read_source(path, options.include_root))
@@ -135,9 +140,9 @@ def _tests(options: argparse.Namespace) -> list[tuple[str, int, MissionTest]]:
         found += [(path, number, test) for number, test in enumerate(read) if wanted in test.name.casefold()]
     if not problems and not found:
         problems.append(_no_tests(", ".join(options.path or ["this folder"])))
-    if problems:
+    if not found:
         raise MissionError(problems)
-    return found
+    return found, problems
 
 
 def _no_tests(path: str) -> Diagnostic:

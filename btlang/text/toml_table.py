@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from functools import partial
 
 TYPE_CHECKING = False
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
 
 
 _MOST = 1_000_000
+_NUMBER = re.compile(r"-?\d+(\.\d+)?")
 _MOST_PROBLEMS = 100  # that are reported; who reads more of them at once?
 
 
@@ -101,7 +103,7 @@ class Table:
             return default
         value = self._require(key, "a number")
         if type(value) not in (int, float) or value != value:
-            raise self.problem(key, f'"{key}" must be a number; write {key} = 1.5')
+            raise self.problem(key, f'"{key}" must be a number; write {key} = {_number_in(value)}')
         if not is_coordinate(value):
             raise self.problem(key, f'"{key}" must be a number from {-_MOST:,} to {_MOST:,}')
         if (low is not None and value < low) or (high is not None and value > high):
@@ -189,6 +191,16 @@ class Table:
         return Problem(message, *self._path, key)
 
     def _require(self, key: str, kind: str) -> Any:
-        if not self.has(key):
-            raise self.problem(key, f'{self._name} needs {kind} "{key}"')
-        return self._values[key]
+        if self.has(key):
+            return self._values[key]
+        from btlang.text.spelling import misspelt
+
+        near = misspelt(key, [each for each in self._values if each not in self._read])
+        if near:
+            raise self.problem(near[0], f'unknown key "{near[0]}" in {self._name}; it needs {kind} "{key}"')
+        raise self.problem(key, f'{self._name} needs {kind} "{key}"')
+
+
+def _number_in(value: object) -> str:
+    """Return the number that a text says, or an example."""
+    return value.strip() if isinstance(value, str) and _NUMBER.fullmatch(value.strip()) else "1.5"

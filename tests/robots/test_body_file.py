@@ -75,6 +75,8 @@ def test_a_component_is_a_class_or_a_node(tmp_path: Path) -> None:
             'the full name of a ROS 2 node; write node = "/arm_driver"',
         ),
         (HEAD + IN_CONTAINER + 'command = ["eye"]', 9, 'by a "command" or loaded into a "container", not both'),
+        ('name = "x"\nradius = "0.2"', 2, '"radius" must be a number; write radius = 0.2'),
+        ('name = "x"\nradios = 0.2', 2, 'unknown key "radios" in a robot; it needs a number "radius"'),
         (HEAD + IN_CONTAINER.replace("plugin", "#"), 3, 'needs a text "plugin"'),
         (HEAD + "legs = 2", 3, 'unknown key "legs" in a robot'),
         (HEAD + 'over = "tcp"', 3, '"over" must be one of "simulated", "devices", "ros", "actions"'),

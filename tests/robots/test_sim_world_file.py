@@ -96,7 +96,7 @@ START = "start = { x = 1, y = 1 }\n"
         (START + "places = [3]", 2, '"places" must be a list of tables; write [[places]] above each'),
         (START + "[[places]]\nname = 3\nx = 1\ny = 1", 3, '"name" must be text in quotes; write name = "kitchen"'),
         (START + '[[places]]\nname = " "\nx = 1\ny = 1', 3, '"name" must be text in quotes'),
-        (START + '[[places]]\nname = "a"\nx = "1"\ny = 1', 4, '"x" must be a number; write x = 1.5'),
+        (START + '[[places]]\nname = "a"\nx = "1"\ny = 1', 4, '"x" must be a number; write x = 1'),
         (START + '[[places]]\nname = "a"\nx = nan\ny = 1', 4, '"x" must be a number'),
         (START + '[[places]]\nname = "a"\ny = 1', 2, 'places needs a number "x"'),
         (

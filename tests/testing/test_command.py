@@ -97,7 +97,7 @@ def test_coverage(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
         (["nothing.test.txt"], 2, "BT001"),
         (["empty"], 2, "BT184"),
         (["--name", "juggles"], 2, "BT184"),
-        (["m.txt"], 2, "BT180"),
+        (["m.txt"], 2, "BT184"),
         (["--junit", "no/such/folder.xml"], 2, "BT009"),
     ],
 )
@@ -109,6 +109,28 @@ def test_what_cannot_be_tested(
     (folder / "a.test.txt").write_text(PASSES)
     assert main(["test", *words]) == code
     assert told in capsys.readouterr().err
+
+
+def test_a_file_that_cannot_be_read_keeps_no_other_from_running(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "a.test.txt").write_text(PASSES)
+    (folder / "b.test.txt").write_text("wave")
+    assert main(["test"]) == 2
+    out, err = capsys.readouterr()
+    assert "1 test passed" in out
+    assert "b.test.txt:1:1: error BT180" in err
+
+
+def test_a_mission_stands_for_its_tests(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for place in (folder, folder / "tests"):
+        place.mkdir(exist_ok=True)
+        (folder / "m.txt").write_text("wave")
+        (place / "m.test.txt").write_text(PASSES)
+        assert main(["test", "m.txt"]) == 0
+        (place / "m.test.txt").unlink()
+    assert main(["test", "first_steps"]) == 0
+    assert capsys.readouterr().out.count("1 test passed") == 3
 
 
 @pytest.mark.parametrize("option", ["--repeat=0", "--jobs=-1", "--seed=x", "--jobs=no"])

@@ -342,11 +342,11 @@ def _warn(node: ast.If, before: ast.Ast | None, vocabulary: Lexicon, is_first: b
     """Report a condition that is asked once, behind a command or, if it `is_first`, before all others."""
     source, condition = node.span.source, node.condition.span
     if node.body.span.start < condition.start:
-        rest = _rest_of_sentence(node.span, vocabulary)
-        if rest is not None and node.body.span.text.lower() in vocabulary.halting:
-            each = f"{vocabulary.word('whenever')} {condition.text}, {node.body.span.text.lower()} {rest.text}"
+        further = _rest_of_sentence(node.span, vocabulary)
+        if further is not None and node.body.span.text.lower() in vocabulary.halting:
+            each = f"{vocabulary.word('whenever')} {condition.text}, {node.body.span.text.lower()} {further.text}"
             advice = f"What stands behind it is done in any case. To do it then, write: {each}"
-            yield _with_reading(node, node.span.text, advice, Span(source, node.span.start, rest.end), each)
+            yield _with_reading(node, node.span.text, advice, Span(source, node.span.start, further.end), each)
         elif before is not None and node.body.span.text.lower() in vocabulary.halting and "\n" not in before.span.text:
             fixed = f"{before.span.text} {vocabulary.word('stop_when')} {condition.text}"
             advice = f"To stop what comes before, write: {fixed}"

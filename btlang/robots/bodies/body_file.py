@@ -102,7 +102,7 @@ def _body(top: Table, overs: Collection[str], file: str) -> Body:
         listed = " or ".join(f'"{each}"' for each in overs)
         raise top.problem("over", f'"over" may only be {listed} here; to allow "{over}", bring the robot up on it')
     problems = Problems()
-    radius = problems.part(lambda: top.number("radius", low=0.01, high=10.0), 1.0)
+    radius = problems.part(lambda: top.number("radius", low=0.01, high=10.0), 0.01)
     base = problems.part(lambda: _base(top.table("base")) if top.has("base") else None, None)
     navigation = problems.part(lambda: _navigation(top, radius), None)
     joints = _read_list(top, "joints", joint_tables.joint, problems)
@@ -154,6 +154,8 @@ def _beside(top: Table, key: str, file: str, exists: Callable[[str], bool] = os.
         return ""
     folder = os.path.dirname(file)
     path = os.path.join(folder, top.text(key))
+    if file and not os.path.lexists(path):
+        raise top.problem(key, f'"{key}": there is no "{top.text(key)}" in the folder of the robot file')
     if not (file and is_below(real_path(path), folder) and exists(path)):
         what = "file" if exists is os.path.isfile else "folder"
         raise top.problem(key, f'"{key}" must be a {what} in the folder of the robot file')
