@@ -29,6 +29,7 @@ from btlang.passes.lint.two_readings import (
     find_rules_at_goals,
     find_two_readings,
 )
+from btlang.passes.lint.unchosen import find_unchosen
 from btlang.passes.lint.unlikely_meanings import (
     find_distant_questions,
     find_ended_rounds,
@@ -78,6 +79,7 @@ PASSES = (
     Pass("no rounds", find_empty_loops),
     Pass("busy loop", find_busy_loops),
     Pass("chosen in a branch", find_chosen_in_a_branch),
+    Pass("unchosen", find_unchosen, needs_text=True),
     Pass("cut off", find_cut_off),
     Pass("undeclared nodes", find_undeclared, needs_text=True),
     Pass("line end", find_line_ends, needs_text=True),

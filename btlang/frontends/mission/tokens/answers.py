@@ -216,7 +216,7 @@ class Answers(AddressedTexts):
             return
         met = self._met if self._question_before() is not None else person_in(question.value)
         asked = self._asked_person() or met
-        choice = choice_of(asked)
+        choice = choice_of(asked) if asked == person_in(question.value) else None  # else it is chosen where it is named
         if asked:
             self._context.latest[PERSON] = asked if choice is None else f"{{{choice.key}}}"
         else:
