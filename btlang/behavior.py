@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from types import CoroutineType, GeneratorType
 from typing import TypeAlias
 
@@ -67,20 +67,21 @@ class Behavior(Record, uncompared=("span", "numbers")):
     ) -> Mission:
         """Compile it. Its functions are words of its texts, too; the options are those of `btlang.parse_tree`.
 
-        A text that isn't understood may also use the other decorated functions of the scripts that made the tree, such
-        as quantities. `subtrees` are the trees that `sub_tree` nodes name. Raises MissionError for all mistakes of the
-        first text that has some, or of the tree: ports of known nodes are checked (BT132), unknown nodes only when it
-        runs.
+        Its texts may also use the other decorated functions of the scripts that made the tree, such as quantities. A
+        function of `keywords` with `replace=True` and the id or the phrase of a function in the tree runs in its place.
+        `subtrees` are the trees that `sub_tree` nodes name. Raises MissionError for all mistakes of the first text that
+        has some, or of the tree: ports of known nodes are checked (BT132), unknown nodes only when it runs.
         """
-        words = [*keywords, *dict.fromkeys(_functions([self, *subtrees.values()]))]
+        parts = [self, *subtrees.values()]
+        words = _with_fakes(keywords, dict.fromkeys(_functions([*parts])))
+        others = [each for each in _functions_of_scripts([*parts]) if each not in words] if _has_texts(parts) else []
         try:
-            return self._compile(words, world, language, subtrees)
+            return self._compile([*words, *others], world, language, subtrees)
         except MissionError as error:
-            others = [each for each in _functions_of_scripts([self, *subtrees.values()]) if each not in words]
             if not others:
                 raise
-            try:
-                return self._compile([*words, *others], world, language, subtrees)
+            try:  # the functions of the script may not go together, or with the words that ship
+                return self._compile(words, world, language, subtrees)
             except MissionError as left:
                 raise min(left, error, key=lambda each: len(each.diagnostics)) from None
 
@@ -104,9 +105,9 @@ class Behavior(Record, uncompared=("span", "numbers")):
             raise MissionError(misfits)
         return mission
 
-    def run(self, **options: Any) -> Outcome:
-        """Compile and run it; the options are those of `btlang.Mission.run`."""
-        return self.mission().run(**options)
+    def run(self, *, keywords: Keywords = (), **options: Any) -> Outcome:
+        """Compile and run it, with further words; the options are those of `btlang.Mission.run`."""
+        return self.mission(keywords=keywords).run(**options)
 
     if TYPE_CHECKING:
 
@@ -251,6 +252,39 @@ def _as_leaf(called: GeneratorType[Any, Any, Any] | CoroutineType[Any, Any, Any]
     slots = [slot.name for slot in entry.slots] if isinstance(entry, Entry) else list(values)
     given = [repr(values[slot]) for slot in slots if slot in values]
     return f"leaf({', '.join([called.__name__, *given])})"
+
+
+def _with_fakes(keywords: Keywords, functions: Iterable[Callable[..., object]]) -> list[Any]:
+    """Return all words; of those that replace a function of the tree the function's entry, with what it calls."""
+    words = list(keywords)
+    for function in functions:
+        own = _entry(function)
+        fake = next((each for each in words if _is_fake(each, own)), None)
+        if fake is None:
+            words.append(function)
+        else:
+            words[words.index(fake)] = own.replace(call=fake, thread=_entry(fake).thread)
+    return words
+
+
+def _is_fake(word: object, own: Entry) -> bool:
+    entry = getattr(word, "btlang_entry", None)
+    return (
+        isinstance(entry, Entry)
+        and entry.replaces
+        and (entry.id == own.id if entry.id else entry.phrases == own.phrases)
+    )
+
+
+def _has_texts(waiting: list[Child]) -> bool:
+    """Return whether a text is in behaviors."""
+    waiting = [*waiting]
+    while waiting:
+        child = waiting.pop()
+        if isinstance(child, str | Source):
+            return True
+        waiting += child.children if isinstance(child, Behavior) else ()
+    return False
 
 
 def _functions(waiting: list[Child]) -> list[Callable[..., object]]:

@@ -265,7 +265,8 @@ class Run:
     """One execution of a mission, made by a Session. All methods except `execute`, `tick` and `halt` are thread-safe.
 
     It ends once. After that, only its results are available. `async for event in run` gives the events, and
-    `await run` the outcome; both start a run that hasn't started yet, in a thread of its own.
+    `await run` the outcome; both start a run that hasn't started yet, in a thread of its own, but not one that `tick`
+    has begun.
     """
 
     def __init__(
@@ -293,7 +294,7 @@ class Run:
         self.bus = Bus(self.id, Clock(), queued=speed < math.inf)
         self._thread: threading.Thread | None = None
         self._error: BaseException | None = None
-        self._under_way = False
+        self._under_way = self._is_ticked = False
         self._is_replaced = False
         self._engine = self._bound(connection, sinks, values, hooks, timed=speed < math.inf)
         self._story = FailureHistory(self._engine)
@@ -388,14 +389,20 @@ class Run:
         prepared another run since.
         """
         self._check_is_latest()
+        self._is_ticked = True
+        self._recent.open()
         status = Status(self._runner.tick(seconds))
         is_over = status not in (Status.RUNNING, Status.IDLE)
         self.outcome = self._explained(self._runner.completed(status)) if is_over else None
+        if status != Status.RUNNING:
+            self._recent.close()
         return status
 
     def halt(self) -> None:
         """Halt every running leaf and stop the robot; the next tick starts over."""
         self._runner.halt()
+        if self._is_ticked:
+            self._recent.close()
 
     def pause(self) -> None:
         """Bring the robot to rest, and stop the mission time."""
@@ -470,7 +477,7 @@ class Run:
         return self._recent.events()
 
     def __aiter__(self) -> AsyncIterator[Event]:
-        if not self._under_way and self.outcome is None:
+        if not (self._under_way or self._is_ticked) and self.outcome is None:
             self.start()
         return self._recent.events_async()
 

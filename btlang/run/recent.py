@@ -43,6 +43,10 @@ class RecentEvents:
                 self._kept -= self._events.popleft().count
             self._notify()
 
+    def open(self) -> None:
+        """Note that the run goes on, or starts over."""
+        self._over = False
+
     def close(self) -> None:
         """Note that the run is over."""
         with self._changed:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from functools import wraps
@@ -144,7 +145,8 @@ def _word(
         names = dict.fromkeys(part.name for part in parts if isinstance(part, Slot))
         specs = tuple(_slot(name, slots[name]) if name in slots else SlotSpec(name, *types.get(name, (name, None, "")))
                       for name in names)  # fmt: skip
-        made = node_id or ("" if replace else "".join(part.title() for part in call.__name__.split("_")))
+        camel_case = "".join(part[:1].upper() + part[1:] for part in call.__name__.split("_"))
+        made = node_id or ("" if replace else camel_case)
         is_quantity = sort == "quantity"
         taken = tuple(dict.fromkeys((*resources, *resources_of(needs)))) if sort == "action" else ()
         entry = Entry(
@@ -165,6 +167,7 @@ def _slot(name: str, spec: str | Mapping[str, str]) -> SlotSpec:
     return SlotSpec(name, spec.get("type", name), spec.get("default"))
 
 
+_CAPITAL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
 _OF_PYTHON = {"int": "count", "float": "number", "str": "text"}
 _SERVICES = ("self", "robot", "clock", "blackboard", "wake", "wake_at", "progress", "beside", "halted", "kept")
 
@@ -182,7 +185,7 @@ def _parameters(call: Any) -> dict[str, Any]:
 
 
 def _phrase_of(call: Any) -> str:
-    words = call.__name__.replace("_", " ")
+    words = _CAPITAL.sub(" ", call.__name__).replace("_", " ").lower()  # of the class CountDown: count down
     return " ".join([words, *(f"{{{name}}}" for name in _parameters(call))])
 
 

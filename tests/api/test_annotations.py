@@ -46,7 +46,7 @@ class HumOn:
 
 def test_types_units_and_defaults() -> None:
     DONE.clear()
-    text = 'cheer for Alice 2 times, cheer for Bob, creep by 50 cm, aim at the cup with 0.5, paint it red, HumOn "la"'
+    text = 'cheer for Alice 2 times, cheer for Bob, creep by 50 cm, aim at the cup with 0.5, paint it red, hum on "la"'
     assert btlang.parse_tree(text, keywords=[cheer, creep_by, aim, paint, HumOn]).run(speed="max").succeeded
     assert DONE == [("Alice", 2), ("Bob", 1), 0.5, ("cup", 0.5), "red", "la"]
     with pytest.raises(btlang.MissionError):

@@ -6,7 +6,7 @@ import asyncio
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import pytest
 
@@ -124,3 +124,56 @@ def test_parse_file(tmp_path: Path) -> None:
     assert btlang.parse_file(str(tmp_path / "mission.txt")).run(speed="max").succeeded
     with pytest.raises(btlang.MissionError, match="BT001"):
         btlang.parse_file(str(tmp_path / "none.txt"))
+
+
+def test_a_fake_runs_in_place_of_a_function_of_a_tree() -> None:
+    rung: list[tuple[str, int]] = []
+
+    @btlang.condition("the gate is open")
+    def gate_is_open() -> bool:
+        return True
+
+    @btlang.action("ring the bell {n} times")
+    def ring_bell(n: int) -> None:
+        rung.append(("real", n))
+
+    @btlang.condition("the gate is open", replace=True)
+    def closed() -> bool:
+        return False
+
+    @btlang.action(id="RingBell", replace=True)
+    def fake(n: int) -> None:
+        rung.append(("fake", n))
+
+    tree = btlang.sequence(gate_is_open, btlang.leaf(ring_bell, 3), "nod")
+    assert not tree.run(speed="max", keywords=[closed]).succeeded
+    assert tree.mission(keywords=[fake]).run(speed="max").succeeded
+    assert tree.run(speed="max").succeeded
+    assert rung == [("fake", 3), ("real", 3)]
+
+
+@btlang.action("count down from {number}")
+class CountDown:
+    """A leaf with the words of one that ships."""
+
+    counted: ClassVar[list[int]] = []
+
+    def start(self, number: int) -> None:
+        self.counted.append(number)
+
+    def tick(self) -> bool:
+        return True
+
+    def halt(self) -> None: ...
+
+
+@btlang.action
+class DoThing(CountDown):
+    """A class whose words are those of its name."""
+
+
+def test_own_words_go_before_those_that_ship_and_keep_their_capitals() -> None:
+    tree = btlang.sequence("count down from 2", "do thing 3")
+    assert [node.id for node in tree.mission().tree.root.children] == ["CountDown", "DoThing"]
+    assert tree.run(speed="max").succeeded
+    assert CountDown.counted == [2, 3]

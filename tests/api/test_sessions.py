@@ -115,6 +115,34 @@ def test_mission_time_passes_as_the_caller_says() -> None:
             run.tick(0)
 
 
+def test_events_of_own_ticks_end_with_the_tree() -> None:
+    async def stream(run: btlang.Run) -> list[Any]:
+        return [event async for event in run]
+
+    async def main(run: btlang.Run) -> tuple[list[Any], btlang.Outcome]:
+        run.tick(0.5)
+        reading = asyncio.create_task(stream(run))
+        await asyncio.sleep(0)
+        while run.tick(0.5) is btlang.Status.RUNNING:
+            await asyncio.sleep(0)
+        return await reading, await run
+
+    said: list[str] = []
+
+    @btlang.action("count one")
+    def count_one() -> None:
+        said.append("one")
+
+    with btlang.Session(keywords=[count_one]) as session:
+        run = session.prepare("count one then wait 1 s")
+        events, outcome = asyncio.run(main(run))
+        assert (outcome.succeeded, said) == (True, ["one"])
+        assert list(run.events()) == events != []
+        run.tick(0.5)
+        run.halt()
+        assert len(list(run.events())) > len(events)
+
+
 def test_events_and_the_outcome_in_asyncio() -> None:
     async def main() -> tuple[list[Any], btlang.Outcome, int]:
         beats = 0
