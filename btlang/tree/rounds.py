@@ -23,6 +23,8 @@ from btlang.vocabulary.references import ALL, Choice, choice_of
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import PERSON, PLACE, TEXT
 
+DAYTIME = "TimeOfDay"
+"""The id of the condition that the time of day is within bounds."""
 ONE_FAILS = "if_one_fails"
 """The role of words for what is done for each thing of a round that fails."""
 

@@ -27,6 +27,7 @@ from collections.abc import Container, Sequence
 
 from btlang.support.record import Record
 from btlang.text.source import Span
+from btlang.tree.rounds import DAYTIME
 from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.entry import Entry
 
@@ -50,8 +51,6 @@ STATEMENT_ENDS = frozenset(("newline", "semi", "stop"))
 """Raw kinds at the end of a statement, also where the next word goes on with it."""
 LINES = frozenset(("newline", "semi", "indent", "dedent", "define"))
 """Behind these kinds of tokens a statement begins, out of brackets."""
-DAYTIME = "TimeOfDay"
-"""The id of the condition that the time of day is within bounds."""
 JOINTS = frozenset(("and", "comma", "then"))
 """Raw kinds between the commands of a statement."""
 FORMS = frozenset((*RULES, "if", "unless", "while", "until", "otherwise", "if_doing", "if_works"))

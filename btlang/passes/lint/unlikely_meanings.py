@@ -27,6 +27,7 @@ from btlang.text.source import Span
 from btlang.text.time_of_day import seconds_of
 from btlang.tree import ast
 from btlang.tree.answers import ABOUT_ANSWERS, ASK, asking_verbs, asks
+from btlang.tree.rounds import DAYTIME
 from btlang.tree.sums import COMPARED, COUNTING, asks_for_number
 from btlang.vocabulary.capabilities import MOVES, TRAVELS
 from btlang.vocabulary.lexicon import Lexicon
@@ -335,6 +336,8 @@ def _note_end(node: ast.Every | ast.Repeat | ast.UntilTime, vocabulary: Lexicon)
     """Make BT175 with the same words, and those for a try before the commands of each round."""
     word = next((words for words in vocabulary.roles["try"] if " " in words), vocabulary.word("try"))
     body = node.body
+    while isinstance(body, ast.If) and isinstance(body.condition, ast.Phrase) and body.condition.entry.id == DAYTIME:
+        body = body.body  # `every 30 min from 9 am to 6 pm, A`
     items = body.items if isinstance(body, ast.Chain) else (body,)
     done = [item for item in items if not _waits(item)]
     phrases = (each for item in done for each in ast.parents_first(item) if isinstance(each, ast.Phrase))

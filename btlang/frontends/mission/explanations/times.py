@@ -7,9 +7,10 @@ from collections.abc import Iterator, Sequence
 from itertools import chain
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.frontends.mission.token import DAYTIME, Called, Token
+from btlang.frontends.mission.token import Called, Token
 from btlang.text.source import Source, Span
 from btlang.text.words import Words
+from btlang.tree.rounds import DAYTIME
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import SlotValue
 

@@ -10,7 +10,6 @@ from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.explanations.times import assumed_between
 from btlang.frontends.mission.token import (
     BEFORE_CONDITIONS,
-    DAYTIME,
     IN_CONDITIONS,
     JOINTS,
     KEEP_OUT,
@@ -28,6 +27,7 @@ from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.frontends.mission.tokens.settling import STAYS, first_word
 from btlang.frontends.mission.tokens.silent_words import BEGINS
 from btlang.text.time_of_day import WEEKDAYS
+from btlang.tree.rounds import DAYTIME
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.match import Match, SlotValue
 

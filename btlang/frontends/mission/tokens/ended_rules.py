@@ -12,7 +12,6 @@ from itertools import pairwise
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.token import (
-    DAYTIME,
     JOINTS,
     KEEP_OUT,
     LINES,
@@ -35,6 +34,7 @@ from btlang.frontends.mission.token import (
 from btlang.text.source import Span
 from btlang.text.time_of_day import seconds_of, shown
 from btlang.tree.answers import PERSON_SAYS, SOMEBODY_SAYS
+from btlang.tree.rounds import DAYTIME
 from btlang.tree.sums import COUNTING
 from btlang.vocabulary.antecedents import says_there
 from btlang.vocabulary.entry import Entry

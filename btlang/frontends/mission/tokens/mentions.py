@@ -10,7 +10,7 @@ from btlang.frontends.mission.tokens.counted_things import COUNTED
 from btlang.frontends.mission.tokens.settling import HOLDS
 from btlang.text.source import Source
 from btlang.text.words import END_OF_TEXT, Words, split
-from btlang.tree.answers import ASK, SOMEBODY_SAYS
+from btlang.tree.answers import ANSWERED, ASK, SOMEBODY_SAYS
 from btlang.vocabulary.adjectives import OWNER
 from btlang.vocabulary.antecedents import pronouns_for
 from btlang.vocabulary.capabilities import HOLDING, MOVES
@@ -180,7 +180,8 @@ class Mentions:
                 self._note_kind(value.type, latest, choice, is_one=not (value.more or value.group))
             if value.type == PERSON:
                 self._named_at = value.last if match.meaning.role == "command" else 0
-            if value.type == TEXT and entry is not None and entry.id == ASK and OBJECT not in self._context.latest:
+            asks = "" if entry is None or value.type != TEXT else entry.id
+            if asks == ANSWERED or (asks == ASK and OBJECT not in self._context.latest):  # `if he wants the cup`
                 self.note_asked(split(Source(latest), self._vocabulary.orthography).words)
             if value.type in (PLACE, ZONE) and latest in self._vocabulary.values.listed(DOOR):
                 self._context.latest[DOOR] = latest  # `if somebody is at the front door, open it`

@@ -6,7 +6,6 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.token import (
-    DAYTIME,
     IN_CONDITIONS,
     JOINTS,
     RULES,
@@ -18,6 +17,7 @@ from btlang.frontends.mission.token import (
     statement_of,
 )
 from btlang.text.source import Source, Span
+from btlang.tree.rounds import DAYTIME
 from btlang.vocabulary.lexicon import Lexicon
 
 _ENDING = ("until", "until_time")
