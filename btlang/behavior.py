@@ -74,7 +74,7 @@ class Behavior(Record, uncompared=("span", "numbers")):
         """
         parts = [self, *subtrees.values()]
         words = _with_fakes(keywords, dict.fromkeys(_functions([*parts])))
-        others = [each for each in _functions_of_scripts([*parts]) if each not in words] if _has_texts(parts) else []
+        others = [each for each in _functions_of_scripts([*parts]) if each not in words]
         try:
             return self._compile([*words, *others], world, language, subtrees)
         except MissionError as error:
@@ -276,17 +276,6 @@ def _is_fake(word: object, own: Entry) -> bool:
     )
 
 
-def _has_texts(waiting: list[Child]) -> bool:
-    """Return whether a text is in behaviors."""
-    waiting = [*waiting]
-    while waiting:
-        child = waiting.pop()
-        if isinstance(child, str | Source):
-            return True
-        waiting += child.children if isinstance(child, Behavior) else ()
-    return False
-
-
 def _functions(waiting: list[Child]) -> list[Callable[..., object]]:
     """Return the functions in behaviors, and those that the words of their missions call."""
     found: list[Callable[..., object]] = []
@@ -304,14 +293,16 @@ def _functions(waiting: list[Child]) -> list[Callable[..., object]]:
 
 
 def _functions_of_scripts(waiting: list[Child]) -> list[Callable[..., object]]:
-    """Return the decorated functions of the scripts that made behaviors, but for those that replace words."""
-    paths = set[str]()
+    """Return the decorated functions of the scripts that made behaviors with texts, but for those that replace words."""
+    paths, has_texts = set[str](), False
     while waiting:
         child = waiting.pop()
+        has_texts |= isinstance(child, str | Source)
         if isinstance(child, Behavior):
             paths |= {child.span.source.name} if child.span is not None else set()
             waiting += child.children
-    modules = [module for module in list(sys.modules.values()) if getattr(module, "__file__", None) in paths]
+    scripts = paths if has_texts else ()
+    modules = [module for module in list(sys.modules.values()) if getattr(module, "__file__", None) in scripts]
     functions = dict.fromkeys(each for module in modules for each in vars(module).values() if _is_word(each))
     return list(functions)
 
