@@ -293,7 +293,10 @@ def _functions(waiting: list[Child]) -> list[Callable[..., object]]:
 
 
 def _functions_of_scripts(waiting: list[Child]) -> list[Callable[..., object]]:
-    """Return the decorated functions of the scripts that made behaviors with texts, but for those that replace words."""
+    """Return the decorated functions of the scripts that made behaviors with texts.
+
+    Without those that replace words, and those that have the words of another one.
+    """
     paths, has_texts = set[str](), False
     while waiting:
         child = waiting.pop()
@@ -304,7 +307,8 @@ def _functions_of_scripts(waiting: list[Child]) -> list[Callable[..., object]]:
     scripts = paths if has_texts else ()
     modules = [module for module in list(sys.modules.values()) if getattr(module, "__file__", None) in scripts]
     functions = dict.fromkeys(each for module in modules for each in vars(module).values() if _is_word(each))
-    return list(functions)
+    said = [(entry.phrases, entry.quantity) for entry in map(_entry, functions)]
+    return [each for each, own in zip(functions, said, strict=True) if said.count(own) == 1]
 
 
 def _is_word(value: object) -> bool:

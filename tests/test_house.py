@@ -46,6 +46,7 @@ LONG: dict[str, str] = {
     "btlang/cli/verbs.py": "the table of verbs",
     "docs/cli.md": "made from the help of the commands",
     "docs/api.md": "made from the docstrings",
+    "btlang/behavior.py": "trees in Python: behaviors, the words of their functions, and how a mission is made of them",
     "btlang/session.py": "a session, and the runs that it makes",
     "btlang/robots/simulation/robot.py": "the robot, one capability after the other",
     "btlang/task/store/task_store.py": "the store, one table after the other",
