@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import shlex
 import signal
 import sys
 import threading
@@ -32,6 +33,7 @@ from btlang.task.commands.client import (
     robots_known,
 )
 from btlang.task.commands.companion import companions, require_companions
+from btlang.task.commands.down import COMMAND
 from btlang.task.commands.socket_server import SocketServer
 from btlang.task.commands.store_handlers import latest_text
 from btlang.task.execution.manager import DAY
@@ -196,7 +198,9 @@ def _up(options: argparse.Namespace) -> int:
                 for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
                     if number != signal.SIGHUP or signal.getsignal(number) != signal.SIG_IGN:  # ignored under nohup
                         signal.signal(number, lambda *_: ended.set())
-                left = left_over(layer.store, robot.body.name)
+                has_secret = options.code is not None or without_password(options.store) != options.store
+                command = "" if has_secret else shlex.join(["btc", *_words_of(options)])
+                left = left_over(layer.store, robot.body.name, command)
                 layer.start()
                 server.start()
                 keep_ticks_in_time()
@@ -243,17 +247,21 @@ def _list_robots(as_json: bool) -> int:
     return 0
 
 
-def left_over(store: TaskStore, body: str) -> list[str]:
-    """Say which tasks are left from before, and whether another robot file was used then; the store keeps this one."""
-    count, before = store.count_tasks(WAITING | ACTIVE), store.setting(_BODY)
+def left_over(store: TaskStore, body: str, command: str = "") -> list[str]:
+    """Say which tasks are left from before, and whether another robot file or another command brought it up then; the
+    store keeps these.
+    """
+    count, before, up = store.count_tasks(WAITING | ACTIVE), store.setting(_BODY), store.setting(COMMAND)
     store.set_setting(_BODY, body)
+    store.set_setting(COMMAND, command)
     if not count:
         return []
     are = "1 task is" if count == 1 else f"{count} tasks are"
     other = before not in ("", body)
     whose = f" They were for another body, '{one_line(before)}'; this one is '{one_line(body)}'." if other else ""
     whose = whose.replace("They were", "It was") if count == 1 else whose
-    return [f"{are} left from before.{whose} To see {'it' if count == 1 else 'them'}: btc task list"]
+    lines = [f"{are} left from before.{whose} To see {'it' if count == 1 else 'them'}: btc task list"]
+    return lines if up in ("", command) else [*lines, f"Before, the robot was brought up with: {one_line(up)}"]
 
 
 def _from_library(options: argparse.Namespace, kept: Mapping[str, Any]) -> tuple[Connector, str | Source | None]:
@@ -278,7 +286,22 @@ def _from_library(options: argparse.Namespace, kept: Mapping[str, Any]) -> tuple
 
 def _unit(options: argparse.Namespace) -> str:
     """Write a unit of systemd that brings the robot up with these options."""
-    words = [sys.executable, "-m", "btlang", "robot", "up"]
+    words = [sys.executable, "-m", "btlang", *_words_of(options)]
+    folder = os.getcwd()
+    for word in (*words, folder):
+        if _CONTROL.search(word):  # behind the end of a line would be another setting
+            raise messages.wrong("unit", f"'{one_line(word)}' can't stand in a unit")
+    return _UNIT.format(
+        note=_SECRET if without_password(options.store) != options.store else "",
+        name=options.name or USUAL_NAME,
+        command=" ".join(map(_quote, words)),
+        folder=folder.replace("%", "%%"),
+    )
+
+
+def _words_of(options: argparse.Namespace) -> list[str]:
+    """Return the words of the command that brings the robot up with these options."""
+    words = ["robot", "up"]
     for option in (
         "name",
         "robot",
@@ -304,17 +327,7 @@ def _unit(options: argparse.Namespace) -> str:
     words += [] if options.speed == "real" else ["--speed", str(options.speed)]
     words += [] if options.keep is None else ["--keep", f"{options.keep:g}"]
     words += ["--serve", "--host", options.host, "--port", str(options.port)] if options.serve else []
-    words += ["--durable"] * options.durable + ["--no-recordings"] * options.no_recordings
-    folder = os.getcwd()
-    for word in (*words, folder):
-        if _CONTROL.search(word):  # behind the end of a line would be another setting
-            raise messages.wrong("unit", f"'{one_line(word)}' can't stand in a unit")
-    return _UNIT.format(
-        note=_SECRET if without_password(options.store) != options.store else "",
-        name=options.name or USUAL_NAME,
-        command=" ".join(map(_quote, words)),
-        folder=folder.replace("%", "%%"),
-    )
+    return words + ["--durable"] * options.durable + ["--no-recordings"] * options.no_recordings
 
 
 def _quote(word: str) -> str:

@@ -216,6 +216,8 @@ def _command(options: argparse.Namespace) -> Command:
     if act == "delete":
         return messages.Delete(_word(options, f"the name of a {options.kind}"), options.kind)
     number = _number(options)
+    if act == "move" and options.priority is None and not options.before:
+        raise wrong(act, "it needs --before TASK or --priority N")
     if act == "move":
         return messages.Reorder(number, options.priority, options.before)
     if act == "resume":

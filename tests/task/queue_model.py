@@ -141,11 +141,12 @@ class Model:
         if number == other:
             return
         assert self.ok("reorder", task=number, before=other)
-        waiting.remove(number)
-        waiting.insert(waiting.index(other), number)
+        left = sorted(filter(self.is_open, self.tasks), key=self._turn)  # also the one under way: it may be interrupted
+        left.remove(number)
+        left.insert(left.index(other), number)
         task, after = self.tasks[number], self.tasks[other]
         task.priority, task.bonus = after.priority, after.bonus
-        equal = [each for each in waiting if self._turn(each)[0] == self._turn(other)[0]]
+        equal = [each for each in left if self._turn(each)[0] == self._turn(other)[0]]
         for position, each in enumerate(equal):
             self.tasks[each].position = position - len(equal)
 

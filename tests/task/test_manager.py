@@ -11,7 +11,7 @@ import pytest
 
 from btlang.task.execution.manager import TaskManager
 from btlang.task.schedule.recurrence import read_rule
-from btlang.task.store.records import Missed, MissionText, Overlap, Restart, Schedule, Task, TaskState
+from btlang.task.store.records import ACTIVE, Missed, MissionText, Overlap, Restart, Schedule, Task, TaskState
 from btlang.task.store.task_store import TaskStore, open_store
 
 DAY = 86_400.0
@@ -207,6 +207,16 @@ def test_nothing_is_more_urgent_than_an_equal(store: TaskStore) -> None:
     store.add(Task(0, MissionText("wave"), "ann", NINE, priority=1))
     assert manager.is_more_urgent(claimed, NINE) is False
     assert manager.is_more_urgent(claimed.replace(id=99, priority=0), NINE) is True
+
+
+def test_what_is_put_before_another_one_comes_behind_what_was_interrupted(store: TaskStore) -> None:
+    manager = TaskManager(store)
+    first, second, third = (store.add(Task(0, MissionText("wave"), "ann", NINE)).id for _ in range(3))
+    assert (claimed := manager.claim(NINE)) is not None
+    assert claimed.id == first
+    store.move_before(third, second)
+    store.change(first, ACTIVE, TaskState.DELAYED, time=NINE, cause="a more urgent task comes first")
+    assert [each.id for _ in range(3) if (each := manager.claim(NINE))] == [first, third, second]
 
 
 def test_an_emergency_stop_kills_what_was_under_way_alone(store: TaskStore) -> None:

@@ -63,7 +63,8 @@ def test_a_robot_that_is_down_still_says_what_it_did(name: str, btc: Btc, short:
     assert (code, "Task 9 isn't known" in text) == (1, True)
     for words in ("task add -c wave", "task cancel 2", "robot status", "task list --live", "robot resume"):
         code, text = btc(*words.split())
-        assert (code, "No robot is up" in text) == (2, True), text
+        who = "No robot" if name == "robot" else f"No robot '{name}'"
+        assert (code, f"{who} is up" in text) == (2, True), text
 
 
 def test_of_several_that_are_down_the_one_used_last_answers(btc: Btc, short: Path) -> None:
@@ -153,3 +154,14 @@ def test_what_is_left_from_before_is_said_when_the_robot_comes_up(short: Path) -
             "2 tasks are left from before. They were for another body, 'standard'; this one is 'rover'. "
             "To see them: btc task list"
         ]
+        left_over(store, "rover", "btc robot up --world hotel.toml")
+        assert left_over(store, "rover", "btc robot up")[1:] == [
+            "Before, the robot was brought up with: btc robot up --world hotel.toml"
+        ]
+
+
+def test_a_robot_that_is_down_comes_up_as_it_was(btc: Btc, short: Path) -> None:
+    with robot_up(Path(data_folder("hotel")), "hotel") as layer:
+        left_over(layer.store, "standard", "btc robot up --name hotel --world hotel.toml")
+    assert "To bring it up: btc robot up --name hotel --world hotel.toml\n" in btc("task", "list")[1]
+    assert "Start it with: btc robot up --name hotel\n" in btc("robot", "status")[1]

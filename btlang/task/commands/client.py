@@ -130,7 +130,8 @@ def _only_name() -> str:
         names = ", ".join(listening)
         what = f"Several robots are up: {names}"
         raise MissionError([diagnostic("BT185", NOWHERE, what=what, advice="Say which: --name NAME")])
-    return listening[0] if listening else USUAL_NAME
+    known = robots_known()
+    return listening[0] if listening else USUAL_NAME if USUAL_NAME in known or len(known) != 1 else known[0]
 
 
 def find_listening() -> list[str]:

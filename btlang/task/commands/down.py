@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from btlang.task.store.records import MissionText
 
 _DOWN = "the robot is down"
+COMMAND = "command"
+"""The setting of the store with the command that brought the robot up last."""
 
 
 class DownRobot:
@@ -32,6 +34,8 @@ class DownRobot:
     def __init__(self, name: str) -> None:
         self.name = name
         self._store = open_store(_store_of(name))
+        self.command = self._store.setting(COMMAND)
+        """The command that brought it up last, "" if that isn't known."""
         reader = StoreReader(self._store, TaskManager(self._store), self._now, lambda: _DOWN)
         library = LibraryHandler(self._store, _refuse_mission, self._now, None, ())
         schedules = ScheduleHandler(self._store, lambda: None, _refuse_mission, self._now)
@@ -74,7 +78,7 @@ def open_reader(name: str, command: Command, note: Callable[[str], object]) -> R
         if not down:
             raise
     client = DownRobot(down)
-    start = "btc robot up" if down == USUAL_NAME else f"btc robot up --name {down}"
+    start = client.command or ("btc robot up" if down == USUAL_NAME else f"btc robot up --name {down}")
     note(f"The robot '{down}' is down; this is from its store. To bring it up: {start}")
     others = [] if name else [each for each in _robots_with_store() if each != down]
     if others:

@@ -103,8 +103,8 @@ NEXT = (
     f" AND (deadline IS NULL OR deadline >= ? OR started IS NOT NULL) ORDER BY {IN_TURN} LIMIT 1"
 )
 WAITS = "{} AND state IN ({})".format(NOT_OVER, ", ".join(f"'{state}'" for state in sorted(WAITING)))
-AHEAD = f"(priority + bonus) = ? AND {WAITS} AND id <> ? AND (position < ? OR (position = ? AND id < ?))"
-"""The tasks before another one of the same priority, but for a third."""
+AHEAD = f"(priority + bonus) = ? AND {NOT_OVER} AND id <> ? AND (position < ? OR (position = ? AND id < ?))"
+"""The tasks before another one of the same priority, but for a third; also one under way, which may be interrupted."""
 _QUEUED = f"{NOT_OVER} AND state = '{TaskState.QUEUED}'"
 SINCE = "CASE WHEN earliest > created THEN earliest ELSE created END"
 """The time since when a task waits."""
