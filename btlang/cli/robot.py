@@ -137,6 +137,8 @@ def _show_status(name: str) -> int:
             show(f"The next schedule is due at {format_moment(data['next_schedule'], time.time())}.")
         if data["battery"] is not None:
             show(f"The battery is at {data['battery']:.0f}%.")
+        for hand, thing in data["holds"].items():
+            show(f"Its {hand} hand holds: {thing}")
         for rule in data["rules"]:
             show(f"House rule: {rule}")
     return code

@@ -14,7 +14,7 @@ from btlang.task.store.location import latest_store, note_store, usual_store
 from btlang.task.store.records import MissionText, Task, TaskState
 from btlang.task.store.task_store import open_store
 
-from .layers import Btc, ask, robot_up, submit, wait_for
+from .layers import Btc, ask, robot_up, submit, wait_for, wait_until
 
 
 def test_why_answers_for_a_task(robot: TaskLayer, btc: Btc, tmp_path: Path) -> None:
@@ -86,6 +86,7 @@ def test_a_status_has_the_house_rules_and_the_next_schedule(btc: Btc, short: Pat
     rules.write_text("whenever the battery is below 20%,\n    charge\n", encoding="utf-8")
     with robot_up(Path(data_folder("robot")), rules=str(rules)) as layer:
         ask(layer, "schedule", rule="every day at 9:00", text="wave")
+        wait_until(lambda: ask(layer, "status")["battery"] is not None)  # the rules have begun
         code, text = btc("robot", "status")
         assert btc("robot", "list") == (0, "robot  up\n")
     assert code == 0
