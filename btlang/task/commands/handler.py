@@ -314,7 +314,7 @@ class Handler:
             "task": None if task is None else self._reader.data(self._reader.known(task.id)),
             "running": [] if snapshot is None else list(snapshot.running),
             "battery": None if state is None else state.battery,
-            "holds": {} if state is None else {hand: what for hand in ("left", "right") if (what := getattr(state, hand))},
+            "holds": {hand: thing for hand in ("left", "right") if (thing := getattr(state, hand, None))},
             "waiting": self._store.count_tasks(WAITING),
             "question": "" if task is None else self._world_input.question,
             "rules": self._executor.rules.words, "next_schedule": self._next_schedule(),

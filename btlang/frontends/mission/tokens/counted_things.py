@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.frontends.mission.token import Called, Listed, Token, arguments_of, drives
+from btlang.frontends.mission.token import Called, Listed, Token, arguments_of, drives, statement_start
 from btlang.frontends.mission.tokens.settling import is_presence
 from btlang.text.source import Source, Span
 from btlang.tree.sums import COMPARED, COUNTING
@@ -39,7 +39,7 @@ def with_counted_things(tokens: list[Token], vocabulary: Lexicon, source: Source
         goal = next(iter(said.entry.given(PLACE, arguments_of(said)[-1])), goal)
         if said.entry.id in COUNTING:
             last = here = said
-        elif token.kind == "command" and drives(said):
+        elif token.kind == "command" and drives(said) and not _depends(tokens, at):
             here = None
         elif here is not None and isinstance(said, Called) and _asks_if_any(tokens, at, here, vocabulary, source):
             token.value = Called(vocabulary.entries[COMPARED][0], ())
@@ -54,6 +54,13 @@ def with_counted_things(tokens: list[Token], vocabulary: Lexicon, source: Source
                 reason = "what was counted last is something else"
                 example = f"count the {span.text.split()[-1]}. If {span.text}, wave"
                 yield diagnostic("BT150", span, words=span.text, reason=reason, example=example)
+
+
+def _depends(tokens: list[Token], at: int) -> bool:
+    """Whether what is done at a place depends on a count: `if there are more than 2, dance. If there is nobody, ...`."""
+    first = statement_start(tokens, at)
+    said = (token.value for token in tokens[first:at] if token.kind == "condition")
+    return tokens[first].kind == "if" and any(isinstance(each, Called) and each.entry.id == COMPARED for each in said)
 
 
 def _asks_if_any(tokens: list[Token], at: int, counted: Called | Listed, vocabulary: Lexicon, source: Source) -> bool:

@@ -353,6 +353,7 @@ class Questions(Answers):
             command = Token("command", start, end, self._saying_of(f"{{{key}}}"))
         else:
             self._set_text(command, slot, f"{{{key}}}", adds)
+            command.end = end
         self._tokens.append(command)
 
     def _asks_several(self) -> bool:
