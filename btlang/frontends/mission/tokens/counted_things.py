@@ -57,7 +57,7 @@ def with_counted_things(tokens: list[Token], vocabulary: Lexicon, source: Source
 
 
 def _depends(tokens: list[Token], at: int) -> bool:
-    """Whether what is done at a place depends on a count: `if there are more than 2, dance. If there is nobody, ...`."""
+    """Whether what is done at a place depends on a count: `if there are more than 2, dance. If there is nobody, A`."""
     first = statement_start(tokens, at)
     said = (token.value for token in tokens[first:at] if token.kind == "condition")
     return tokens[first].kind == "if" and any(isinstance(each, Called) and each.entry.id == COMPARED for each in said)
