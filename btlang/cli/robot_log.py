@@ -1,4 +1,4 @@
-"""What the terminal of `btc robot up` reports, a line each: stops, releases, pauses, and tasks that are over."""
+"""What the terminal of `btc robot up` reports, a line each: stops, releases, pauses, questions, tasks that are over."""
 
 from __future__ import annotations
 
@@ -28,6 +28,7 @@ class RobotLog:
         self._is_paused = layer.executor.is_paused
         self._follower = TaskFollower(layer.store, self._report_tasks)
         layer.emergency.listeners.append(self._report_stops)
+        layer.world_input.on_question = self._report_question
 
     def close(self) -> None:
         """Report what has happened until now, and end. May be called twice."""
@@ -60,6 +61,9 @@ class RobotLog:
                 if reason != self._reason:  # who asks again, to be sure, changes nothing
                     self._report(f"Stopped: {reason}. To let it move: btc robot release")
                 self._reason = reason
+
+    def _report_question(self, question: str) -> None:
+        self._report(f'Asks "{question}" To answer: btc task answer TEXT')
 
     def _report_tasks(self, changes: Sequence[TaskChange]) -> None:
         for change in changes:

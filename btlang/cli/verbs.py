@@ -712,7 +712,7 @@ _TABLE = (
             ("btc compile examples/patrol.txt -o patrol.xml", "XML of BehaviorTree.CPP"),
             ("btc compile examples/patrol.txt --to dot", "to standard output"),
         ),
-        also=("convert", "build", "translate"),
+        also=("convert", "build", "translate", "export"),
     ),
     Verb(
         "grammar", SHARE, "write a grammar of missions, for language models", "btlang.cli.mission_verbs:write_grammar",

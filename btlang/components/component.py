@@ -198,7 +198,12 @@ class Component:
 
     def _device(self, name: str) -> Any:
         if name not in self._devices:
-            raise ComponentError(f'{self.name} has no device "{name}"; name it among its needs')
+            lacks = (
+                f'needs "{name}", which the robot lacks'
+                if name in self.needs
+                else "can't use it: it isn't in its needs"
+            )
+            raise ComponentError(f"{self.name} {lacks}")
         return self._devices[name]
 
 

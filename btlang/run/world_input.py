@@ -33,6 +33,8 @@ class WorldInput:
         self._missed = False
         self.question = ""
         """The open question, "" while there is none."""
+        self.on_question: Callable[[str], object] = lambda question: None
+        """A function that gets each question that has no answer yet, in the thread of the run."""
 
     def __call__(self, event: Event) -> None:
         """Take in an event of the run."""
@@ -40,6 +42,8 @@ class WorldInput:
             self.question = event.text or "..."
             if (answer := self._take_answer(event.text.lower())) is not None:
                 self.type(answer)
+            else:
+                self.on_question(self.question)
         elif isinstance(event, PeriodPassed) and (self.question or self._calls):
             while self._calls:
                 self._calls.popleft()(event.robot)

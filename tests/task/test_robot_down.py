@@ -51,6 +51,7 @@ def test_a_robot_that_is_down_still_says_what_it_did(name: str, btc: Btc, short:
         ("task why 1", "completed"),
         ("why 1", "completed"),
         ("robot report", "1 of 2 done, 1 not over yet"),
+        ("robot report", "task 1, say hi: completed\n"),
         ("task trail", "submit"),
         ("task library", "q, revision 1"),
         ("task schedules", "every day at 09:00: wave"),

@@ -53,6 +53,18 @@ def test_a_line_for_stops_pauses_and_tasks_that_are_over(tmp_path: Path) -> None
     assert said(lines)[-1].startswith(f"Task {failing} failed: grasp the book (")
 
 
+def test_a_question_is_a_line_with_how_to_answer(tmp_path: Path) -> None:
+    lines: list[str] = []
+    with layer_in(tmp_path) as layer:
+        log = RobotLog(layer, lines.append)
+        number = submit(layer, 'ask "Tea?"')
+        wait_until(lambda: len(lines) == 1)
+        do(layer, log, messages.AnswerQuestion("yes"), "ann")
+        wait_for(layer, number, *FINAL)
+        log.close()
+    assert said(lines)[0] == 'Asks "Tea?" To answer: btc task answer TEXT'
+
+
 def test_a_robot_that_comes_up_stopped_reports_its_release(tmp_path: Path) -> None:
     with layer_in(tmp_path) as layer:
         layer.stop("ann")

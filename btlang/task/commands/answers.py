@@ -181,14 +181,15 @@ def write_report(store: TaskStore, since: float, until: float) -> Iterator[str]:
         yield from _group(_title(group[0], schedules.get(number)), group)
     for person in sorted({task.person for task in tasks if not task.schedule}):
         group = [task for task in tasks if not task.schedule and task.person == person]
-        yield from _group(f"{one_line(person) or 'Somebody'} asked", group)
+        yield from _group(f"{one_line(person) or 'Somebody'} asked", group, lists_all=True)
 
 
-def _group(title: str, tasks: Sequence[Task]) -> Iterator[str]:
+def _group(title: str, tasks: Sequence[Task], lists_all: bool = False) -> Iterator[str]:
+    """List tasks; of those that a schedule makes again and again only the ones that weren't done."""
     yield ""
     yield f"{title}: {_count(tasks)}."
     for task in tasks:
-        if task.state is not TaskState.COMPLETED:
+        if lists_all or task.state is not TaskState.COMPLETED:
             reason = f": {one_line(task.reason)}" if task.reason else ""
             when = format_moment(_time_of(task), 0.0)
             yield f"  {when}  task {task.id}, {shorten(task.mission)}: {task.state}{reason}"
