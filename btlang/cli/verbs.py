@@ -95,7 +95,7 @@ _TABLE = (
             Option("--voice", metavar="FILE", help="write what the robot says to a WAV file"),
             Option("--watch", action="store_true", help="show map, text, tree and speech in the browser"),
             BROWSER, LINES,
-            Option("--quiet", action="store_true", help="print only errors"),
+            Option("--quiet", action="store_true", help="print only errors, and keep no recording for btc why"),
             Option("--record", metavar="FILE", help="record the run as MCAP, for replay, watch, why and Foxglove"),
             Option(
                 "--record-scans", type=between(0, 100), default=2.0, metavar="HZ",

@@ -180,10 +180,11 @@ def _ways(text: str, kind: ValueType, vocabulary: Lexicon) -> list[str]:
 
 
 def _says_more(text: str, vocabulary: Lexicon) -> bool:
-    """Whether a bare word would be more than a text: an article, or the begin of a phrase or definition."""
+    """Whether a bare word would be more than a text: an article, a judgment, or the begin of a phrase or definition."""
     word = text.lower()
     defines = any(word in vocabulary.roles[role] for role in DEFINING)
-    return not text.isalnum() or defines or word in vocabulary.articles or word in vocabulary.trie
+    is_more = word in vocabulary.articles or word in vocabulary.asking["judged"] or word in vocabulary.trie
+    return not text.isalnum() or defines or is_more
 
 
 def holds_definer(words: str, vocabulary: Lexicon) -> bool:

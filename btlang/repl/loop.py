@@ -6,6 +6,7 @@ import signal
 import sys
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import closing, contextmanager, nullcontext
+from textwrap import dedent
 
 from btlang.api import Mission
 from btlang.diagnostics.diagnostic import MissionError, render
@@ -117,7 +118,7 @@ class Repl:
             if own is not None:
                 self._commands.do(*own)
                 return 0
-            compiled = self._draft.compile(text)
+            compiled = self._draft.compile(dedent(text))  # as it is saved, at the left margin
             if not compiled.entry.has_command and not compiled.entry.definitions:
                 return 0  # a comment, or politeness
             self._draft.add(compiled.entry)

@@ -50,7 +50,7 @@ ASKING = (
     "between_joint", "standing_verbs", "kept_up", "events", "duties", "reasons", "performing", "naming", "named_as",
     "in_turn", "any_day", "said_before", "any_of_them", "of_them", "indefinite", "no_thing", "those", "whichever",
     "pausing", "working", "stops", "at_least", "pairs", "telling_to", "says",
-    "reporting", "told_pronouns", "replying", "missed", "outside", "at_once", "some_time",
+    "reporting", "told_pronouns", "replying", "missed", "outside", "at_once", "some_time", "judged",
     "until_none", "rounds", "obliging", "failing", "found", "counted", "replied",
     "so", "being", "causing", "asking_for", "plea_for", "helping", "plea_for_help",
     "speaking", "spoken_of", "still", "motionless", "who", "somebody", "answering", "likewise",

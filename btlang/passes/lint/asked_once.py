@@ -131,7 +131,8 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
         _is_about_driving(asked, node, journeys)
         or (is_front and asked.entry.id == _BUMPED and asked.entry not in entries)
     )
-    is_seen = isinstance(asked, ast.Phrase) and asked.entry.id in _IN_VIEW and _is_tour(journeys)
+    is_tour = any(isinstance(item, ast.ForEach) for item in before) or _is_tour(journeys)
+    is_seen = isinstance(asked, ast.Phrase) and asked.entry.id in _IN_VIEW and is_tour
     is_seen = is_seen and not _is_at_goal(asked, journeys[-1])
     if is_timed or is_driving or (is_seen and is_front):
         each = f"{vocabulary.word('whenever')} {node.span.text[len(words.split(maxsplit=1)[0]) :].lstrip()}"

@@ -9,6 +9,7 @@ BT170, BT175).
 - `ask Bob "Tea?". If he says no, ask again` does nothing with the second answer;
 - `if there are more than 3 people, A` where nothing is counted;
 - `wait until he says yes` where nothing asks again;
+- `if the answer is right`, which the robot doesn't know;
 - `fetch the cup` only picks it up;
 - `ask Bob "Tea?"` asks from where the robot is.
 """
@@ -26,7 +27,7 @@ from btlang.text.formatting import joined
 from btlang.text.source import Span
 from btlang.text.time_of_day import seconds_of
 from btlang.tree import ast
-from btlang.tree.answers import ABOUT_ANSWERS, ASK, asking_verbs, asks
+from btlang.tree.answers import ABOUT_ANSWERS, ANSWERED, ASK, asking_verbs, asks
 from btlang.tree.rounds import DAYTIME
 from btlang.tree.sums import COMPARED, COUNTING, asks_for_number
 from btlang.vocabulary.capabilities import MOVES, TRAVELS
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
 
 _LOOPS = (ast.Repeat, ast.Retry, ast.Every, ast.While)
 _KEEP_ASKING = 'keep asking Alice "Tea?" until she says yes'
+_THE_ANSWER = 'if the answer is "blue", wave'
 _COUNTED_AGAIN = "every 10 min, count the people. As soon as there are more than 3, wave"
 _SIGHTS = ("SeesPerson", "SeesObject")
 _COUNTED = "count the people. If there are more than 3, wave"
@@ -273,6 +275,20 @@ def find_unused_answers(compilation: Compilation) -> Iterator[Diagnostic]:
                 before = (each.arguments for each in asked if each.span.start < again.span.start)
                 if isinstance(again, ast.Phrase) and again.arguments in before:
                     yield diagnostic("BT147", again.span, words=again.span.text, example=_KEEP_ASKING)
+
+
+def find_judged_answers(compilation: Compilation) -> Iterator[Diagnostic]:
+    """Report (BT152) `if the answer is right` behind a question that doesn't offer that word."""
+    vocabulary = compilation.vocabulary
+    judged = vocabulary.asking["judged"]
+    phrases = [each for body in ast.bodies(compilation.mission) for each in _phrases(compilation.syntax(body))]
+    offered = " ".join(text.lower() for each in phrases if each.entry.id == ASK for _, text in each.arguments)
+    for each in phrases:
+        said = each.arguments[0][1].lower() if each.entry.id == ANSWERED and '"' not in each.span.text else ""
+        words = each.span.text.lower().split()
+        if said in judged and said not in offered and not vocabulary.forms_of_be.keys().isdisjoint(words):
+            reason, advice = f"the robot doesn't know which answer is {said}", f"Say the answer: {_THE_ANSWER}"
+            yield diagnostic("BT152", each.span, words=each.span.text, reason=reason, advice=advice)
 
 
 def find_uncounted(compilation: Compilation) -> Iterator[Diagnostic]:

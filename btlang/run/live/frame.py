@@ -164,10 +164,12 @@ def keys_line(paused: bool, keys: Sequence[tuple[str, str]], signs: Signs) -> Li
 
 
 def prompt_line(question: str, typed: str, width: int, signs: Signs) -> Line:
-    """Return what the robot asks, and the answer so far."""
+    """Return what the robot asks, the answer so far, and the keys that aren't a part of it, where there is room."""
     answer = f" {typed}_"
     asked = fit_text(one_line(question), max(8, width - len(answer) - 1), signs)
-    return ((asked, "bold yellow"), (answer[-width:], "bold"))
+    keys = signs.apart.join(f"{key} {does}" for key, does in (("Enter", "answers"), *SIGNALS))
+    hint = f"   {keys}" if cell_len(asked) + len(answer) + len(keys) + 3 <= width else ""
+    return ((asked, "bold yellow"), (answer[-width:], "bold"), (hint, "dim"))
 
 
 def _node(

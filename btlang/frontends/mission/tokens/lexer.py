@@ -136,13 +136,14 @@ class Lexer:
         """Line ends, indents and dedents around the tokens of each line, as in Python."""
         lines = self.text.lines
         indents = [lines[0].indent] if lines else [0]
-        opens_block = False
+        opens_block = is_too_far = False
         for number, line in enumerate(lines):
+            was_too_far, is_too_far = is_too_far, line.indent > indents[-1] and not opens_block
             if line.indent > indents[-1]:
                 if opens_block:
                     indents.append(line.indent)
                     self._mark("indent", line.first)
-                else:
+                elif not was_too_far:  # a block that nothing opens is one mistake
                     self.problems.append(diagnostic("BT006", self.text.span(line.first, line.first)))
             else:
                 if opens_block:
