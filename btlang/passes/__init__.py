@@ -11,6 +11,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, MissionError, sort_diagnos
 from btlang.passes.checks import check_goals, check_resources, check_size, check_types
 from btlang.passes.compilation import Compilation, Pass
 from btlang.passes.lint.allow import apply_allow, apply_allow_in_xml
+from btlang.passes.lint.answers import find_judged_answers, find_unused_answers
 from btlang.passes.lint.asked_once import find_asked_once
 from btlang.passes.lint.chosen_in_a_branch import find_chosen_in_a_branch
 from btlang.passes.lint.definitions import find_line_ends, find_rules_only, find_unused
@@ -34,12 +35,10 @@ from btlang.passes.lint.unlikely_meanings import (
     find_distant_questions,
     find_ended_rounds,
     find_half_turns,
-    find_judged_answers,
     find_next_day,
     find_picked_up_only,
     find_restarts,
     find_uncounted,
-    find_unused_answers,
     find_vain_waits,
 )
 from btlang.passes.lower import lower_names

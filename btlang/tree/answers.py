@@ -32,6 +32,7 @@ _ONCE = (
 )  # fmt: skip
 """Forms whose commands are done before what comes behind the form."""
 EXAMPLE = 'ask Alice "Tea?". If so, wave'
+KEEP_ASKING = 'keep asking Alice "Tea?" until she says yes'
 OF_WHICH = "could be about the first question or about the second"
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
+from btlang.tree.ast import all_definitions
 from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.node import Node
 from btlang.vocabulary.entry import MEASURED
@@ -28,7 +29,8 @@ def find_unchosen(compilation: Compilation) -> Iterator[Diagnostic]:
                 asked.setdefault(text[1:-1], node)
     if not asked:
         return  # as nearly always
-    chosen = set(compilation.mission.given)
+    definitions = all_definitions(compilation.mission)
+    chosen = {*compilation.mission.given, *(name for each in definitions for name, _ in each.parameters)}
     for node in nodes:
         outputs = _outputs(node, compilation)
         for name, text in node.ports:

@@ -1,4 +1,4 @@
-"""Lints on commands that mean something else than most people expect (BT050, BT139, BT146 to BT149, BT163, BT169,
+"""Lints on commands that mean something else than most people expect (BT050, BT139, BT146, BT148, BT149, BT163, BT169,
 BT170, BT175).
 
 - `turn around three times` are half turns, as most people mean whole turns;
@@ -6,10 +6,8 @@ BT170, BT175).
 - `A until 5 pm. At 5 pm, B`, and `... At 4 pm, B`, wait for the next day;
 - `go to the lab until someone is near` starts again, though the command comes to an end by itself;
 - `every 10 min, go to the lab` ends when a round fails;
-- `ask Bob "Tea?". If he says no, ask again` does nothing with the second answer;
 - `if there are more than 3 people, A` where nothing is counted;
 - `wait until he says yes` where nothing asks again;
-- `if the answer is right`, which the robot doesn't know;
 - `fetch the cup` only picks it up;
 - `ask Bob "Tea?"` asks from where the robot is.
 """
@@ -27,7 +25,7 @@ from btlang.text.formatting import joined
 from btlang.text.source import Span
 from btlang.text.time_of_day import seconds_of
 from btlang.tree import ast
-from btlang.tree.answers import ABOUT_ANSWERS, ANSWERED, ASK, asking_verbs, asks
+from btlang.tree.answers import ASK, KEEP_ASKING, asking_verbs, asks
 from btlang.tree.rounds import DAYTIME
 from btlang.tree.sums import COMPARED, COUNTING, asks_for_number
 from btlang.vocabulary.capabilities import MOVES, TRAVELS
@@ -39,9 +37,6 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-_LOOPS = (ast.Repeat, ast.Retry, ast.Every, ast.While)
-_KEEP_ASKING = 'keep asking Alice "Tea?" until she says yes'
-_THE_ANSWER = 'if the answer is "blue", wave'
 _COUNTED_AGAIN = "every 10 min, count the people. As soon as there are more than 3, wave"
 _SIGHTS = ("SeesPerson", "SeesObject")
 _COUNTED = "count the people. If there are more than 3, wave"
@@ -255,42 +250,6 @@ def _person_of(phrase: ast.Phrase) -> str:
     return next((text for text in phrase.entry.given(PERSON, phrase.arguments) if text[:1] != "{"), "")
 
 
-def find_unused_answers(compilation: Compilation) -> Iterator[Diagnostic]:
-    """Report a question that is asked again behind an answer to it, where nothing depends on the second answer."""
-    for body in ast.bodies(compilation.mission):
-        nodes = compilation.syntax(body)
-        phrases = _phrases(nodes)
-        asked = [each for each in phrases if each.entry.id == ASK]
-        if len(asked) < 2:
-            continue  # as nearly always
-        repeated = {id(each) for node in nodes if isinstance(node, _LOOPS) for each in ast.parents_first(node)}
-        used = max((each.span.start for each in phrases if each.entry.id in ABOUT_ANSWERS), default=-1)
-        last = {id(each) for each in asked if each.span.start > used}
-        if not last:
-            continue
-        for node in nodes:
-            if not isinstance(node, ast.If) or not asks(node.condition) or id(node) in repeated:
-                continue
-            for again in (each for each in ast.parents_first(node) if id(each) in last):
-                before = (each.arguments for each in asked if each.span.start < again.span.start)
-                if isinstance(again, ast.Phrase) and again.arguments in before:
-                    yield diagnostic("BT147", again.span, words=again.span.text, example=_KEEP_ASKING)
-
-
-def find_judged_answers(compilation: Compilation) -> Iterator[Diagnostic]:
-    """Report (BT152) `if the answer is right` behind a question that doesn't offer that word."""
-    vocabulary = compilation.vocabulary
-    judged = vocabulary.asking["judged"]
-    phrases = [each for body in ast.bodies(compilation.mission) for each in _phrases(compilation.syntax(body))]
-    offered = " ".join(text.lower() for each in phrases if each.entry.id == ASK for _, text in each.arguments)
-    for each in phrases:
-        said = each.arguments[0][1].lower() if each.entry.id == ANSWERED and '"' not in each.span.text else ""
-        words = each.span.text.lower().split()
-        if said in judged and said not in offered and not vocabulary.forms_of_be.keys().isdisjoint(words):
-            reason, advice = f"the robot doesn't know which answer is {said}", f"Say the answer: {_THE_ANSWER}"
-            yield diagnostic("BT152", each.span, words=each.span.text, reason=reason, advice=advice)
-
-
 def find_uncounted(compilation: Compilation) -> Iterator[Diagnostic]:
     """Report the first use of what was counted in a mission that counts nothing."""
     mission = compilation.mission
@@ -313,7 +272,7 @@ def find_vain_waits(compilation: Compilation) -> Iterator[Diagnostic]:
                 )
             elif asks(wait.condition) and not any(asks(rule, (ASK,)) for rule in _beside(body)):
                 yield diagnostic(
-                    "BT139", wait.span, words=wait.span.text, result="answer", act="asks", example=_KEEP_ASKING
+                    "BT139", wait.span, words=wait.span.text, result="answer", act="asks", example=KEEP_ASKING
                 )
 
 
