@@ -73,17 +73,17 @@ class Behavior(Record, uncompared=("span", "numbers")):
         has some, or of the tree: ports of known nodes are checked (BT132), unknown nodes only when it runs.
         """
         parts = [self, *subtrees.values()]
-        words = _with_fakes(keywords, dict.fromkeys(_functions([*parts])))
-        others = [each for each in _functions_of_scripts([*parts]) if each not in words]
+        own = list(dict.fromkeys(_functions([*parts])))
+        others = [each for each in _functions_of_scripts([*parts]) if each not in own]
         try:
-            return self._compile([*words, *others], world, language, subtrees)
+            return self._compile(_with_fakes(keywords, [*own, *others]), world, language, subtrees)
         except MissionError as error:
             if not others:
                 raise
             try:  # the functions of the script may not go together, or with the words that ship
-                return self._compile(words, world, language, subtrees)
+                return self._compile(_with_fakes(keywords, own), world, language, subtrees)
             except MissionError as left:
-                raise min(left, error, key=lambda each: len(each.diagnostics)) from None
+                raise min(error, left, key=lambda each: len(each.diagnostics)) from None
 
     def _compile(
         self,
@@ -255,25 +255,25 @@ def _as_leaf(called: GeneratorType[Any, Any, Any] | CoroutineType[Any, Any, Any]
 
 
 def _with_fakes(keywords: Keywords, functions: Iterable[Callable[..., object]]) -> list[Any]:
-    """Return all words; of those that replace a function of the tree the function's entry, with what it calls."""
+    """Return all words, each once; of those that replace one of these functions its entry, with what they call."""
     words = list(keywords)
     for function in functions:
         own = _entry(function)
         fake = next((each for each in words if _is_fake(each, own)), None)
-        if fake is None:
-            words.append(function)
-        else:
+        if fake is not None:
             words[words.index(fake)] = own.replace(call=fake, thread=_entry(fake).thread)
+        if function in words and fake is not None:
+            words.remove(function)
+        elif function not in words and fake is None:
+            words.append(function)
     return words
 
 
 def _is_fake(word: object, own: Entry) -> bool:
     entry = getattr(word, "btlang_entry", None)
-    return (
-        isinstance(entry, Entry)
-        and entry.replaces
-        and (entry.id == own.id if entry.id else entry.phrases == own.phrases)
-    )
+    if not isinstance(entry, Entry) or not entry.replaces:
+        return False
+    return entry.id == own.id if entry.id else (entry.phrases, entry.quantity) == (own.phrases, own.quantity)
 
 
 def _functions(waiting: list[Child]) -> list[Callable[..., object]]:

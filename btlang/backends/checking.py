@@ -18,6 +18,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic, 
 from btlang.diagnostics.files import read_source
 from btlang.engine.faults import UnknownNode, UnknownSubTree, find_faults
 from btlang.engine.instance import EngineError
+from btlang.engine.leaves.binding import GIVEN
 from btlang.engine.leaves.leaf import LeafBinding
 from btlang.frontends.mission.explanations.spelling_rule import is_respelling
 from btlang.support.record import Record
@@ -220,7 +221,7 @@ def _make_placeholder(call: Callable[..., Any]) -> Callable[..., Any]:
         found = signature(call.start if isclass(call) else call)  # type: ignore[attr-defined]
     except (AttributeError, TypeError, ValueError):
         return accept_anything
-    parameters = list(found.parameters.values())
+    parameters = [each for each in found.parameters.values() if each.name not in GIVEN]
     has_self = isclass(call) or next(iter(found.parameters), "") == "self"
     leaf.__signature__ = found.replace(parameters=parameters[has_self:])  # type: ignore[attr-defined]
     return leaf

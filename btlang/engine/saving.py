@@ -61,8 +61,8 @@ def restore_nodes(saved: Mapping[str, Any], instances: Sequence[NodeInstance], t
             scope.load(values, _from_json)
         if trace is not None:
             trace.restore({int(index): status for index, status in saved["statuses"].items()})
-    except (KeyError, IndexError, TypeError, ValueError, AttributeError) as error:
-        raise SaveError(f"what was saved is damaged: {error}") from None
+    except (KeyError, IndexError, TypeError, ValueError, AttributeError):
+        raise SaveError("it was saved from another tree, or is damaged") from None
 
 
 def _scopes(instances: Sequence[NodeInstance]) -> Iterator[Blackboard]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -177,3 +177,26 @@ def test_own_words_go_before_those_that_ship_and_keep_their_capitals() -> None:
     assert [node.id for node in tree.mission().tree.root.children] == ["CountDown", "DoThing"]
     assert tree.run(speed="max").succeeded
     assert CountDown.counted == [2, 3]
+
+
+@btlang.quantity("pressure of the tank", type="number")
+def pressure() -> float:
+    return 5.0
+
+
+@btlang.action("warm the sample for {number} rounds")
+def warm(number: float, kept: dict[str, Any]) -> Iterator[None]:
+    yield
+
+
+def test_fakes_of_words_in_texts_leave_the_other_words_of_the_script() -> None:
+    @btlang.quantity("pressure of the tank", type="number", replace=True)
+    def low() -> float:
+        return 1.0
+
+    @btlang.action(id="DoThing", replace=True)
+    def fake(number: int) -> None: ...
+
+    tree = btlang.sequence("check the pressure of the tank is above 3", "warm the sample for 40 rounds", "do thing 3")
+    for keywords, succeeds in (([], True), ([fake], True), ([warm, pressure, fake], True), ([low], False)):
+        assert tree.run(speed="max", keywords=keywords).succeeded is succeeds, keywords

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 _OWN: dict[str, set[str]] = {"thread": {"halted"}, "generator": {KEPT}}
 """What only leaves of a kind get, each its own."""
+GIVEN = frozenset().union(*_OWN.values())
+"""The parameters that no port fills, and that a leaf of another kind doesn't get."""
 # A signature costs more than the rest of a leaf. Weak, since a comparison is a function made for one run.
 _signatures: WeakKeyDictionary[Callable[..., Any], tuple[Parameter, ...]] = WeakKeyDictionary()
 
