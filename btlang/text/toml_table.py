@@ -197,6 +197,7 @@ class Table:
 
         near = misspelt(key, [each for each in self._values if each not in self._read])
         if near:
+            self._read.append(near[0])  # which is said once
             raise self.problem(near[0], f'unknown key "{near[0]}" in {self._name}; it needs {kind} "{key}"')
         raise self.problem(key, f'{self._name} needs {kind} "{key}"')
 

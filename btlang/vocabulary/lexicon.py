@@ -533,13 +533,12 @@ class Lexicon:
         )
         entry = entry.replace(slots=tuple(slots))
         unknown = [slot for slot in entry.slots if slot.type not in self.types]
-        for slot in unknown:
-            known = ", ".join(sorted(self.types))
-            how = (
-                "annotate it with int, float, str or btlang.Length ..."
-                if callable(entry.call)
-                else f"known are {known}"
-            )
+        for slot in {slot.type: slot for slot in reversed(unknown)}.values():  # a quantity has five of one type
+            known = f"known are {', '.join(sorted(self.types))}"
+            if slot.type == entry.measures:
+                self._wrong(entry, f"what it measures has no type '{slot.type}'; [[type]] declares one, {known}")
+                continue
+            how = "annotate it with int, float, str or btlang.Length ..." if callable(entry.call) else known
             self._wrong(entry, f"the slot {{{slot.name}}} has no type '{slot.type}'; {how}")
         if unknown:
             return None

@@ -130,3 +130,14 @@ def test_errors_below_a_bare_decorator_show_its_line() -> None:
     with pytest.raises(btlang.MissionError, match="BT061") as caught:
         btlang.parse_tree("skip it", keywords=[skip])
     assert caught.value.diagnostics[0].span.text == "@btlang.action"
+
+
+def test_a_quantity_of_no_known_type_is_one_mistake() -> None:
+    @btlang.quantity("load", type="weight")
+    def load() -> float:
+        return 1.0
+
+    with pytest.raises(btlang.MissionError) as raised:
+        btlang.parse_tree("say the load", keywords=[load])
+    [problem] = raised.value.diagnostics
+    assert "what it measures has no type 'weight'; [[type]] declares one, known are " in problem.message

@@ -107,6 +107,14 @@ def test_what_may_be_wrong(tmp_path: Path, text: str, line: int | None, message:
     assert (caught.value.line, caught.value.path) == (line, path)
 
 
+def test_a_misspelt_key_is_one_mistake(tmp_path: Path) -> None:
+    with pytest.raises(BodyError) as raised:
+        load_body(written(tmp_path, 'name = "x"\nradios = 0.2'))
+    assert [raised.value.message, *(each.message for each in raised.value.more)] == [
+        'unknown key "radios" in a robot; it needs a number "radius"'
+    ]
+
+
 def test_unreadable_files(tmp_path: Path) -> None:
     with pytest.raises(BodyError, match="cannot read the robot file: No such file"):
         load_body(str(tmp_path / "none.toml"))
