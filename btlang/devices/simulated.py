@@ -306,8 +306,10 @@ def twins(body: Body) -> tuple[Device, ...]:
 
 
 def twin(device: Device) -> Device:
-    """Return a simulated device in place of another one. The options of its driver don't count."""
+    """Return a simulated device in place of another one. Of the options of its driver those of its kind count."""
     if device.driver == SIMULATED:
         return device
-    options = {"bumper": True} if device.kind == "button" and "bumper" in device.name else {}
+    usual = {"bumper": True} if device.kind == "button" and "bumper" in device.name else {}
+    given = {name: device.options[name] for name in _OPTIONS.get(device.kind, ()) if name in device.options}
+    options = usual | {name: value for name, value in given.items() if _VALUES.get(name, (_is_number, ""))[0](value)}
     return Device(device.name, device.kind, SIMULATED, options=options, angle=device.angle)

@@ -13,7 +13,7 @@ from btlang.cli.examples import examples
 from btlang.components.device_robot import twins
 from btlang.components.parts.parts import DeviceHands
 from btlang.devices.kinds import Command, Grip, GripTarget
-from btlang.devices.simulated import SimulatedDevice
+from btlang.devices.simulated import SimulatedDevice, twin
 from btlang.robots.bodies.body import Device
 from btlang.robots.bodies.body_file import standard_body
 from btlang.robots.platforms import ALL
@@ -257,3 +257,9 @@ def test_who_else_looks_changes_no_noise() -> None:
         seen.append(found)
     assert seen[0] == seen[1]
     assert len(set(seen[0])) == 3
+
+
+def test_a_twin_has_the_options_of_its_kind() -> None:
+    scale = Device("scale", "gauge", "scales:Scale", options={"value": 3, "baud": 9600, "delay": 1})
+    assert twin(scale) == Device("scale", "gauge", "simulated", options={"value": 3})
+    assert twin(scale.replace(options={"value": "three"})).options == {}
