@@ -131,6 +131,12 @@ def test_names_that_are_nearly_those_of_examples(capsys: pytest.CaptureFixture[s
         assert said in capsys.readouterr().err
 
 
+def test_house_rules_that_do_not_hold_are_said(capsys: pytest.CaptureFixture[str]) -> None:
+    robot = shipped("examples", "rover", "robot.toml")
+    assert typed("wave", "--robot", robot, *RUN) == 0
+    assert "note: the house rules of this robot hold with btc robot up, and not in btc run\n" in capsys.readouterr().err
+
+
 def test_no_word_stands_for_two_acts_or_verbs() -> None:
     for verb in VERBS.values():
         words = [*verb.acts, *(word for act in verb.acts.values() for word in act.also)]

@@ -52,6 +52,8 @@ def run(options: argparse.Namespace) -> int:
         _note_robots_up()
     if not options.quiet:
         note_silent_voice(robot)
+        if robot.body.rules:
+            show("note: the house rules of this robot hold with btc robot up, and not in btc run", sys.stderr)
     if not options.watch:
         return _run_shown(options, mission, robot)
     from btlang.server.page.watching import open_monitor
