@@ -109,14 +109,15 @@ class _Queue:
         self._sink, self._policy, self._failed = sink, policy, failed
         most = {BLOCK: None, DROP_OLDEST: MOST_WAITING, NEWEST: 1}[policy]
         self._events: deque[Event] = deque(maxlen=most)
-        self._changed = threading.Condition()
+        self._lock = threading.RLock()  # taken by itself: a Condition may keep it where a signal interrupts
+        self._changed = threading.Condition(self._lock)
         self._over = self._broken = False
         self._waited, self._lost = 0.0, 0
         self._thread = threading.Thread(target=self._hand_on, name="btlang events", daemon=True)
         self._thread.start()
 
     def put(self, event: Event) -> None:
-        with self._changed:
+        with self._lock:
             if self._broken:
                 return
             if self._policy == BLOCK and len(self._events) >= MOST_WAITING:
@@ -128,7 +129,7 @@ class _Queue:
             self._changed.notify_all()
 
     def close(self) -> None:
-        with self._changed:
+        with self._lock:
             self._over = True
             self._changed.notify_all()
         self._thread.join(None if self._policy == BLOCK else _PATIENCE)
@@ -138,7 +139,7 @@ class _Queue:
 
     def _hand_on(self) -> None:
         while True:
-            with self._changed:
+            with self._lock:
                 self._changed.wait_for(lambda: self._events or self._over)
                 if not self._events:
                     return
@@ -148,7 +149,7 @@ class _Queue:
                 self._sink(event)
             except Exception as problem:
                 self._failed(problem)
-                with self._changed:
+                with self._lock:
                     self._broken = True
                     self._events.clear()
                     self._changed.notify_all()

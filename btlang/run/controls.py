@@ -11,8 +11,8 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from threading import Lock
 
+from btlang.support.waker import Waker
 from btlang.text.output import show
 
 TYPE_CHECKING = False
@@ -40,8 +40,7 @@ class Controls:
 
     def __init__(self, robot: Stoppable | None = None) -> None:
         self.robot = robot
-        self._asleep = Lock()  # held but for a moment; unlike an Event it may be released within a signal handler
-        self._asleep.acquire()
+        self._waker = Waker()
         self._steps = 0
         self.paused = False
         """Whether the run stands still, or will before its next tick."""
@@ -117,12 +116,11 @@ class Controls:
 
     def wait(self, seconds: float | None) -> None:
         """Sleep so many seconds (None: without end), or until something is asked for."""
-        self._asleep.acquire(timeout=-1 if seconds is None else max(0.0, seconds))
+        self._waker.sleep(seconds)
 
     def wake(self) -> None:
         """End the sleep of `wait`, or the next one."""
-        with suppress(RuntimeError):  # it is released already
-            self._asleep.release()
+        self._waker.wake()
 
 
 PATIENCE = 20.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import AsyncIterator, Callable, Iterator
 from contextlib import suppress
-from threading import Condition
+from threading import Condition, RLock
 
 from btlang.run.bus import INLINE
 from btlang.run.events import PeriodPassed
@@ -29,13 +29,14 @@ class RecentEvents:
         self._events: deque[Event] = deque()
         self._kept = self._count = 0
         self._over = False
-        self._changed = Condition()
+        self._lock = RLock()  # taken by itself: a Condition may keep it where a signal interrupts
+        self._changed = Condition(self._lock)
         self._waiting: list[Callable[[], None]] = []  # what wakes the readers in loops of asyncio
 
     def __call__(self, event: Event) -> None:
         if isinstance(event, PeriodPassed):
             return
-        with self._changed:
+        with self._lock:
             self._events.append(event)
             self._kept += event.count
             self._count += 1
@@ -49,7 +50,7 @@ class RecentEvents:
 
     def close(self) -> None:
         """Note that the run is over."""
-        with self._changed:
+        with self._lock:
             self._over = True
             self._notify()
 
@@ -57,7 +58,7 @@ class RecentEvents:
         """Yield the latest ones, then new ones until `close`."""
         given = 0
         while True:
-            with self._changed:
+            with self._lock:
                 while self._count == given and not self._over:
                     self._changed.wait()
                 batch, given = self._after(given)
@@ -80,7 +81,7 @@ class RecentEvents:
         try:
             while True:
                 arrived.clear()
-                with self._changed:
+                with self._lock:
                     batch, given = self._after(given)
                     over = self._over
                 for event in batch:

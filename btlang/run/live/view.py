@@ -16,6 +16,7 @@ from btlang.run.live.board import Board
 from btlang.run.live.keys import GONE, Keys, stoppable
 from btlang.run.live.screen import LiveScreen, capture_output
 from btlang.support.record import Record
+from btlang.support.waker import Waker
 from btlang.text.output import is_unicode
 
 TYPE_CHECKING = False
@@ -102,7 +103,7 @@ class LiveView:
             self._calls.setdefault("v", world_input.invite)
         self._keys = self._open_keys(keyboard)
         self._due = 0.0  # when the next frame may be drawn
-        self._wake = threading.Event()
+        self._waker = Waker()
         self._drawing = threading.RLock()
         self._drawn: object = None  # what the last frame was made from
         self._explained = False  # what the signs mean
@@ -125,12 +126,12 @@ class LiveView:
         """Note an event."""
         self._board.note(event)
         if isinstance(event, PeriodPassed) and time.monotonic() >= self._due:
-            self._wake.set()
+            self._waker.wake()
 
     def jump(self, state: RunState) -> None:
         """Go on from another state of the run."""
         self._board.jump(state)
-        self._wake.set()
+        self._waker.wake()
 
     def __enter__(self) -> LiveView:
         with ExitStack() as exits:
@@ -156,8 +157,7 @@ class LiveView:
     def _draw_on(self) -> None:
         rest = 0.0
         while not self._ended:
-            self._wake.wait(rest + _LATEST)
-            self._wake.clear()
+            self._waker.sleep(rest + _LATEST)
             time.sleep(_TICK)  # so that drawing takes no time from it
             if self._left or not self._in_front:
                 self._behind = True
@@ -212,7 +212,7 @@ class LiveView:
 
     def _finish(self) -> None:
         self._ended = True
-        self._wake.set()
+        self._waker.wake()
         if self._thread.ident is not None:
             self._thread.join()
         try:
@@ -252,7 +252,7 @@ class LiveView:
             self._typed = self._typed[:-1]
         elif key.isprintable() and len(key) == 1 and len(self._typed) < _LONGEST_ANSWER:
             self._typed += key
-        self._wake.set()
+        self._waker.wake()
 
     def _press(self, key: str) -> None:
         controls = self._controls
@@ -265,7 +265,7 @@ class LiveView:
         call = self._calls.get(key.lower())
         if call is not None:
             call()
-            self._wake.set()
+            self._waker.wake()
 
     def _explain(self) -> None:
         self._explained = not self._explained
