@@ -260,12 +260,13 @@ def _with_fakes(keywords: Keywords, functions: Iterable[Callable[..., object]]) 
     for function in functions:
         own = _entry(function)
         fake = next((each for each in words if _is_fake(each, own)), None)
-        if fake is not None:
-            words[words.index(fake)] = own.replace(call=fake, thread=_entry(fake).thread)
-        if function in words and fake is not None:
+        if fake is None:
+            if function not in words:
+                words.append(function)
+            continue
+        words[words.index(fake)] = own.replace(call=fake, thread=_entry(fake).thread)
+        if function in words:
             words.remove(function)
-        elif function not in words and fake is None:
-            words.append(function)
     return words
 
 

@@ -47,8 +47,7 @@ def examples() -> list[Example]:
 
 def all_examples() -> list[Example]:
     """Return the missions, then the folders."""
-    names = sorted(os.listdir(shipped("examples")))
-    return [*examples(), *(_folder(name) for name in names if os.path.isfile(shipped("examples", name, _README)))]
+    return [*examples(), *_folders()]
 
 
 def find_examples(names: Iterable[str]) -> list[Example]:
@@ -77,7 +76,8 @@ def describe_near(name: str) -> str:
 
 def list_examples(width: int = 80) -> list[str]:
     """Return a line for each mission with what it does; then the folders."""
-    missions, listed = examples(), all_examples()
+    missions, folders = examples(), _folders()
+    listed = [*missions, *folders]
     column = max(len(example.name) for example in listed) + 4
     shorten = partial(textwrap.shorten, width=width - column, placeholder=" ...")
     lines = [f"  {each.name:{column - 2}}{shorten(each.about.removesuffix(':'))}" for each in listed]
@@ -137,6 +137,11 @@ def _example(name: str) -> Example:
     tested = os.path.exists(shipped("examples", *test.split("/")))
     parts = tuple(_INCLUDE.findall(text))
     return Example(name, about, world[1] if world else "", text, parts, test if tested else "", f"{name}.txt")
+
+
+def _folders() -> list[Example]:
+    names = sorted(os.listdir(shipped("examples")))
+    return [_folder(name) for name in names if os.path.isfile(shipped("examples", name, _README))]
 
 
 def _folder(name: str) -> Example:

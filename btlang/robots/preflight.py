@@ -18,7 +18,7 @@ from btlang.support.record import Record
 from btlang.text.source import NOWHERE, Span
 from btlang.text.spelling import nearest
 from btlang.tree.catalogue import SUBTREE
-from btlang.vocabulary.capabilities import POSTURE, part_of
+from btlang.vocabulary.capabilities import POSTURE, TRAVELS, part_of
 from btlang.vocabulary.pattern import Slot
 from btlang.vocabulary.references import keys_in
 
@@ -112,7 +112,7 @@ def check_zones(world: World, tree: Tree, vocabulary: Lexicon) -> None:
     places = {place.name.lower(): (place.x, place.y) for place in world.places}
     problems: list[Diagnostic] = []
     for node in tree.walk():
-        if closed and "navigation" in needs_of(node, vocabulary):
+        if closed and TRAVELS in needs_of(node, vocabulary):
             for point in _goals(node, places, vocabulary):
                 zone = next((zone for zone in closed if zone.contains(point)), None)
                 if zone is not None:

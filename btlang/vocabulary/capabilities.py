@@ -19,7 +19,9 @@ class Capability(Record):
 
 
 _ARMS = ("left arm", "right arm")
-HOLDING, TRAVELS = "holding", "navigation"
+HOLDING = "holding"
+TRAVELS = "navigation"
+"""What a command needs that drives by itself: it takes a place in its own way, or none."""
 CAPABILITIES = {
     "base": Capability("base", ("base",)),
     "pose": Capability("base"),

@@ -137,9 +137,8 @@ class Outcomes(Limits):
                 at = before  # `bring Bob the cup and tell him "Tea!". If he isn't there, A`
             is_free = BRANCHES.isdisjoint(self._statement(form - 1)[1])
             may_ask = at is None or not is_free or self._may_ask_again(at, form, end)
-            if (
-                waited is not None and not is_free and self._is_event(asked)
-            ):  # `wait ... If he says yes, A. If nobody comes, B`
+            if waited is not None and not is_free and self._is_event(asked):
+                # `wait ... If he says yes, A. If nobody comes, B`
                 self._unclear(Span(self._text.source, tokens[form].start, asked.end))
             if at is None and is_free and self._is_event(asked):
                 at, may_ask = self._wait_before(form, asked, end), False

@@ -16,7 +16,6 @@ from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import PERSON, PLACE
 from btlang.vocabulary.word_tree import find
 
-"""What a command needs that drives by itself: it takes a place in its own way, or none."""
 MARKS = {",": "comma", ";": "semi", ":": "colon", "(": "open", ")": "close"}
 """The raw kinds of marks."""
 _COME = "ComeToMe"
