@@ -74,6 +74,20 @@ def test_who_walked_away_is_not_where_he_was_seen() -> None:
         assert life.robot.sees("Otto")  # he was met on the way
 
 
+def test_who_is_not_where_he_was_seen_is_not_there() -> None:
+    life = Life(rooms('[[people]]\nname = "Otto"\nx = 9\ny = 2\nwalks = [{ to = [6, 0.5], at = 1 }]\n'))
+    there = {"named": "Otto", "at": "east"}
+    life.after(8)
+    assert life.robot.described("person", there) == ["Otto"]  # as far as it knows
+    life.robot.put(Pose(7.5, 2, 0))
+    life.after(0.2)
+    assert not life.robot.sees("Otto")  # behind its back
+    assert life.robot.described("person", there) == []
+    life.robot.put(Pose(7.5, 2, 225))
+    life.after(0.2)
+    assert life.robot.described("person", {"named": "Otto"}) == ["Otto"]
+
+
 def test_a_closed_door_hides_what_is_behind_it() -> None:
     door = '[[doors]]\nname = "gate"\nfrom = [5, 1.5]\nto = [5, 2.5]\n'
     life = Life(rooms(door, more='objects = [{ name = "cup", x = 7, y = 2 }]\n'))

@@ -37,7 +37,8 @@ class Surroundings(Knowledge):
         emit: Callable[..., object],
     ) -> None:
         view = View(obstacles, body, joint)
-        super().__init__(world, obstacles, Sight(world, obstacles, view.point, lambda name: emit("see", name=name)))
+        sight = Sight(world, obstacles, view.point, lambda name: emit("see", name=name), view.covers)
+        super().__init__(world, obstacles, sight)
         self._emit = emit
         self._radius = body.radius
         self._switched: dict[str, bool] = {}

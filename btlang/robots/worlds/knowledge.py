@@ -123,13 +123,17 @@ class Knowledge:
         return [name for name in names if not getattr(things[name], "fixed", False)]
 
     def described(self, kind: str, parts: Mapping[str, str], pose: Pose) -> list[str]:
-        """Return the names of a type with these parts whose position is known or that are carried, nearest first."""
+        """Return the names of a type with these parts whose position is known, or that are carried, nearest first."""
         things, where, like = self.obstacles.things, self.sight.where, without_relations(parts)
         if kind in ("object", "person"):
             every, named = self.sight.names(kind), parts.get("named", "").lower()
             if named:  # looked at first, as all else takes longer
                 every = [name for name in every if name.lower() == named]
-            known = (name for name in every if where(name) or self.obstacles.is_carried(name))
+            known = (
+                name
+                for name in every
+                if (where(name) and not self.sight.is_gone(name)) or self.obstacles.is_carried(name)
+            )
             names = [name for name in known if name in things and (not like or things[name].fits(like))]
         else:
             places = self.world.places if kind == "place" else ()

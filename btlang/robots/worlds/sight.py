@@ -17,7 +17,7 @@ class Sight:
     """The things in view, and what the robot knows of the positions of people and objects.
 
     `find` returns the point of a name if the robot at a pose has it in view, else None; `report` gets the name of what
-    is seen for the first time.
+    is seen for the first time; `covers` returns whether a point is in view, where that is known.
     """
 
     def __init__(
@@ -26,13 +26,15 @@ class Sight:
         obstacles: Obstacles,
         find: Callable[[str, Pose], Point | None],
         report: Callable[[str], object],
+        covers: Callable[[Point, Pose], bool] = lambda point, pose: False,
     ) -> None:
-        self._obstacles, self._find, self._report = obstacles, find, report
+        self._obstacles, self._find, self._report, self._covers = obstacles, find, report, covers
         self._kinds = {name: kind for kind in ("object", "person") for name in world.names.of(kind)}
         self.watched = {thing.name: None for thing in (*world.objects, *world.people) if not thing.known}
         """Names that the robot knows only from where it has seen them, in the order in which that began."""
         self._last: dict[str, tuple[Point, float]] = {}
         self._met: set[str] = set()
+        self._gone: set[str] = set()
         self._now = self._next = 0.0
         for person in world.people:
             if person.moves:
@@ -46,11 +48,13 @@ class Sight:
             self.watched[name] = None
             if name in self._kinds and (point := self._obstacles.point(name)) is not None:
                 self._last[name] = point, self._now
+                self._gone.discard(name)
         self._kinds[name] = kind
 
     def forget(self) -> None:
         """Forget where walking people and unknown things were seen."""
         self._last.clear()
+        self._gone.clear()
 
     def look(self, now: float, pose: Pose) -> None:
         """Note where everything is that can be seen at second `now`."""
@@ -59,7 +63,13 @@ class Sight:
             return
         self._next = now + _PERIOD
         for name in self.watched:
-            self._look_for(name, pose)
+            if self._look_for(name, pose) is None and name in self._last and name not in self._gone:
+                if self._covers(self._last[name][0], pose):
+                    self._gone.add(name)
+
+    def is_gone(self, name: str) -> bool:
+        """Return whether the robot has looked where it saw something last, and it wasn't there."""
+        return name in self._gone
 
     def where(self, name: str) -> Point | None:
         """Return where it is as far as the robot knows; None if it hasn't been seen or is carried."""
@@ -109,6 +119,7 @@ class Sight:
         point = self._find(name, pose)
         if point is not None and name in self.watched:
             self._last[name] = point, self._now
+            self._gone.discard(name)
             if name not in self._met:
                 self._met.add(name)
                 self._report(name)
@@ -128,22 +139,23 @@ class View:
     def point(self, name: str, pose: Pose) -> Point | None:
         """Return the position of something in view of a robot at this pose; None if it isn't in view."""
         point = self._obstacles.point(name)
-        return point if point is not None and self._has(point, pose) else None
+        return point if point is not None and self.covers(point, pose) else None
 
-    def _has(self, point: Point, pose: Pose) -> bool:
+    def covers(self, point: Point, pose: Pose) -> bool:
+        """Return whether a point is in view of a robot at a pose."""
         for sensor in self._sensors:
             eye = pose
             if sensor.ahead or sensor.left:
                 eye = Pose(*pose.ahead(sensor.ahead, sensor.left), pose.heading)
             if (
                 eye.distance_to(point) <= sensor.recognizes
-                and self._covers(sensor, eye.bearing_to(point))
+                and self._is_in_angle(sensor, eye.bearing_to(point))
                 and not self._obstacles.wall_between((eye.x, eye.y), point)
             ):
                 return True
         return False
 
-    def _covers(self, sensor: Sensor, bearing: float) -> bool:
+    def _is_in_angle(self, sensor: Sensor, bearing: float) -> bool:
         if sensor.view >= 360.0:
             return True
         middle = sensor.angle + (self._joint(sensor.joint) if sensor.joint else 0.0)

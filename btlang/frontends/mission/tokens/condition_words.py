@@ -6,6 +6,8 @@ from collections.abc import Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.token import (
+    IN_CONDITIONS,
+    LINES,
     STATEMENT_ENDS,
     Called,
     Listed,
@@ -14,11 +16,14 @@ from btlang.frontends.mission.token import (
     run_start,
     statement_start,
 )
-from btlang.frontends.mission.tokens.ended_rules import say_there
+from btlang.frontends.mission.tokens.ended_rules import THERE, say_there
+from btlang.frontends.mission.tokens.going_on import BRANCHES
+from btlang.frontends.mission.tokens.sentence_reader import leads_to
+from btlang.frontends.mission.tokens.settling import achieves, asked_about, misses
 from btlang.text.source import Source
 from btlang.text.words import Words
 from btlang.vocabulary.lexicon import Lexicon
-from btlang.vocabulary.match import Match
+from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import TrieNode, longest
 from btlang.vocabulary.value_type import PERSON, PLACE
@@ -31,7 +36,36 @@ if TYPE_CHECKING:
     """A condition that was read as a whole: the latest part of it, its first word, and where it was found."""
 
 
+_ASKING = frozenset(("if", "unless", "check"))
 _SEEN_AT = {"SeesPerson": "PersonIsAt", "SeesObject": "ObjectIsAt"}
+
+
+def asked_there(
+    match: Match, tokens: Sequence[Token], text: Words, context: ReadingContext, vocabulary: Lexicon
+) -> Match:
+    """`go to the lab. If somebody is there, A`: somebody in the lab, whether the robot has them in view or not.
+
+    Not so where a command behind the journey has settled it: `go to the lab and tell Bob "hi". If he isn't there, A`.
+    """
+    entry, place = match.meaning.entry, context.latest.get(PLACE, "{")
+    there = vocabulary.entry(THERE.get(entry.id, "")) if entry is not None and place[:1] != "{" else None
+    if entry is None or there is None or PLACE not in vocabulary.values.pronouns.get(text.words[match.last - 1], ()):
+        return match  # as nearly always
+    form = run_start(tokens, len(tokens), IN_CONDITIONS) - 1
+    journey = next((at for at in reversed(range(len(tokens))) if drives(tokens[at].value)), -1)
+    if form < 0 or tokens[form].kind not in _ASKING or journey < 0 or not leads_to(tokens[journey], place):
+        return match
+    begun, first = statement_start(tokens, form), statement_start(tokens, journey)
+    if begun != first and any(token.kind in BRANCHES or token.kind in LINES for token in tokens[first:journey]):
+        return match  # `if C, go to the lab. If somebody is there, A`: it may not be there
+    asked = Token("condition", 0, 0, Called(entry, tuple((value.name, value.text) for value in match.values)))
+    settled = asked_about(tokens, form, lambda token: achieves(token, asked) or misses(token, asked))
+    if settled is not None and settled > journey:
+        return match
+    slot = next(slot for slot in there.slots if slot.type == PLACE)
+    value = SlotValue(slot.name, PLACE, place, match.last - 1, match.last)
+    placed: Match = match.replace(meaning=match.meaning.replace(entry=there), values=(*match.values, value))
+    return placed
 
 
 def placed_before(asked: Token, tokens: Sequence[Token], vocabulary: Lexicon, source: Source) -> None:

@@ -13,20 +13,26 @@ from btlang.frontends.mission.token import (
     Listed,
     Token,
     drives,
+    go_on,
     run_start,
     statement_start,
+    texts_of,
 )
 from btlang.frontends.mission.tokens.going_on import GoingOn
+from btlang.frontends.mission.tokens.journey_words import SEES
 from btlang.frontends.mission.tokens.sentence_reader import hears, searches
 from btlang.frontends.mission.tokens.settling import (
     FAILS,
     MEASURES,
     STAYS,
+    WAITS,
     WORKS,
     achieves,
     asked_about,
+    is_presence,
     lasting,
     misses,
+    named_by,
 )
 from btlang.frontends.mission.tokens.silent_words import BEGINS
 from btlang.text.source import Span
@@ -218,6 +224,42 @@ class Limits(GoingOn):
             start, end = tokens[form].start, tokens[-1].end
             del tokens[run_start(tokens, form, JOINTS | {"semi"}) :]
             tokens.append(Token("otherwise", start, end))
+
+    def _go_on_then(self, form: int, end: int) -> int:
+        """`wait until Bob arrives. When he arrives, A`: A then. `wait for up to 5 min. If he arrives, A` asks that."""
+        tokens, asked = self._tokens, self._tokens[-1]
+        last = run_start(tokens, form, JOINTS | STATEMENT_ENDS) - 1
+        waits = last > 0 and tokens[last].kind == "condition" and tokens[last - 1].kind in WAITS
+        word = self._text.source.text[tokens[form].start : tokens[form].end].lower()
+        if not waits or not self._is_settled(tokens[last], asked):
+            return end
+        start = tokens[form].start
+        if word not in self._vocabulary.asked_once:
+            if tokens[last - 1].kind != "wait_up_to" or not self._is_event(asked):
+                return end
+            stop, awaited = asked.end, tokens[last]
+            del tokens[form:]
+            go_on(tokens)
+            self._make_fail(last)
+            self._settle_command(tokens.index(awaited))
+            tokens.append(Token(WORKS, start, stop))
+            return self._behind_comma(end)
+        del tokens[form:]
+        go_on(tokens)
+        del tokens[last + 1 :]
+        tokens.append(Token("then", start, asked.end))
+        return self._behind_comma(end)
+
+    def _is_settled(self, token: Token, asked: Token) -> bool:
+        """Whether a command, or what is waited for, is what a condition asks."""
+        if token.kind == "command":
+            return achieves(token, asked) or (misses(token, asked) and not self._is_event(asked))
+        somebody, awaited = self._vocabulary.negative_subjects, token.value
+        is_kind = isinstance(awaited, Called) and awaited.entry.id == SEES and self._is_event(asked)
+        is_anybody = is_presence(asked.value, somebody) and (is_kind or is_presence(awaited, somebody))
+        said = {*texts_of(asked.value)} if isinstance(asked.value, Called) else {""}
+        is_same = is_kind and isinstance(awaited, Called) and said <= named_by(awaited)
+        return awaited == asked.value or is_anybody or is_same  # `wait for a guest. If nobody comes, A`
 
     def _turn(self, wait: int, then: int, form: int, end: int) -> int:
         """`wait for Bob for 10 min. When he comes, A, and if he doesn't come, B`: B is done if the wait fails.

@@ -43,6 +43,8 @@ class Mentions:
         """What the robot has taken up, and the thing to which it only went, or at which it looked, since then."""
         self._named_at = 0
         """Where somebody was named last by a command."""
+        self._denied: Match | None = None
+        """The latest condition, where it says that something is not so."""
         self._lists: dict[str, tuple[Token, SlotValue]] = {}
         self._alternatives: dict[str, tuple[Token, SlotValue]] = {}  # by the reference to the one that succeeds
         self._otherwise: set[str] = set()  # the types whose latest values are those of `otherwise`, and only in it
@@ -60,12 +62,19 @@ class Mentions:
         `joint` is the kind of the token before: what follows `otherwise` is known until `end_otherwise`.
         """
         before = dict(self._context.latest) if joint in ("or", "otherwise") else {}
-        if self.speaks_of_people and match.meaning.entry is not None and match.meaning.role != "negated":
-            self._note_somebody(match.meaning.entry, match)
+        entry, role = match.meaning.entry, match.meaning.role
+        if self.speaks_of_people and entry is not None and role != "negated":
+            self._note_somebody(entry, match)
+        elif role == "otherwise" and self._denied is not None and self._denied.meaning.entry is not None:
+            self._note_somebody(
+                self._denied.meaning.entry, self._denied
+            )  # `if nobody is near, A, otherwise wave at them`
+        if role in ("condition", "negated"):
+            self._denied = match if role == "negated" else None
         self._note_values(match)
-        if match.meaning.entry is not None and match.meaning.role in ("command", "condition"):
-            self._note_counted(match.meaning.entry, match)
-            self._note_held(match.meaning.entry, match)
+        if entry is not None and role in ("command", "condition"):
+            self._note_counted(entry, match)
+            self._note_held(entry, match)
         for kind, value in before.items():
             if self._context.latest.get(kind, value) == value:
                 continue

@@ -13,27 +13,22 @@ from btlang.frontends.mission.token import (
     Called,
     Token,
     go_on,
+    run_end,
     run_start,
     statement_start,
-    texts_of,
 )
 from btlang.frontends.mission.tokens.going_on import BRANCHES
-from btlang.frontends.mission.tokens.journey_words import SEES
 from btlang.frontends.mission.tokens.limits import Limits
 from btlang.frontends.mission.tokens.sentence_reader import may_fail, searches
 from btlang.frontends.mission.tokens.settling import (
     FAILS,
     MEASURES,
-    WAITS,
     WORKS,
     achieves,
     asked_about,
     has_it,
     is_about,
-    is_presence,
     is_somebody_else,
-    misses,
-    named_by,
     names_of,
     settle,
     takes,
@@ -138,8 +133,7 @@ class Outcomes(Limits):
             is_free = BRANCHES.isdisjoint(self._statement(form - 1)[1])
             may_ask = at is None or not is_free or self._may_ask_again(at, form, end)
             if waited is not None and not is_free and self._is_event(asked):
-                # `wait ... If he says yes, A. If nobody comes, B`
-                self._unclear(Span(self._text.source, tokens[form].start, asked.end))
+                return self._deny_wait(waited, form, end)
             if at is None and is_free and self._is_event(asked):
                 at, may_ask = self._wait_before(form, asked, end), False
                 form = len(tokens) - 3
@@ -168,31 +162,19 @@ class Outcomes(Limits):
             return self._limit(said, end) if denied else end
         return end
 
-    def _go_on_then(self, form: int, end: int) -> int:
-        """`wait until Bob arrives. When he arrives, A`: A then."""
-        tokens, asked = self._tokens, self._tokens[-1]
-        last = run_start(tokens, form, JOINTS | STATEMENT_ENDS) - 1
-        waits = last > 0 and tokens[last].kind == "condition" and tokens[last - 1].kind in WAITS
-        word = self._text.source.text[tokens[form].start : tokens[form].end].lower()
-        if not waits or word not in self._vocabulary.asked_once or not self._is_settled(tokens[last], asked):
+    def _deny_wait(self, waited: int, form: int, end: int) -> int:
+        """`wait up to 5 min until somebody comes. If she says yes, A. If nobody comes, B`: B if the wait fails."""
+        tokens, words = self._tokens, Span(self._text.source, self._tokens[form].start, self._tokens[-1].end)
+        behind = run_end(tokens, waited + 1, MEASURES | STATEMENT_ENDS)
+        if tokens[behind].kind != WORKS and settle(tokens[:form], waited):
+            return self._settle(waited, form, words.end, end)
+        if tokens[behind].kind != WORKS:
+            self._unclear(words)
             return end
-        start = tokens[form].start
         del tokens[form:]
         go_on(tokens)
-        del tokens[last + 1 :]
-        tokens.append(Token("then", start, asked.end))
-        return self._behind_comma(end)
-
-    def _is_settled(self, token: Token, asked: Token) -> bool:
-        """Whether a command, or what is waited for, is what a condition asks."""
-        if token.kind == "command":
-            return achieves(token, asked) or (misses(token, asked) and not self._is_event(asked))
-        somebody, awaited = self._vocabulary.negative_subjects, token.value
-        is_kind = isinstance(awaited, Called) and awaited.entry.id == SEES and self._is_event(asked)
-        is_anybody = is_presence(asked.value, somebody) and (is_kind or is_presence(awaited, somebody))
-        said = {*texts_of(asked.value)} if isinstance(asked.value, Called) else {""}
-        is_same = is_kind and isinstance(awaited, Called) and said <= named_by(awaited)
-        return awaited == asked.value or is_anybody or is_same  # `wait for a guest. If nobody comes, A`
+        tokens.append(Token("otherwise", words.start, words.end))
+        return end
 
     def _settle(self, at: int, form: int, stop: int, end: int) -> int:
         """Makes words from a form up to a character, and a word, ask whether the command at a place failed."""

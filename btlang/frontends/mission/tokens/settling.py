@@ -51,6 +51,7 @@ HOLDS = "Holding"
 """The condition that holds once a thing is taken up."""
 _SIMPLE = frozenset(("command", "name", "wait", "nothing", *JOINTS))
 _BETWEEN = _SIMPLE | STATEMENT_ENDS | MEASURES | {"open", "close", "meanwhile"}
+_BRANCHED = _BETWEEN | IN_CONDITIONS | {"if", "unless", "otherwise"}
 _HEADS = frozenset(("every", "every_day", "at", "repeat", "comma", "then", "colon", "open"))
 """What may stand before the first command of a statement."""
 _OUTSIDE = frozenset(("define", "indent", "dedent"))
@@ -87,7 +88,8 @@ def settle(tokens: list[Token], at: int) -> str:
     times, before = before[:timed], before[timed:]  # `at 9 am wait at the door for 5 min. If nobody comes, A`
     is_tried = before[:1] != [] and before[0].kind == "try"
     before = before[is_tried:]
-    if any(token.kind not in _BETWEEN or token.value == FAILS for token in rest):
+    allowed = _BRANCHED if tokens[at].kind == "condition" else _BETWEEN
+    if any(token.kind not in allowed or token.value == FAILS for token in rest):
         return ""
     if not _sets_of(tokens[start:behind]).isdisjoint(text for token in rest for text in _texts(token)):
         return ""  # `find every cup and bring them to me`: the rest belongs to the round
@@ -308,8 +310,12 @@ def _sets_of(tokens: Sequence[Token]) -> set[str]:
 
 
 def _one_statement(rest: Sequence[Token]) -> list[Token]:
-    """The same commands joined by `then` where statements ended."""
+    """The same commands joined by `then` where statements ended, with branches among them in brackets."""
     made: list[Token] = []
+    if any(token.kind not in _BETWEEN for token in rest):
+        first, end = run_end(rest, 0, JOINTS | STATEMENT_ENDS), run_start(rest, len(rest), JOINTS | STATEMENT_ENDS)
+        here, there = rest[first].start, rest[end - 1].end
+        return [Token("open", here, here), *rest[first:end], Token("close", there, there)]
     for token in rest:
         if token.kind not in STATEMENT_ENDS:
             made += [] if token.kind in JOINTS and (not made or made[-1].kind == "then") else [token]

@@ -23,6 +23,7 @@ from btlang.frontends.mission.token import (
 )
 from btlang.frontends.mission.tokens.calls import NEGATED, Calls
 from btlang.frontends.mission.tokens.condition_words import (
+    asked_there,
     check_negation,
     is_so_of_none,
     placed_before,
@@ -386,6 +387,7 @@ class WordReader:
             return end
         match = self._order.for_anybody(self._places.looking_there(match)) if match.values else match
         if role in _CONDITIONS:
+            match = asked_there(match, tokens, self._text, self._context, self._vocabulary)
             if (end := self._condition(match, at)) > match.last:
                 return end
         elif end := self._operand(match, role, at):
