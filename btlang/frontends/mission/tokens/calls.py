@@ -160,10 +160,13 @@ class Calls(Mentions):
         self._context.listed.pop(choice.type, None)
 
     def _with_lists(self, match: Match) -> Match:
-        """The same, with the thing of each round in the place of a pronoun for a list."""
-        values = []
+        """The same, with the thing of each round in the place of a pronoun for a list, or of `each room` for it."""
+        values, listed = [], self._context.listed.values()
         for value in match.values:
-            if value.text and value.text in self._context.listed.values():
+            before = self._lists[value.type][0].value if value.group in listed and value.type in self._lists else None
+            if isinstance(before, Listed) and before.entry != match.meaning.entry:
+                value = value.replace(text=value.group, more=(), joiner="", group="")
+            if value.text and value.text in listed:
                 choice, made = choice_of(value.text), self._lists.pop(value.type, None)
                 assert choice is not None
                 if made is not None and isinstance(made[0].value, Listed):

@@ -57,10 +57,11 @@ class Places(SentenceReader):
         search = tokens[-1].value
         if not isinstance(search, Called | Listed) or not search.entry.first:
             return
-        if match.values and match.values[-1].last != match.last:
-            return  # `go to the lab and look for the ball everywhere`
+        everywhere = self._text.words[match.values[-1].last : match.last] if match.values else []
+        if everywhere and self._context.values.each.isdisjoint(everywhere):
+            return  # `go to the lab and look for the ball everywhere`; but `in each room`
         slot = next((each.name for each in search.entry.slots if each.type == PLACE), "")
-        if not slot or any(slot in dict(each) for each in arguments_of(search)):
+        if not slot:
             return
         at = len(tokens) - 2
         while at > 0 and (tokens[at].kind in _AND or self._is_beside(tokens[at])):
@@ -73,10 +74,15 @@ class Places(SentenceReader):
         if not goals or any(len(each) != 1 for each in places):
             return
         choice = choice_of(goals[0])
+        again = (slot, f"{{{choice.key}}}") if choice is not None else None  # `and look for the ball in each of them`
+        rows = [tuple(part for part in each if part != again) for each in arguments_of(search)]
+        if any(slot in dict(each) for each in rows):
+            return
+        search = with_arguments(search, rows)
         is_set = len(goals) > 1 or (choice is not None and choice.how == ALL)
         is_right_behind = at == run_start(tokens, len(tokens) - 1, _AND) - 1
         if len(goals) == 1 and choice is None:
-            tokens[-1].value = with_arguments(search, [(*each, (slot, goals[0])) for each in arguments_of(search)])
+            tokens[-1].value = with_arguments(search, [(*each, (slot, goals[0])) for each in rows])
         elif is_set and is_right_behind and isinstance(search, Called):
             each = tuple((*search.arguments, (slot, goal)) for goal in goals)
             value = Called(search.entry, each[0]) if len(goals) == 1 else Listed(search.entry, each, "or")

@@ -33,7 +33,7 @@ INSTEAD = "instead"
 """The role of a command that is done in the place of one before it."""
 FIRST = "first"
 """The value of a `but` behind which something is done before the rest."""
-_HEADS = ("every", "every_day", "at")
+_HEADS = ("every", "every_day", "weekly", "on_days", "at")
 _STATES = frozenset((PLACE, ZONE, DOOR, "days", "time_of_day"))
 """The types of values of conditions that last."""
 _PLAIN = frozenset(("command", "wait", "for", "count", *JOINTS))

@@ -5,7 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise
 
-from btlang.frontends.mission.token import JOINTS, LINES, STATEMENT_ENDS, Called, Token, constraint_of, statement_start
+from btlang.frontends.mission.token import (
+    JOINTS,
+    LINES,
+    RULES,
+    STATEMENT_ENDS,
+    Called,
+    Token,
+    constraint_of,
+    run_start,
+    statement_start,
+)
 from btlang.frontends.mission.tokens.settling import STAYS, first_word
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.capabilities import TRAVELS
@@ -21,6 +31,7 @@ MARKS = {",": "comma", ";": "semi", ":": "colon", "(": "open", ")": "close"}
 _COME = "ComeToMe"
 _STAYS_BEFORE = (",", ";", ")", END_OF_STATEMENT, END_OF_TEXT)
 _DONE = ("command", "name")
+_PLAIN = frozenset(("command", "wait", "count", "every", "every_day", "weekly", "on_days", "at", *JOINTS))
 _OPERANDS = frozenset(("command", "name", "close", "and", "comma"))
 BEGINS = frozenset(("newline", "semi", "indent", "dedent", "open", "define", "colon", "comma", "then"))
 """Behind these a statement, or an item of a list, begins."""
@@ -115,6 +126,9 @@ def without_meaning(
         is_end = all(word in (END_OF_STATEMENT, END_OF_TEXT) for word in text.words[match.last :])
         if start.kind == "but" or goes_on or (is_last and not (is_end and does_before(tokens))):
             return match.last
+        form = statement_start(tokens, len(tokens))
+        if tokens[form].kind in ("if", *RULES) and (not is_end or _goes_before(tokens, form, text, vocabulary)):
+            return match.last  # `if C, go to the dock and charge first. Then A`
         return 0
     throughout = find(vocabulary.throughout, text.words, at)
     if throughout is not None and constraint_of(before) is not None:
@@ -128,6 +142,18 @@ def without_meaning(
         tokens.append(Token(kind, text.starts[at], text.ends[purpose[1] - 1]))
         return purpose[1]
     return 0
+
+
+def _goes_before(tokens: Sequence[Token], form: int, text: Words, vocabulary: Lexicon) -> bool:
+    """Make `A. If C, B first` the same as `A, but if C, B first`, where nothing comes before A."""
+    end, condition = run_start(tokens, form, STATEMENT_ENDS), tokens[form + 1]
+    if tokens[form].kind in RULES or end + 1 != form or any(each.kind not in _PLAIN for each in tokens[:end]):
+        return False
+    if vocabulary.says_event(text.source.text[condition.start : condition.end]):
+        return False
+    if all(each.kind != "unknown" for each in tokens[form:]):  # which is told by itself
+        tokens[end].kind, tokens[end].value = "but", "first"
+    return True
 
 
 def does_before(tokens: Sequence[Token]) -> bool:
