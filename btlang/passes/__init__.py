@@ -11,7 +11,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, MissionError, sort_diagnos
 from btlang.passes.checks import check_goals, check_resources, check_size, check_types
 from btlang.passes.compilation import Compilation, Pass
 from btlang.passes.lint.allow import apply_allow, apply_allow_in_xml
-from btlang.passes.lint.answers import find_judged_answers, find_unused_answers
+from btlang.passes.lint.answers import find_early_answers, find_judged_answers, find_unused_answers
 from btlang.passes.lint.asked_once import find_asked_once
 from btlang.passes.lint.chosen_in_a_branch import find_chosen_in_a_branch
 from btlang.passes.lint.definitions import find_line_ends, find_rules_only, find_unused
@@ -73,6 +73,7 @@ PASSES = (
     Pass("nothing counted", find_uncounted, needs_text=True),
     Pass("nothing changes", find_vain_waits, needs_text=True),
     Pass("unused answers", find_unused_answers, needs_text=True),
+    Pass("early answers", find_early_answers, needs_text=True),
     Pass("judged answers", find_judged_answers, needs_text=True),
     Pass("only rules", find_rules_only, needs_text=True),
     Pass("unused", find_unused, needs_text=True),

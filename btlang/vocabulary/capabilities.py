@@ -20,6 +20,7 @@ class Capability(Record):
 
 _ARMS = ("left arm", "right arm")
 HOLDING = "holding"
+HEARS = "ears"
 TRAVELS = "navigation"
 """What a command needs that drives by itself: it takes a place in its own way, or none."""
 CAPABILITIES = {
@@ -38,7 +39,7 @@ CAPABILITIES = {
     "right hand": Capability("right hand", _ARMS[1:]),
     HOLDING: Capability("hand"),
     "voice": Capability("voice", ("voice",)),
-    "ears": Capability("ears"),
+    HEARS: Capability("ears"),
     "perception": Capability("camera that recognises things"),
     "screen": Capability("screen", ("screen",)),
 }

@@ -56,6 +56,7 @@ _JOINING = ("and", "then", "or", "but")
 _SHARED = (Entry, Role, SlotSpec, Frame, Beginnings, Span, Source)
 """Classes of what phrases refer to in many places."""
 _MOST, _TIMES = ("at_most", "up_to_times"), "{count} time(s)"
+_AT_END = " ."  # behind an idiom that is one only at the end of a clause
 _REPLIES = (("if_yes", True), ("if_no", False))
 
 
@@ -226,7 +227,10 @@ class Lexicon:
         """What a mission calls the robot, and what the robot calls itself: `you are`, `I am`."""
         self.happened: dict[str, str] = language["happened"]
         """The verbs of what is so, and of what was so: `is`, `was`."""
-        self.idioms = tree_of((way, said) for words, said in language["idioms"].items() for way in ways([words]))
+        idioms = [(way, said) for words, said in language["idioms"].items() for way in ways([words])]
+        self.idioms = tree_of((way, said) for way, said in idioms if not way.endswith(_AT_END))
+        self.last_idioms = tree_of((way.removesuffix(_AT_END), said) for way, said in idioms if way.endswith(_AT_END))
+        """Those that are read only at the end of a clause."""
         """Words that are read as others: `whoever says` as `everyone who says`."""
         self.persons: dict[str, list[str]] = language["persons"]
         """The other words for the person for whom a word stands: of `he`, `him` and `his`."""

@@ -1,7 +1,8 @@
-"""Lints on answers that decide about nothing, or that nobody can judge (BT147, BT152).
+"""Lints on answers that decide about nothing, that nobody can judge, or that come too early (BT147, BT152).
 
 - `ask Bob "Tea?". If he says no, ask again` does nothing with the second answer;
-- `if the answer is right`, which the robot doesn't know.
+- `if the answer is right`, which the robot doesn't know;
+- `if she says yes, wave. Ask Alice "Tea?"`, where nobody has been asked.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
 from btlang.tree import ast
 from btlang.tree.answers import ABOUT_ANSWERS, ANSWERED, ASK, KEEP_ASKING, asks
+from btlang.vocabulary.capabilities import HEARS
 
 _LOOPS = (ast.Repeat, ast.Retry, ast.Every, ast.While)
 _THE_ANSWER = 'if the answer is "blue", wave'
@@ -52,3 +54,22 @@ def find_judged_answers(compilation: Compilation) -> Iterator[Diagnostic]:
         if said in judged and said not in offered and not vocabulary.forms_of_be.keys().isdisjoint(words):
             reason, advice = f"the robot doesn't know which answer is {said}", f"Say the answer: {_THE_ANSWER}"
             yield diagnostic("BT152", each.span, words=each.span.text, reason=reason, advice=advice)
+
+
+def find_early_answers(compilation: Compilation) -> Iterator[Diagnostic]:
+    """Report (BT152) an answer that decides about something before the mission asks anybody."""
+    body = compilation.mission.body
+    bodies = [compilation.syntax(each) for each in ast.bodies(compilation.mission)]
+    if body is None or not any(isinstance(each, ast.Phrase) and _may_ask(each) for nodes in bodies for each in nodes):
+        return  # the answer may be one from before the mission
+    for each in compilation.syntax(body):
+        if isinstance(each, ast.Phrase) and each.entry.id in ABOUT_ANSWERS:
+            advice = "Ask before it. A definition of several sentences stands on indented lines behind 'is:'."
+            reason = "nobody has been asked before it"
+            yield diagnostic("BT152", each.span, words=each.span.text, reason=reason, advice=advice)
+        elif isinstance(each, (ast.Name, ast.Exact, *_LOOPS)) or (isinstance(each, ast.Phrase) and _may_ask(each)):
+            return  # a round may ask before it comes to the answer again
+
+
+def _may_ask(phrase: ast.Phrase) -> bool:
+    return phrase.entry.sort == "action" and (phrase.entry.id == ASK or HEARS in phrase.entry.needs)

@@ -145,12 +145,18 @@ def find_in_chain(
             yield Attachment(MIXED, start, partial(place.mixed_right, right))
         elif _is_open(left):
             yield Attachment(MIXED, start, partial(place.mixed_left, left))
-        if wrapped and "(" not in gap:
+        goes_along = chain.operator == "parallel" and _is_task(left) and isinstance(right, ast.Every)
+        if wrapped and "(" not in gap and not goes_along:
             yield Attachment(POSTFIX, start, partial(place.postfix, right, wrapped))
         if lists and _is_sequence(left) and ")" not in gap:
             yield Attachment(LIST, start, partial(place.list_left, left))
         elif lists and _is_sequence(right) and "(" not in gap:
             yield Attachment(LIST, start, partial(place.list_right, right))
+
+
+def _is_task(node: ast.Ast) -> bool:
+    """Whether a node is a command that ends, as does then what goes along with it: `go to the lab and A on the way`."""
+    return isinstance(node, ast.Phrase) and not node.entry.accompaniment
 
 
 def _names_its_command(item: ast.Ast) -> bool:

@@ -23,6 +23,7 @@ from btlang.frontends.mission.tokens.other_things import (
 )
 from btlang.frontends.mission.tokens.repeated_statements import (
     with_conditions_then,
+    with_days_then,
     with_questions_each_time,
     with_questions_once,
     with_repeats_apart,
@@ -93,6 +94,7 @@ class Lexer:
         with_counted_answers(self.tokens, self.vocabulary)
         self.problems += with_replacements(self.tokens, self.vocabulary, source)
         with_times_first(self.tokens)
+        with_days_then(self.tokens)
         with_rounds_beside(self.tokens)
         self.problems += with_questions_once(self.tokens, source)
         with_questions_each_time(self.tokens)

@@ -34,6 +34,7 @@ AGAIN = ("do_that", "repeat_that", "again")
 ELSEWHERE = "elsewhere"
 """The role of a journey that says where something is done again."""
 _TIMES, _CONDITIONAL = ("at", "delay"), ("if", "unless")
+_DAILY = ("at", "every_day")
 _LATER = (*_TIMES, *_CONDITIONAL)
 _ROUNDS = frozenset(("every", "every_day"))
 _DONE = ("command", "name", "close")
@@ -186,6 +187,27 @@ def with_times_first(tokens: list[Token]) -> None:
         if is_time and tokens[at + 1].kind in _CONDITIONAL:
             end = run_end(tokens, at + 2, IN_CONDITIONS)
             tokens[at:end] = [*tokens[at + 1 : end], tokens[at]]
+
+
+def with_days_then(tokens: list[Token]) -> None:
+    """Make `unless it is Saturday, at 7 am A` ask for the day at that time, and not when the mission begins."""
+    for form in reversed(range(len(tokens))):
+        time = run_end(tokens, form + 1, IN_CONDITIONS) + 1
+        if tokens[form].kind not in _CONDITIONAL or tokens[time : time + 1] == [] or tokens[time].kind not in _DAILY:
+            continue
+        asked = [token for token in tokens[form:time] if token.kind == "condition"]
+        if any(token.kind == "otherwise" for token in tokens[time : statement_end(tokens, time)]):
+            continue  # `if it is Sunday, at 7 am A, otherwise B`: B may be done at once
+        if asked and tokens[time - 1].kind == "comma" and all(_is_of_day(token) for token in asked):
+            here = tokens[form].start
+            behind = time + 1 + (tokens[time + 1 : time + 2] != [] and tokens[time + 1].kind == "comma")
+            tokens[form:behind] = [tokens[time], Token("comma", here, here), *tokens[form:time]]
+
+
+def _is_of_day(condition: Token) -> bool:
+    """Whether a condition is about the day."""
+    value = condition.value
+    return isinstance(value, Called | Listed) and any(slot.type == "days" for slot in value.entry.slots)
 
 
 def with_conditions_then(tokens: list[Token]) -> None:

@@ -66,11 +66,12 @@ def reworded(text: Words, vocabulary: Lexicon) -> list[Diagnostic]:
 
 def _say_plainly(text: Words, vocabulary: Lexicon) -> None:
     """Put plain words in the place of idioms: `it is past 10 am` as `it is after 10 am`."""
-    if text.distinct.isdisjoint(vocabulary.idioms):
-        return
     said = list[tuple[int, int, str]]()
-    for at in [at for at, word in enumerate(text.words) if word in vocabulary.idioms]:
-        found = find(vocabulary.idioms, text.words, at)
+    for at, word in enumerate(text.words):
+        found = find(vocabulary.idioms, text.words, at) if word in vocabulary.idioms else None
+        last = find(vocabulary.last_idioms, text.words, at) if word in vocabulary.last_idioms else None
+        if last is not None and text.words[last[1]] in ENDING:
+            found = last
         if found is not None and (not said or at >= said[-1][1]):
             said.append((at, found[1], found[0]))
     for at, end, plain in reversed(said):

@@ -9,12 +9,12 @@ from btlang.frontends.mission.tokens.calls import Calls
 from btlang.frontends.mission.tokens.partial_commands import PartialCommands
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.tree.answers import ANSWERED, ASK
+from btlang.vocabulary.capabilities import HEARS
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import longest
 
-_HEARS = "ears"
 _ENDS = (END_OF_STATEMENT, END_OF_TEXT, ")")
 
 
@@ -79,7 +79,7 @@ def may_fail(token: Token) -> bool:
 
 def hears(token: Token) -> bool:
     """Whether a command waits for what somebody says."""
-    return isinstance(token.value, Called | Listed) and _HEARS in token.value.entry.needs
+    return isinstance(token.value, Called | Listed) and HEARS in token.value.entry.needs
 
 
 def is_question(token: Token) -> bool:
