@@ -63,11 +63,14 @@ def find_early_answers(compilation: Compilation) -> Iterator[Diagnostic]:
     if body is None or not any(isinstance(each, ast.Phrase) and _may_ask(each) for nodes in bodies for each in nodes):
         return  # the answer may be one from before the mission
     for each in compilation.syntax(body):
-        if isinstance(each, ast.Phrase) and each.entry.id in ABOUT_ANSWERS:
+        if isinstance(each, ast.If) and asks(each.condition):
+            words = each.condition.span
             advice = "Ask before it. A definition of several sentences stands on indented lines behind 'is:'."
             reason = "nobody has been asked before it"
-            yield diagnostic("BT152", each.span, words=each.span.text, reason=reason, advice=advice)
-        elif isinstance(each, (ast.Name, ast.Exact, *_LOOPS)) or (isinstance(each, ast.Phrase) and _may_ask(each)):
+            yield diagnostic("BT152", words, words=words.text, reason=reason, advice=advice)
+        elif isinstance(each, (ast.Name, ast.Exact, ast.Whenever, *_LOOPS)) or (
+            isinstance(each, ast.Phrase) and _may_ask(each)
+        ):
             return  # a round may ask before it comes to the answer again
 
 

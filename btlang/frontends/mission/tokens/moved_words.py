@@ -82,6 +82,10 @@ def drop_where_it_is(text: Words, vocabulary: Lexicon) -> None:
         said = find(left, words, at)
         first = max(text.earlier(at)[1], *(i for i in range(at) if words[i] == ","), 0)  # in the same clause
         excepted = next(filter(None, (vocabulary.values.exception(text, i) for i in range(first, at - 2))), 0)
-        leaves = excepted and words[excepted] not in vocabulary.before_conditions  # but not `except if`
+        forms = {
+            *vocabulary.before_conditions,
+            *(word for phrase in vocabulary.roles["after"] for word in phrase.split()),
+        }
+        leaves = excepted and words[excepted] not in forms  # but not `except if`, `but only after`
         if said is not None and words[said[1]][0] in ENDING and leaves:
             text.drop(at, said[1])
