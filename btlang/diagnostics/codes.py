@@ -307,6 +307,7 @@ _ALL = (
          "If a keyword file has it, add: --keywords FILE", "warning", "undeclared node"),
     Code("BT251", "'{words}' is read as {time}, but could also be {other}.", "Write which: {am}, or {pm}", "warning",
          "early time"),
+    Code("BT252", "'{words}' is left out: there's only one way to '{verb}'.", "", "note", "manner"),
     Code("BT250", "'{sign}' isn't a word.", "Write comparisons in words."),
 )  # fmt: skip
 

@@ -29,7 +29,7 @@ from btlang.frontends.mission.tokens.silent_words import BEGINS, does_before
 from btlang.frontends.mission.tokens.way_words import WayWords
 from btlang.frontends.mission.tokens.word_matches import words_of
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
-from btlang.vocabulary.entry import THEME
+from btlang.vocabulary.entry import MANNER, THEME
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.value_type import OBJECT, PERSON
 from btlang.vocabulary.word_tree import find
@@ -117,9 +117,25 @@ class OrderWords(ClockWords, JourneyWords, WayWords):
             or self._wait_for(at)
             or self._faces(at)
             or self._put_back(at)
+            or self._manner(at)
             or self._back(at)
             or (self._partial.add_third(at + 1, None) if text.words[at] in self._vocabulary.asking["subject"] else 0)
         )
+
+    def _manner(self, at: int) -> int:
+        """BT252 for `turn around really fast`: how it is done is left out of a command that is done in one way."""
+        found, last = find(self._context.manners, self._text.words, at), len(self._tokens) - 1
+        while last > 0 and self._tokens[last].kind in MEASURES:
+            last -= 1
+        value = self._tokens[last].value if last >= 0 else None
+        if found is None or not isinstance(value, Called | Listed) or self._tokens[last].kind != "command":
+            return 0
+        if any(slot.type == MANNER for slot in value.entry.slots):
+            return 0
+        words, done = self._text.span(at, found[1]), self._tokens[last]
+        verb = self._text.source.text[done.start : done.end]
+        self._calls.problems.append(diagnostic("BT252", words, words=words.text, verb=verb))
+        return found[1]
 
     def connect(self, role: str) -> None:
         """What the words that were read last, of a role, are where they stand."""

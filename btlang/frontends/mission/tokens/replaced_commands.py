@@ -25,6 +25,7 @@ from btlang.frontends.mission.tokens.settling import FAILS
 from btlang.text.source import Source, Span
 from btlang.tree.answers import ABOUT_ANSWERS
 from btlang.tree.sums import COMPARED
+from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import choice_of
 from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE, ZONE
@@ -93,8 +94,9 @@ def _moved(command: Token) -> set[str]:
     value = command.value
     if not isinstance(value, Called):
         return set()
-    named = ((text, choice_of(text)) for text in value.entry.given(OBJECT, value.arguments))
+    named = [(text, choice_of(text)) for text in value.entry.given(OBJECT, value.arguments)]
     things = {text if choice is None else f"{{{choice.key}}}" for text, choice in named}
+    things |= {dict(choice.parts).get(NAME, "") for _, choice in named if choice is not None} - {""}
     is_for_somebody = any(slot.type == PERSON for slot in value.entry.slots)
     has_goal = is_for_somebody or any(value.entry.given(PLACE, value.arguments))
     return things if has_goal and drives(value) else set()

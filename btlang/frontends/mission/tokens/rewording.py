@@ -17,7 +17,7 @@ from btlang.frontends.mission.tokens.moved_words import (
 )
 from btlang.frontends.mission.tokens.parted import part_each
 from btlang.text.source import Span
-from btlang.text.words import Words
+from btlang.text.words import END_OF_STATEMENT, Words
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.pattern import ways
 from btlang.vocabulary.trie import longest
@@ -34,6 +34,7 @@ def reworded(text: Words, vocabulary: Lexicon) -> list[Diagnostic]:
     _say_at_door(text, vocabulary)
     _drop_words_of_turns(text, vocabulary)
     _drop_still(text, vocabulary)
+    _join_but(text, vocabulary)
     say_opinion_first(text, vocabulary)
     _say_last_of_all(text, vocabulary)
     _drop_left(text, vocabulary)
@@ -77,6 +78,16 @@ def _say_plainly(text: Words, vocabulary: Lexicon) -> None:
     for at, end, plain in reversed(said):
         text.drop(at + 1, end)
         text.replace(at, plain.split())
+
+
+def _join_but(text: Words, vocabulary: Lexicon) -> None:
+    """Join what begins with `but` to the sentence before it: `Go to the lab. But if C, wave`."""
+    but = vocabulary.roles["but"]
+    if text.distinct.isdisjoint(but):
+        return  # as nearly always
+    for at in [at for at, word in enumerate(text.words) if word in but]:
+        if at > 1 and text.words[at - 1] == END_OF_STATEMENT and text.source.text[text.starts[at - 1]] in ".!":
+            text.replace(at - 1, [","])
 
 
 def _say_at_door(text: Words, vocabulary: Lexicon) -> None:
