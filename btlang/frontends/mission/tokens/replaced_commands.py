@@ -81,12 +81,25 @@ def _find_moved_again(tokens: Sequence[Token], vocabulary: Lexicon, source: Sour
         if form is None or replaces or not _is_state(form[0], vocabulary, source):
             continue
         moved = _moved(tokens[at - 2])
-        if any(moved & _moved(token) for token in form[1]):
+        if not any(moved & _moved(token) for token in form[1]):
+            continue
+        if _asks_for_receiver(tokens[at - 2], form[0]):
+            form[1][0].role = INSTEAD  # `bring the cup to Bob. If he isn't in the lab, take it to the hall`
+        else:
             whole, first = Span(source, tokens[at].start, form[1][-1].end), form[1][0].start
             asked, said = source.text[tokens[at].start : first], source.text[first : whole.end]
             then, instead = vocabulary.word("then"), vocabulary.word("instead")
             other = f"{then} {asked[:1].lower()}{asked[1:]}{said}"
             yield diagnostic("BT151", whole, words=whole.text, one=f"{whole.text} {instead}", other=f"..., {other}")
+
+
+def _asks_for_receiver(command: Token, condition: Sequence[Token]) -> bool:
+    """Whether a condition says that somebody to whom a command brings something isn't at a place."""
+    kinds, value, asked = [token.kind for token in condition], command.value, condition[-1].value
+    if kinds != ["not", "condition"] or not isinstance(value, Called) or not isinstance(asked, Called):
+        return False
+    persons = value.entry.given(PERSON, value.arguments)
+    return bool(persons) and persons == asked.entry.given(PERSON, asked.arguments)
 
 
 def _moved(command: Token) -> set[str]:
@@ -188,6 +201,8 @@ def _either(
     """The tokens that do what stands before a form if its condition isn't so, else what is done there."""
     here = before[0].start
     kind = "unless" if form.kind == "if" else "if"
+    if [token.kind for token in condition] == ["not", "condition"]:
+        kind, condition = form.kind, condition[1:]  # not `unless not`
     _say_where(before, condition, vocabulary, source)
     for token in done:
         token.role = "" if token.role == INSTEAD else token.role
