@@ -40,6 +40,7 @@ def in_one_line(mission: btlang.Mission) -> str:
         *rows("waits.txt"),
         *rows("counts.txt"),
         *rows("carried.txt"),
+        *rows("order.txt"),
     ],
     ids=lambda text: text,
 )
