@@ -159,7 +159,8 @@ class Texts:
     def _begins_no_other(self, text: Words, at: int) -> bool:
         """Whether a word begins none of the words that could go on with the mission: the `in` of `in ten minutes`."""
         word = text.words[at]
-        if word in self.timing or word not in self._joining or word in self.of_persons:
+        is_time = word in self.timing and at + 1 not in text.articles  # but not `at the desk`
+        if is_time or word not in self._joining or word in self.of_persons:
             return False
         return all(find(joining, text.words, at) is None for joining in self._joining_words)
 
