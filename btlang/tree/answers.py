@@ -77,10 +77,14 @@ def _ask_until(node: ast.Ast) -> ast.Ast:
         asked, pause = round_.body, round_.seconds
     else:
         asked = round_.body if isinstance(round_, ast.Repeat) and round_.rounds == "-1" else round_
-    if not (isinstance(asked, ast.Phrase) and asked.entry.id == ASK):
+    waits = isinstance(asked, ast.Chain) and all(isinstance(each, ast.Wait) for each in asked.items[:-1])
+    parts = (
+        asked.items if waits and isinstance(asked, ast.Chain) else (asked,)
+    )  # `wait 5 min and ask her again until C`
+    if not (isinstance(parts[-1], ast.Phrase) and parts[-1].entry.id == ASK):
         return node
     if _is_reply(node):
-        asked = ast.Chain("sequence", (asked, ast.Check(node.condition, node.condition.span)), True, node.span)
+        asked = ast.Chain("sequence", (*parts, ast.Check(node.condition, node.condition.span)), True, node.span)
     elif not (isinstance(node.condition, ast.Not) and asks(node.condition, (UNANSWERED,))):  # `until he answers`
         return node
     return ast.Retry("-1", asked, pause, node.span)

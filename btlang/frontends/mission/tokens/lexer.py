@@ -29,6 +29,8 @@ from btlang.frontends.mission.tokens.repeated_statements import (
     with_repeats_apart,
     with_rounds_beside,
     with_times_first,
+    with_tries_apart,
+    with_waits_each_time,
 )
 from btlang.frontends.mission.tokens.replaced_commands import with_replacements
 from btlang.frontends.mission.tokens.rewording import reworded
@@ -36,6 +38,7 @@ from btlang.frontends.mission.tokens.rules_behind import (
     find_counted_rules,
     find_ended_rounds,
     find_two_ifs,
+    with_checks_acted_on,
     with_checks_apart,
     with_exceptions,
     with_rules_behind,
@@ -98,6 +101,8 @@ class Lexer:
         with_rounds_beside(self.tokens)
         self.problems += with_questions_once(self.tokens, source)
         with_questions_each_time(self.tokens)
+        with_waits_each_time(self.tokens, vocabulary.roles["again"], source)
+        with_tries_apart(self.tokens)
         turn_branches(self.tokens)
         with_rounds(self.tokens)
         with_either_end(self.tokens)
@@ -119,6 +124,7 @@ class Lexer:
         self.problems += find_midnights(self.tokens, source)
         self.problems += find_counted_rules(self.tokens, source)
         with_checks_apart(self.tokens)
+        with_checks_acted_on(self.tokens, self.vocabulary, source)
         self.problems += find_two_ifs(self.tokens, self.vocabulary, source)
         self.problems += find_ended_rounds(self.tokens, self.vocabulary, source)
         self.problems += with_exceptions(self.tokens, self.vocabulary, source)

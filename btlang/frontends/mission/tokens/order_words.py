@@ -137,6 +137,20 @@ class OrderWords(ClockWords, JourneyWords, WayWords):
         self._calls.problems.append(diagnostic("BT252", words, words=words.text, verb=verb))
         return found[1]
 
+    def left_out(self, at: int) -> int:
+        """`pick up all cups and bring them to the lab, except the red ones`: of the set in the statement."""
+        tokens, first = self._tokens, statement_start(self._tokens, len(self._tokens))
+        for token in tokens[first:] if self._vocabulary.values.exception(self._text, at) else ():
+            value = token.value
+            for name, group in value.arguments if isinstance(value, Called) else ():
+                fewer = self._context.without(group, self._text, at)
+                if isinstance(value, Called) and fewer is not None and fewer[0] and self._is_end(fewer[1]):
+                    said = tuple((each, fewer[0] if each == name else text) for each, text in value.arguments)
+                    token.value = value.replace(arguments=said)
+                    del tokens[run_start(tokens, len(tokens), JOINTS) :]
+                    return fewer[1]
+        return 0
+
     def connect(self, role: str) -> None:
         """What the words that were read last, of a role, are where they stand."""
         if role == "start_over":

@@ -31,7 +31,7 @@ from btlang.vocabulary.references import ALL, NAMES, choice_of
 from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE
 from btlang.vocabulary.word_tree import find
 
-_HOLD = "Hold"
+_HOLD, _PUT, _SEES = "Hold", "PutDown", "SeesSomeone"
 _JOINS = ("and", "then", "or")
 _TIMED = ("at", "every", "every_day", "weekly", "count", "within", "by_time", "until_time")
 _BEHIND = (*_JOINS, *_TIMED, "if", "unless", "until")
@@ -158,20 +158,6 @@ class Places(SentenceReader):
             opening, closing = Token("open", here, here), Token("close", end, end)
             tokens[at:] = [opening, tokens[at], tokens[last], tokens[-1], closing, *measures]
 
-    def left_out(self, at: int) -> int:
-        """`pick up all cups and bring them to the lab, except the red ones`: of the set in the statement."""
-        tokens, first = self._tokens, statement_start(self._tokens, len(self._tokens))
-        for token in tokens[first:] if self._vocabulary.values.exception(self._text, at) else ():
-            value = token.value
-            for name, group in value.arguments if isinstance(value, Called) else ():
-                fewer = self._context.without(group, self._text, at)
-                if isinstance(value, Called) and fewer is not None and fewer[0] and self._is_end(fewer[1]):
-                    said = tuple((each, fewer[0] if each == name else text) for each, text in value.arguments)
-                    token.value = value.replace(arguments=said)
-                    del tokens[run_start(tokens, len(tokens), JOINTS) :]
-                    return fewer[1]
-        return 0
-
     def _doubt_times(self, journey: Token, count: Token, end: int) -> int:
         """BT151 for `go to the lab and the hall twice and wave in each`: each time, or at the end."""
         text, word = self._text, self._vocabulary.word
@@ -209,14 +195,31 @@ class Places(SentenceReader):
         said = tokens.pop()
         end = said.end = self._text.ends[journey.last - 1]
         tokens.append(Token("open", said.start, said.start))
-        hold = self._vocabulary.entry(_HOLD) if is_to_speaker and isinstance(value, Called) else None
-        if hold is not None and isinstance(value, Called) and value.entry.slots[0].type == OBJECT:
-            held = Called(hold, ((hold.slots[0].name, dict(value.arguments)[value.entry.slots[0].name]),))
-            tokens += [Token("command", said.start, said.start, held), Token("and", said.start, said.start)]
+        is_call = is_to_speaker and isinstance(value, Called)
+        held = value.entry.given(OBJECT, value.arguments)[:1] if is_call and isinstance(value, Called) else []
+        if hold := self._handling(_HOLD, held, said.start):
+            tokens += [hold, Token("and", said.start, said.start)]
         self._append_tour(journey, at)
         tokens[-1].start = said.start
-        tokens += [Token("and", said.start, said.start), said, Token("close", end, end)]
+        met = self._if_met(said, self._handling(_PUT, held, end)) if is_call else [said]
+        tokens += [Token("and", said.start, said.start), *met, Token("close", end, end)]
         return journey.last
+
+    def _handling(self, node_id: str, held: Sequence[str], at: int) -> Token | None:
+        """A command about what is held, None without one."""
+        entry = self._vocabulary.entry(node_id) if held else None
+        return Token("command", at, at, Called(entry, ((entry.slots[0].name, held[0]),))) if entry is not None else None
+
+    def _if_met(self, said: Token, otherwise: Token | None) -> list[Token]:
+        """`come to me in the lab`: to whoever is in view there; what was to be brought is put down for nobody."""
+        seen, here, end = self._vocabulary.entry(_SEES), said.start, said.end
+        if seen is None:
+            return [said]
+        made = [Token("open", here, here), Token("if", here, here), Token("condition", here, here, Called(seen, ()))]
+        made += [Token("comma", here, here), said]
+        if otherwise is not None:
+            made += [Token("stop", end, end), Token("otherwise", end, end), otherwise]
+        return [*made, Token("close", end, end)]
 
     def again_at(self, at: int) -> int:
         """`Do the same in the kitchen`: what was done, in another place."""

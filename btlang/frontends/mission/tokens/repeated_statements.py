@@ -7,7 +7,7 @@ Do that every hour` waits for 9 am once.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.token import (
@@ -24,7 +24,8 @@ from btlang.frontends.mission.token import (
     statement_of,
     statement_start,
 )
-from btlang.frontends.mission.tokens.settling import MEASURES
+from btlang.frontends.mission.tokens.sentence_reader import is_question
+from btlang.frontends.mission.tokens.settling import FAILS, MEASURES
 from btlang.text.source import Source, Span
 from btlang.tree.answers import ABOUT_ANSWERS, ASK
 from btlang.vocabulary.value_type import PLACE
@@ -187,6 +188,36 @@ def with_times_first(tokens: list[Token]) -> None:
         if is_time and tokens[at + 1].kind in _CONDITIONAL:
             end = run_end(tokens, at + 2, IN_CONDITIONS)
             tokens[at:end] = [*tokens[at + 1 : end], tokens[at]]
+
+
+def with_waits_each_time(tokens: list[Token], again: Container[str], source: Source) -> None:
+    """Make `wait 5 min and ask her again until she says yes` wait before each question."""
+    for at in reversed(range(2, len(tokens) - 2)):
+        asked, until = tokens[at], tokens[at + 1]
+        wait = run_start(tokens, at, JOINTS) - 1
+        if until.kind != "until" or not is_question(asked) or not 0 <= wait < at - 1 or tokens[wait].kind != "wait":
+            continue
+        if source.text[asked.start : asked.end].lower().rsplit(" ", 1)[-1] in again:
+            here, there = tokens[wait].start, asked.end
+            tokens[wait : at + 1] = [Token("open", here, here), *tokens[wait : at + 1], Token("close", there, there)]
+
+
+def with_tries_apart(tokens: list[Token]) -> None:
+    """Let `go to the lab and try to open it up to 3 times. If it still fails, A` do A for the tries alone."""
+    for at in reversed(range(3, len(tokens))):
+        last = at - 1
+        done = run_start(tokens, last, MEASURES | {"every"}) - 1
+        if (
+            tokens[at].value != FAILS
+            or tokens[last].kind != "stop"
+            or done == last - 1
+            or tokens[done - 1].kind != "try"
+        ):
+            continue
+        joint, first = run_start(tokens, done - 1, JOINTS), statement_start(tokens, done)
+        is_defined = first > 0 and tokens[first - 1].kind == "define"
+        if first < joint < done - 1 and not is_defined and all(token.kind in _PLAIN for token in tokens[first:joint]):
+            tokens[joint : done - 1] = [Token("semi", tokens[joint].start, tokens[joint].start)]
 
 
 def with_days_then(tokens: list[Token]) -> None:

@@ -16,6 +16,7 @@ from btlang.frontends.mission.token import (
     statement_end,
     statement_of,
 )
+from btlang.frontends.mission.tokens.settling import WORKS
 from btlang.text.source import Source, Span
 from btlang.tree.rounds import DAYTIME
 from btlang.vocabulary.lexicon import Lexicon
@@ -26,6 +27,7 @@ _RULE = "whenever bumped, say ouch 3 times, or: the first time bumped, say ouch"
 _PACES = ("every", "every_day", "weekly", "at")
 _DONE = ("command", "name")
 _PLAIN = frozenset((*_DONE, "wait", "open", "close", "count", *JOINTS))
+_TOGETHER = frozenset((*_DONE, "wait", "count", "comma", "and"))
 _ASKED = (*RULES, "if")
 
 
@@ -77,6 +79,24 @@ def with_checks_apart(tokens: list[Token]) -> None:
             behind = run_end(tokens, end, JOINTS)
             if behind > end and tokens[behind : behind + 1] and tokens[behind].kind in ("if", "unless"):
                 tokens[at:behind] = [*_in_brackets(tokens[at:end]), _joint("then", tokens[behind])]
+
+
+def with_checks_acted_on(tokens: list[Token], vocabulary: Lexicon, source: Source) -> None:
+    """Make `see if the light is on, and switch it off` do so if it is on; `check that it is on and A` needs it on."""
+    asking = {*vocabulary.roles["if"], *vocabulary.asking["whether"]}
+    for at in reversed([at for at, token in enumerate(tokens) if token.kind == "check"]):
+        check, last = tokens[at], _behind(tokens, at)
+        done = run_end(tokens, last, ("comma", "and"))
+        end = run_start(tokens, run_end(tokens, done, _TOGETHER), ("comma", "and"))
+        asks = source.text[check.start : check.end].lower().rsplit(" ", 1)[-1] in asking
+        if not asks or end <= done or all(token.kind != "and" for token in tokens[last:done]):
+            continue
+        behind = tokens[run_end(tokens, end, ("comma", "stop")) :][:1]
+        if (at > 0 and tokens[at - 1].kind == "try") or (behind != [] and behind[0].kind == WORKS):
+            continue
+        said = [Token("if", check.start, check.end), *tokens[at + 1 : last], _joint("comma", tokens[done])]
+        said += tokens[done:end]
+        tokens[at:end] = said if behind != [] and behind[0].kind == "otherwise" else _in_brackets(said)
 
 
 def find_two_ifs(tokens: Sequence[Token], vocabulary: Lexicon, source: Source) -> Iterator[Diagnostic]:

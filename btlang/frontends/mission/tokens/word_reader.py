@@ -198,7 +198,7 @@ class WordReader:
         if not end and (role in NOT_ALONE or self._text.words[at] in self._verb_forms):
             end = self._in_its_place(match, role, at)
         if not end and role == "but":
-            end = self._places.left_out(at)  # `go to every room, but not the kitchen`
+            end = self._order.left_out(at)  # `go to every room, but not the kitchen`
         if not end and self._shares and match is not None and self._depends_behind(match.last):
             end = self._partial.add_left_out(at)  # `bring her the cup if she says cup, and the book if she says book`
         if not end and (match is None or match.meaning.entry is not None):
@@ -348,7 +348,7 @@ class WordReader:
             or self._partial.add_left_out(at)
             or self._partial.add_without_theme(at)
             or self._requests.tell(at)
-            or self._places.left_out(at)
+            or self._order.left_out(at)
             or self._requests.benefit(at)
         )
         if end:
