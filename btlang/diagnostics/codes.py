@@ -214,7 +214,7 @@ _ALL = (
     Code("BT162", "'{words}' leads where the robot may not go: it keeps out of '{zone}'."),
     Code("BT163", "'{words}' turns by half a turn each time.", "For whole turns, write: {fixed}", "note", "half turns"),
     Code("BT164", "'{words}' states something, but a mission only says what the robot does.",
-         "Leave it out, or put it on a line of its own that starts with #."),
+         "{advice}"),
     Code("BT165", "'{words}' gives a reason, which a mission doesn't need.", "Leave it out."),
     Code("BT166", "'{words}' doesn't say which command it replaces.",
          "Say both, for example: if Alice is near, say hello, {otherwise} go to the dock"),

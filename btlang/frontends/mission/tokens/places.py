@@ -129,10 +129,13 @@ class Places(SentenceReader):
         if journey is None or not (is_polite or self._is_end(pronoun[1]) or text.words[pronoun[1]] == ","):
             return 0
         is_plural = pronoun[0] in context.values.plural_pronouns
-        if is_plural and PLACE not in context.listed and context.latest.get(PLACE, "{")[:1] != "{":
+        is_list = isinstance(journey.value, Listed) and journey.value.joiner == "and"  # `go to A and B and wave there`
+        if (is_plural or is_list) and PLACE not in context.listed and context.latest.get(PLACE, "{")[:1] != "{":
             stops = context.stops(text, at)  # `go to A, then to B, and wave in each`
             return pronoun[1] if stops and self._goes_there(stops, len(tokens) - 1) else 0
-        goal = context.listed[PLACE] if is_plural and PLACE in context.listed else context.latest.get(PLACE)
+        goal = (
+            context.listed[PLACE] if (is_plural or is_list) and PLACE in context.listed else context.latest.get(PLACE)
+        )
         if not goal:
             return 0
         if self._calls.is_alternative(journey, goal):
@@ -199,6 +202,11 @@ class Places(SentenceReader):
         held = value.entry.given(OBJECT, value.arguments)[:1] if is_call and isinstance(value, Called) else []
         if hold := self._handling(_HOLD, held, said.start):
             tokens += [hold, Token("and", said.start, said.start)]
+            choice = choice_of(held[0])
+            if choice is not None and isinstance(value, Called):  # once it is held, it isn't where it was
+                held = [f"{{{choice.key}}}"]
+                arguments = tuple((name, held[0] if text == choice.text else text) for name, text in value.arguments)
+                said.value = value.replace(arguments=arguments)
         self._append_tour(journey, at)
         tokens[-1].start = said.start
         met = self._if_met(said, self._handling(_PUT, held, end)) if is_call else [said]

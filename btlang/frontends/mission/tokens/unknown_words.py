@@ -191,7 +191,18 @@ class UnknownWords:
         is_behind = is_behind or find(vocabulary.opinions, text.words, at) is not None
         if (why is not None or is_behind) and self._is_idle(at if why is None else why[1], end):
             return end, diagnostic("BT158", span, words=span.text)
-        return end, diagnostic("BT164" if why is None else "BT165", span, words=span.text)
+        if why is not None:
+            return end, diagnostic("BT165", span, words=span.text)
+        return end, diagnostic("BT164", span, words=span.text, advice=self._advise(at, end))
+
+    def _advise(self, at: int, end: int) -> str:
+        """What to write in the place of a statement: `I am in the lab` says where to come."""
+        tree, words = self._vocabulary.values.names_tree(PLACE), self._text.words
+        named = next((first for first in range(at, end) if (found := find(tree, words, first)) and found[1] == end), 0)
+        if named and words[at].partition("'")[0] in self._vocabulary.asking["speaking"]:
+            where = self._text.span(named - 1, end).text
+            return f"Say it in the command, for example: come to me {where}, or: bring the cup to me {where}"
+        return "Leave it out, or put it on a line of its own that starts with #."
 
     def _is_idle(self, at: int, end: int) -> bool:
         """Whether a reason asks for nothing and goes on with no command: `because Alice is working there`."""
