@@ -11,6 +11,7 @@ from btlang.frontends.mission.token import (
     JOINTS,
     STATEMENT_ENDS,
     Called,
+    Listed,
     Token,
     go_on,
     run_end,
@@ -38,6 +39,7 @@ from btlang.frontends.mission.tokens.tries import LIMIT
 from btlang.text.source import Span
 from btlang.tree.rounds import ONE_FAILS
 from btlang.vocabulary.antecedents import pronouns_for
+from btlang.vocabulary.capabilities import TRAVELS
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.value_type import OBJECT, PERSON, PLACE
 from btlang.vocabulary.word_tree import find
@@ -57,7 +59,11 @@ class Outcomes(Limits):
             self.found(match, at)
         if said == "once" and len(self._tokens) > 1:
             if self._text.words[match.last] in (",", *self._vocabulary.roles["and"]):
-                self._tokens.pop()  # `go to every room once and wave in each one`
+                done = tokens[-2].value
+                if isinstance(done, Called | Listed) and TRAVELS in done.entry.needs:
+                    tokens.pop()  # `go to every room once and wave in each one`
+                else:
+                    token.kind, token.value = "count", "1"
                 return match.last
         if role == WORKS and self._text.words[at] in self._vocabulary.joining and tokens[-2:-1] != []:
             if tokens[-2].kind not in (*JOINTS, *STATEMENT_ENDS):
