@@ -217,7 +217,7 @@ def find_distant_questions(compilation: Compilation) -> Iterator[Diagnostic]:
     sights = {id(node.condition) for node in nodes if isinstance(node, ast.If)}
     in_rules = {id(each) for node in nodes if isinstance(node, ast.Whenever)
                 for part in (node.condition, node.body) for each in ast.parents_first(part)}  # fmt: skip
-    met = ""
+    met, led, failed = "", set[int](), _failed_before(nodes)
     for phrase in sorted(phrases, key=lambda each: each.span.start):
         if id(phrase) in in_rules or phrase.entry.constrains:
             continue  # what a rule does is done at some time
@@ -229,6 +229,8 @@ def find_distant_questions(compilation: Compilation) -> Iterator[Diagnostic]:
         drives = MOVES in phrase.entry.resources or TRAVELS in phrase.entry.needs
         stays = phrase.entry.sort == "action" and not drives
         is_far = there != "" and (stays or (phrase.entry.id in _SIGHTS and id(phrase) in sights))
+        if (phrase.entry.id == ASK or is_far) and not led <= failed.get(id(phrase), set()):
+            return
         if (phrase.entry.id == ASK or is_far) and goal and goal[:1] != "{" and goal != met:
             words = phrase.span.text
             journey = " ".join((*vocabulary.asking["journey"], goal, vocabulary.word("then")))
@@ -242,7 +244,25 @@ def find_distant_questions(compilation: Compilation) -> Iterator[Diagnostic]:
         if drives and len(named) == 1 and goal:
             met = goal  # `bring the cup to Bob and ask Alice "Tea?"` goes to Bob
         elif named or leads or phrase.entry.sort == "name":
-            return
+            led.add(id(phrase))
+
+
+def _failed_before(nodes: Sequence[ast.Ast]) -> dict[int, set[int]]:
+    """Return for each part that is done where others have failed which these are, by their ids."""
+    failed: dict[int, set[int]] = {}
+    for node in nodes:
+        parts: Sequence[ast.Ast] = ()
+        if isinstance(node, ast.Chain) and node.operator == "fallback":
+            parts = node.items
+        elif isinstance(node, ast.IfWorks) and node.otherwise is not None:
+            parts = (node.tried, node.otherwise)
+        tried = set[int]()
+        for part in parts:
+            within = {id(each) for each in ast.parents_first(part)}
+            for each in within:
+                failed[each] = failed.get(each, set()) | tried
+            tried |= within
+    return failed
 
 
 def _person_of(phrase: ast.Phrase) -> str:

@@ -374,6 +374,8 @@ class GoingOn(SentenceReader):
             return False
         if tokens[first + 1].value != "-1" if tokens[first].kind == "repeat" else "count" in kinds:
             return False
+        if FAILS in kinds or not kinds.isdisjoint(BRANCHES - {"every_day"}):
+            return False  # `every hour, A. If that fails, B. Then C`: C in any case, see `with_rest_of_rounds`
         del tokens[end:]
         return True
 

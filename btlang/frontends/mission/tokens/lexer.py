@@ -27,6 +27,7 @@ from btlang.frontends.mission.tokens.repeated_statements import (
     with_questions_each_time,
     with_questions_once,
     with_repeats_apart,
+    with_rest_of_rounds,
     with_rounds_beside,
     with_times_first,
     with_tries_apart,
@@ -119,6 +120,7 @@ class Lexer:
         with_goals_there(self.tokens, vocabulary, source)
         with_waits_there(self.tokens, vocabulary, source)
         self.problems += with_other_things(self.tokens, vocabulary, self.text)
+        with_rest_of_rounds(self.tokens, self.vocabulary, source)
         self.problems += with_framed_rules(self.tokens, self.vocabulary, source)
         with_rules_behind(self.tokens)
         self.problems += find_midnights(self.tokens, source)

@@ -13,6 +13,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.token import (
     IN_CONDITIONS,
     JOINTS,
+    RULES,
     STATEMENT_ENDS,
     Called,
     Listed,
@@ -28,6 +29,9 @@ from btlang.frontends.mission.tokens.sentence_reader import is_question
 from btlang.frontends.mission.tokens.settling import FAILS, MEASURES
 from btlang.text.source import Source, Span
 from btlang.tree.answers import ABOUT_ANSWERS, ASK
+from btlang.tree.rounds import DAYTIME
+from btlang.tree.sums import COMPARED
+from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.value_type import PLACE
 
 AGAIN = ("do_that", "repeat_that", "again")
@@ -35,6 +39,8 @@ AGAIN = ("do_that", "repeat_that", "again")
 ELSEWHERE = "elsewhere"
 """The role of a journey that says where something is done again."""
 _TIMES, _CONDITIONAL = ("at", "delay"), ("if", "unless")
+_ENDLESS = ("every", "every_day", "weekly")
+_BOUNDS = frozenset(("until", "until_time", "for", "up_to", "count", "colon", "while", *RULES))
 _DAILY = ("at", "every_day")
 _LATER = (*_TIMES, *_CONDITIONAL)
 _ROUNDS = frozenset(("every", "every_day"))
@@ -218,6 +224,43 @@ def with_tries_apart(tokens: list[Token]) -> None:
         is_defined = first > 0 and tokens[first - 1].kind == "define"
         if first < joint < done - 1 and not is_defined and all(token.kind in _PLAIN for token in tokens[first:joint]):
             tokens[joint : done - 1] = [Token("semi", tokens[joint].start, tokens[joint].start)]
+
+
+def with_rest_of_rounds(tokens: list[Token], vocabulary: Lexicon, source: Source) -> None:
+    """Make `every hour, go to the door. If somebody is there, A. Then B` do all of it each hour: it never ends.
+
+    Not so behind an event, which may be at any time: `every hour, wave. If somebody comes, A`.
+    """
+    end = -1
+    while end + 1 < len(tokens):
+        first, end = end + 1, statement_end(tokens, end + 1)
+        kinds = {token.kind for token in tokens[first:end]}
+        if first == end or tokens[first].kind not in _ENDLESS or not kinds.isdisjoint(_BOUNDS):
+            continue
+        if any(isinstance(each.value, Called) and each.value.entry.id == DAYTIME for each in tokens[first:end]):
+            continue  # `every hour between 8 am and 6 pm, A`
+        last, goes_on = end, False
+        while last + 2 < len(tokens) and tokens[last].kind == "semi":
+            kind, asked = tokens[last + 1].kind, tokens[run_end(tokens, last + 2, ("not", "open"))]
+            is_done, is_event = _is_about_done(asked), vocabulary.says_event(source.text[asked.start : asked.end])
+            is_asked = kind in _CONDITIONAL and (is_done or not is_event)
+            if not (is_asked or kind in ("delay", "then") or (last > end and kind in (*_DONE, "wait"))):
+                break
+            goes_on = goes_on or not (is_asked and is_done)
+            last = statement_end(tokens, last + 1)
+        if goes_on:
+            last = run_start(tokens, last, STATEMENT_ENDS)
+            begin = first + 1 + (tokens[first + 1].kind == "comma")
+            opening = Token("open", tokens[begin].start, tokens[begin].start)
+            closing = Token("close", tokens[last - 1].end, tokens[last - 1].end)
+            tokens[begin:last] = [opening, *tokens[begin:last], closing]
+            end = statement_end(tokens, last + 2)
+
+
+def _is_about_done(asked: Token) -> bool:
+    """Whether a condition is about an answer or what was counted, which belongs to the round by itself."""
+    value = asked.value
+    return isinstance(value, Called | Listed) and value.entry.id in (*ABOUT_ANSWERS, COMPARED)
 
 
 def with_days_then(tokens: list[Token]) -> None:
