@@ -25,6 +25,7 @@ from btlang.vocabulary.word_tree import find
 
 _SEVERAL = {"PeopleAt": PERSON, "ObjectsAt": OBJECT}  # conditions about so many of them
 _MEETS = "SomeoneNear"  # the condition that holds once a command for nobody in particular is done
+_HOLDS_ANY = "HoldingSomething"  # the condition that a hand holds anything
 _UNKNOWN = "{"
 ODD = ("", "{", "(")
 """How texts begin that are no plain values: of unknown names, references, choices and points."""
@@ -55,6 +56,11 @@ class Mentions:
     def _reference(self, kind: str) -> str:
         """To the value that stands for the one of several alternatives that succeeds."""
         return f"{{{free_key(kind, self._context.known or {})}}}"
+
+    def says_who(self, match: Match) -> bool:
+        """Whether pronouns may stand for something else behind a phrase: its values, people, or what is held."""
+        entry = match.meaning.entry
+        return bool(match.values) or self.speaks_of_people or (entry is not None and entry.id == _HOLDS_ANY)
 
     def note(self, match: Match, joint: str = "") -> None:
         """What pronouns stand for from here on: of alternatives only the run knows which one it was.
@@ -125,6 +131,10 @@ class Mentions:
     def _note_held(self, entry: Entry, match: Match) -> None:
         """Keep what the robot holds apart from a thing that it only goes to, or looks at."""
         things = [value for value in match.values if value.type == OBJECT]
+        if entry.id == _HOLDS_ANY and match.meaning.role == "condition":  # `if you are holding something, put it down`
+            key = self._context.keys.get(OBJECT, OBJECT)
+            self._context.latest[OBJECT] = Choice("nearest", OBJECT, key, (("held_by", SELF),)).text
+            self._context.listed.pop(OBJECT, None)
         latest = self._context.latest.get(OBJECT, "")
         if HOLDS in entry.achieves:
             self._held, self._passed = latest if things else "", ""

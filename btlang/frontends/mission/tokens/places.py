@@ -22,7 +22,8 @@ from btlang.frontends.mission.token import (
     with_arguments,
 )
 from btlang.frontends.mission.tokens.repeated_statements import ELSEWHERE
-from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, leads_to
+from btlang.frontends.mission.tokens.searches_there import SearchesThere
+from btlang.frontends.mission.tokens.sentence_reader import leads_to
 from btlang.frontends.mission.tokens.silent_words import begins
 from btlang.text.source import Span
 from btlang.vocabulary.capabilities import TRAVELS
@@ -48,70 +49,8 @@ _PLAIN = frozenset(("command", "name", "comma", "open", "close", *_JOINS))
 """The kinds of tokens of a statement that does each of its commands once."""
 
 
-class Places(SentenceReader):
+class Places(SearchesThere):
     """Those of one text."""
-
-    def search_there(self, match: Match) -> None:
-        """`go to the lab and look for the ball`: a search there; of several places in each, instead of the journeys."""
-        tokens = self._tokens
-        search = tokens[-1].value
-        if not isinstance(search, Called | Listed) or not search.entry.first:
-            return
-        everywhere = self._text.words[match.values[-1].last : match.last] if match.values else []
-        if everywhere and self._context.values.each.isdisjoint(everywhere):
-            return  # `go to the lab and look for the ball everywhere`; but `in each room`
-        slot = next((each.name for each in search.entry.slots if each.type == PLACE), "")
-        if not slot:
-            return
-        at = len(tokens) - 2
-        while at > 0 and (tokens[at].kind in _AND or self._is_beside(tokens[at])):
-            at -= 1
-        journey = tokens[at].value if 0 <= at < len(tokens) - 2 else None
-        if not drives(journey):
-            return
-        places = [dict(each) for each in arguments_of(journey)]
-        goals = [text for each in places for text in journey.entry.given(PLACE, each.items())]
-        if not goals or any(len(each) != 1 for each in places):
-            return
-        choice = choice_of(goals[0])
-        again = (slot, f"{{{choice.key}}}") if choice is not None else None  # `and look for the ball in each of them`
-        rows = [tuple(part for part in each if part != again) for each in arguments_of(search)]
-        if any(slot in dict(each) for each in rows):
-            return
-        search = with_arguments(search, rows)
-        is_set = len(goals) > 1 or (choice is not None and choice.how == ALL)
-        is_right_behind = at == run_start(tokens, len(tokens) - 1, _AND) - 1
-        if len(goals) == 1 and choice is None:
-            tokens[-1].value = with_arguments(search, [(*each, (slot, goals[0])) for each in rows])
-        elif is_set and is_right_behind and isinstance(search, Called):
-            each = tuple((*search.arguments, (slot, goal)) for goal in goals)
-            value = Called(search.entry, each[0]) if len(goals) == 1 else Listed(search.entry, each, "or")
-            tokens[at:] = [Token("command", tokens[at].start, tokens[-1].end, value)]
-
-    def looking_there(self, match: Match) -> Match:
-        """The same; `look for the cup there` looks in that place, where the cup needn't be known to be."""
-        entry = match.meaning.entry
-        slot = next((each for each in entry.slots if each.type == PLACE), None) if entry is not None else None
-        if entry is None or not entry.first or slot is None or any(value.name == slot.name for value in match.values):
-            return match
-        for value in match.values:
-            choice, last = choice_of(value.text), value.last - 1
-            parts = dict(choice.parts) if choice is not None else {}
-            if parts.keys() == {"inside", "named"} and PLACE in self._context.pronouns.get(self._text.words[last], ()):
-                others = (each for each in match.values if each is not value)
-                thing = value.replace(text=parts["named"], last=last)
-                place = SlotValue(slot.name, PLACE, parts["inside"], last, value.last)
-                placed: Match = match.replace(values=(*others, thing, place))
-                return placed
-        return match
-
-    @staticmethod
-    def _is_beside(token: Token) -> bool:
-        """Whether a command is done where the robot is, or is a search that is about the same place."""
-        value = token.value
-        if token.kind != "command" or not isinstance(value, Called | Listed) or constraint_of(token) is not None:
-            return False
-        return value.entry.first or TRAVELS not in value.entry.needs
 
     def at_goal(self, at: int) -> int:
         """`go to the lab and wave there`, `visit every room and wave in each of them`: where the robot is by then."""
@@ -175,7 +114,13 @@ class Places(SentenceReader):
     def behind(self, at: int) -> int:
         """`wave in the kitchen`: goes there first. Also to who speaks: `bring the cup to me in the kitchen`."""
         tokens = self._tokens
+        speaker = self._vocabulary.values.role_words.speaker
+        is_to_speaker = self._text.words[at - 1] in speaker
         journey = self._to(at)
+        if journey is None and self._text.words[at] == self._vocabulary.asking["journey"][-1]:
+            spoken = self._text.source.text[tokens[-1].start : tokens[-1].end].lower().split()
+            is_to_speaker = not speaker.isdisjoint(spoken)  # `bring me the cup to the lab`
+            journey = self._to(at, is_goal=True) if is_to_speaker else None
         value, is_wait = tokens[-1].value, tokens[-1].kind == "wait"
         if journey is None or not (is_wait or (isinstance(value, Called | Listed) and not constraint_of(tokens[-1]))):
             return 0
@@ -183,7 +128,6 @@ class Places(SentenceReader):
         ends = self._is_end(journey.last) or self._text.words[journey.last] == ","
         if not ends and (following is None or following.meaning.role not in _BEHIND):
             return 0
-        is_to_speaker = self._text.words[at - 1] in self._vocabulary.values.role_words.speaker
         if isinstance(value, Called | Listed) and TRAVELS in value.entry.needs and not is_to_speaker:
             placed = self._placed(value, journey.values[0])
             if placed is None:
@@ -198,18 +142,17 @@ class Places(SentenceReader):
         said = tokens.pop()
         end = said.end = self._text.ends[journey.last - 1]
         tokens.append(Token("open", said.start, said.start))
-        is_call = is_to_speaker and isinstance(value, Called)
-        held = value.entry.given(OBJECT, value.arguments)[:1] if is_call and isinstance(value, Called) else []
+        called = value if is_to_speaker and isinstance(value, Called) else None
+        held = called.entry.given(OBJECT, called.arguments)[:1] if called is not None else []
         if hold := self._handling(_HOLD, held, said.start):
             tokens += [hold, Token("and", said.start, said.start)]
             choice = choice_of(held[0])
-            if choice is not None and isinstance(value, Called):  # once it is held, it isn't where it was
+            if choice is not None and called is not None:  # once it is held, it isn't where it was
                 held = [f"{{{choice.key}}}"]
-                arguments = tuple((name, held[0] if text == choice.text else text) for name, text in value.arguments)
-                said.value = value.replace(arguments=arguments)
+                said.value = with_arguments(called, [_replaced(called.arguments, choice.text, held[0])])
         self._append_tour(journey, at)
         tokens[-1].start = said.start
-        met = self._if_met(said, self._handling(_PUT, held, end)) if is_call else [said]
+        met = self._if_met(said, self._handling(_PUT, held, end)) if called is not None else [said]
         tokens += [Token("and", said.start, said.start), *met, Token("close", end, end)]
         return journey.last
 
@@ -376,9 +319,9 @@ class Places(SentenceReader):
         """Whether a pronoun for a place stands at a word: `in every room, turn off the light there`."""
         return tuple(self._context.pronouns.get(self._text.words[at], ())) == (PLACE,)
 
-    def _to(self, at: int) -> Match | None:
-        """The journey to where words say that something is done."""
-        if self._text.words[at] not in self._vocabulary.asking["located"]:
+    def _to(self, at: int, is_goal: bool = False) -> Match | None:
+        """The journey to where words say that something is done, or brought."""
+        if self._text.words[at] not in self._vocabulary.asking["located"] and not is_goal:
             return None
         journey = self._with_front(at, at + 1, "journey")
         goal = journey.values[0] if journey is not None and journey.values else None
@@ -392,6 +335,10 @@ class Places(SentenceReader):
         listed = self._context.listed.get(PLACE)
         if journey.values[0].more and not journey.values[0].group and listed:
             self._calls.make_round(self._tokens[-1], listed)
+
+
+def _replaced(arguments: tuple[tuple[str, str], ...], old: str, new: str) -> tuple[tuple[str, str], ...]:
+    return tuple((name, new if text == old else text) for name, text in arguments)
 
 
 def _goal_of(journey: Match) -> str:

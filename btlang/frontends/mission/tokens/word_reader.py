@@ -398,7 +398,7 @@ class WordReader:
             self._calls.note(match)
             return end
         end = self._connect(match, role, at) if match.meaning.entry is None else match.last
-        if match.values or self._calls.speaks_of_people:
+        if self._calls.says_who(match):
             self._calls.note(match, tokens[-2].kind if len(tokens) > 1 else "")
         return end
 
