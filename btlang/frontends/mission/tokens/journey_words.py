@@ -175,14 +175,20 @@ class JourneyWords(SentenceReader):
 
     def _go_and_see(self, at: int) -> int:
         """`go and see if Bob is in the lab`: there, and then what is asked."""
-        going = find(self._vocabulary.going, self._text.words, at)
+        words = self._text.words
+        going = find(self._vocabulary.going, words, at)
         check = self._phrase(going[1]) if going is not None else None
         if going is None or check is None or check.meaning.role != "check":
             return 0
         asked = self._phrase(check.last)
         places = [value for value in asked.values if value.type in (PLACE, DOOR)] if asked is not None else []
-        journey = self._with_front(at, places[0].first, "journey") if len(places) == 1 else None
-        if journey is None or journey.last != places[0].last:
+        spans = [(value.first, value.last) for value in places]
+        if asked is not None and not spans:  # `if the light in the hall is on`
+            named = self._vocabulary.values.names_tree(PLACE)
+            located = (i for i in range(check.last, asked.last) if words[i - 1] in self._vocabulary.asking["located"])
+            spans = [(i, found[1]) for i in located if (found := find(named, words, i)) is not None]
+        journey = self._with_front(at, spans[0][0], "journey") if len(spans) == 1 else None
+        if journey is None or journey.last != spans[0][1]:
             return 0
         self._partial.append(journey, at)
         joint = self._text.ends[going[1] - 1]
