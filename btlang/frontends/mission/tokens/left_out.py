@@ -155,6 +155,8 @@ def complete(command: Token, before: Token | None) -> None:
     types, rows = {slot.name: slot.type for slot in value.entry.slots}, arguments_of(value)
     named = {given[name]: text for name, text in said.arguments}
     if len(named) == 1 and len(themes) == 1 and {types[name] for name in themes} == named.keys():
-        rest = (each for each in rows[0] if each[0] not in themes and all(each in row for row in rows))
+        rest = [each for each in rows[0] if each[0] not in themes and all(each in row for row in rows)]
         theme = next(iter(themes))
+        if not rest:
+            return  # `turn the light on, then off`
         command.value = Called(value.entry, ((theme, named[types[theme]]), *rest))

@@ -23,6 +23,7 @@ from btlang.frontends.mission.tokens.journey_words import SEES
 from btlang.frontends.mission.tokens.sentence_reader import hears, searches
 from btlang.frontends.mission.tokens.settling import (
     FAILS,
+    HOLDS,
     MEASURES,
     STAYS,
     WAITS,
@@ -37,8 +38,10 @@ from btlang.frontends.mission.tokens.settling import (
 from btlang.frontends.mission.tokens.silent_words import BEGINS
 from btlang.text.source import Span
 from btlang.vocabulary.antecedents import says_there
+from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.match import Match
-from btlang.vocabulary.value_type import PERSON, PLACE
+from btlang.vocabulary.references import choice_of
+from btlang.vocabulary.value_type import OBJECT, PERSON, PLACE
 
 _TIME = "duration"
 _LIMITS = ("within", "delay", "for", "held", "by_time")
@@ -70,6 +73,25 @@ class Limits(GoingOn):
         tokens.insert(at + 1, Token("count", count.start, count.end, count.value))
         tokens.insert(at, Token("retry", tokens[at].start, tokens[at].start))
         return tries.last
+
+    def _pick_first(self, at: int, entry: Entry) -> int:
+        """`bring the cup to Bob. If you can't pick it up, A`: picks it up before that. Returns how many tokens came."""
+        command, value = self._tokens[at], self._tokens[at].value
+        things = value.entry.given(OBJECT, value.arguments) if isinstance(value, Called) else []
+        if not isinstance(value, Called) or not things or HOLDS not in entry.achieves or HOLDS in value.entry.achieves:
+            return 0
+        slot, choice = next(slot.name for slot in entry.slots if slot.type == OBJECT), choice_of(things[0])
+        picked = Called(entry, ((slot, things[0]),))
+        if choice is not None:  # once it is held, it isn't where it was
+            held = tuple((name, f"{{{choice.key}}}" if text == choice.text else text) for name, text in value.arguments)
+            command.value = value.replace(arguments=held)
+        start = command.start
+        self._tokens[at:at] = [Token("command", start, start, picked), Token("then", start, start)]
+        return 2
+
+    def _is_tried(self, at: int) -> bool:
+        tries = self._phrase(at)
+        return tries is not None and tries.meaning.role == "tries"
 
     def _settled_before(self, at: int, asked: Token) -> int | None:
         """The place of a command that settles a condition before another one at a place does: it fails first.

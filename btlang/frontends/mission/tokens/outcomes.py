@@ -294,6 +294,7 @@ class Outcomes(Limits):
         first = self._statement(command)[0] if command is not None else form
         about = [i for i in range(first, (command or first) + 1) if is_about(self._tokens[i], asked)]
         if about and is_free and is_new:
+            form += 0 if self._is_tried(match.last) else self._pick_first(about[0], entry)
             return self._settle(about[0], form, stop, match.last)
         if command is not None and about:
             said = self._tokens[command]

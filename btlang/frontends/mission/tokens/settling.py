@@ -50,6 +50,7 @@ _THERE = ("SeesObject", "ObjectIsAt")
 HOLDS = "Holding"
 """The condition that holds once a thing is taken up."""
 _SIMPLE = frozenset(("command", "name", "wait", "nothing", *JOINTS))
+_COUNTED = _SIMPLE | MEASURES
 _BETWEEN = _SIMPLE | STATEMENT_ENDS | MEASURES | {"open", "close", "meanwhile"}
 _BRANCHED = _BETWEEN | IN_CONDITIONS | {"if", "unless", "otherwise"}
 _HEADS = frozenset(("every", "every_day", "at", "repeat", "comma", "then", "colon", "open"))
@@ -291,7 +292,7 @@ def names_place(said: Called | Listed) -> bool:
 
 def _is_sequence(before: Sequence[Token]) -> bool:
     """Whether commands are done before another one, whatever they are joined with."""
-    if any(token.kind not in _SIMPLE for token in before) or all(token.kind in JOINTS for token in before):
+    if any(token.kind not in _COUNTED for token in before) or all(token.kind in JOINTS for token in before):
         return not before
     if _sets_of(before):
         return False  # `visit every room and find the cup`: in each of them

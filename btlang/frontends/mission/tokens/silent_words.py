@@ -113,6 +113,9 @@ def without_meaning(
             return at + 2  # `while you are waving`
     if before.kind in ("until", "before") and text.words[at] in vocabulary.subjects:
         return at + 1
+    is_behind = match is not None and role == "ordinal" and before.kind in (*_DONE, "count")
+    if match is not None and is_behind and text.words[at] not in vocabulary.asking["foremost"]:
+        return match.last  # `charge at the end`
     if role == "ordinal" and match is not None and before.kind in ("command", "but", "for"):
         start = next((token for token in reversed(tokens) if token.kind in BEGINS or token.kind == "but"), before)
         pairs = pairwise(tokens[statement_start(tokens, len(tokens)) :])
