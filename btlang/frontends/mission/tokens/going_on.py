@@ -45,7 +45,7 @@ _ENDS = (END_OF_STATEMENT, END_OF_TEXT, ";", ")")
 _CHOICES = frozenset(("if", "unless", "otherwise", WORKS))
 _MEANWHILE = frozenset((*RULES, "while", "until", "meanwhile", "in_parallel"))
 _ENDLESS = frozenset(("every", "every_day", "weekly", "repeat"))
-_BOUNDS = frozenset(("until", "until_time", "for", "indent", *RULES))
+_BOUNDS = FORMS | {"until_time", "for", "indent", FAILS}  # behind a branch it is `with_rest_of_rounds` that goes on
 BRANCHES = FORMS | {"every_day"}
 """Raw kinds with which it is open whether a command of the statement has run."""
 
@@ -374,8 +374,6 @@ class GoingOn(SentenceReader):
             return False
         if tokens[first + 1].value != "-1" if tokens[first].kind == "repeat" else "count" in kinds:
             return False
-        if FAILS in kinds or not kinds.isdisjoint(BRANCHES - {"every_day"}):
-            return False  # `every hour, A. If that fails, B. Then C`: C in any case, see `with_rest_of_rounds`
         del tokens[end:]
         return True
 

@@ -43,6 +43,7 @@ from btlang.frontends.mission.tokens.rules_behind import (
     with_checks_apart,
     with_exceptions,
     with_rules_behind,
+    with_watches,
 )
 from btlang.frontends.mission.tokens.rules_inside import with_rules_inside
 from btlang.frontends.mission.tokens.settling import (
@@ -104,6 +105,7 @@ class Lexer:
         with_questions_each_time(self.tokens)
         with_waits_each_time(self.tokens, vocabulary.roles["again"], source)
         with_tries_apart(self.tokens)
+        with_watches(self.tokens)
         turn_branches(self.tokens)
         with_rounds(self.tokens)
         with_either_end(self.tokens)

@@ -9,6 +9,7 @@ from btlang.frontends.mission.token import (
     IN_CONDITIONS,
     JOINTS,
     RULES,
+    STATEMENT_ENDS,
     Called,
     Token,
     run_end,
@@ -39,6 +40,17 @@ def with_rules_behind(tokens: list[Token]) -> None:
             _end(tokens, at)
         elif tokens[at].kind in RULES and tokens[at - 1].kind == "and":
             _begin(tokens, at)
+
+
+def with_watches(tokens: list[Token]) -> None:
+    """Make `if somebody is near while you are in the lab, A` a rule for both: it may be so at any time."""
+    for at in [at for at, token in enumerate(tokens) if token.kind == "if"]:
+        if at and tokens[at - 1].kind not in STATEMENT_ENDS:
+            continue
+        while_ = run_end(tokens, at + 1, IN_CONDITIONS)
+        end = run_end(tokens, while_ + 1, IN_CONDITIONS)
+        if while_ + 1 < end < len(tokens) and tokens[while_].kind == "while" and tokens[end].kind == "comma":
+            tokens[at].kind, tokens[while_].kind = RULES[0], "and"
 
 
 def find_counted_rules(tokens: Sequence[Token], source: Source) -> Iterator[Diagnostic]:
