@@ -161,9 +161,9 @@ class UnknownWords:
         if begin == last:
             one, other = f"{done}, {then} ...", done
         elif tokens[begin].kind == "command":
-            one, other = f"{done}, {then} {before}", f"{before}, {then} {done}"
+            one, other = f"{done}, {then} {_inside(before)}", f"{before}, {then} {_inside(done)}"
         else:
-            one, other = f"{done}. {then.capitalize()} {before}", f"{before}. {done}"
+            one, other = f"{done}. {then.capitalize()} {_inside(before)}", f"{before}. {done}"
         return diagnostic("BT151", span, words=span.text, one=one, other=other)
 
     def _where_to(self, at: int) -> Diagnostic:
@@ -260,3 +260,8 @@ class UnknownWords:
                 ends = match.meaning.entry is None or match.last > at + 1
             if ends:
                 return at
+
+
+def _inside(words: str) -> str:
+    """A sentence as it is written behind other words."""
+    return words[:1].lower() + words[1:]
