@@ -155,7 +155,7 @@ def compile_instances(
 ) -> Compiled:
     """Compile from the last node to the root, so that children are compiled before their parents."""
     waiting: list[Compiled] = []  # compiled nodes whose parents come later, so that the last ones are the next one's
-    around = find_resume_paths(instances, _waits)
+    around = find_resume_paths(instances, waits)
     for instance in reversed(instances):
         node = instance.node
         count = 1 if node.id == SUBTREE else len(node.children)
@@ -168,6 +168,8 @@ def compile_instances(
             node_trace = NodeTrace(instance, trace)
         instance.state.node_trace = node_trace if hooks is None else None  # a hook may change what a leaf would report
         compiled = compile_node(instance, children)
+        if not count and find_function(compiled[0]) is None:
+            instance.leaf = compiled
         lasts = compiled[1] is not halt_nothing
         path = around[instance.index]
         if path is not None and path.used and path.top == instance.index:
@@ -185,7 +187,8 @@ def compile_instances(
     return root
 
 
-def _waits(instance: NodeInstance) -> bool:
+def waits(instance: NodeInstance) -> bool:
+    """Return whether a node only asks its child while that is RUNNING, so that it may be part of a resume path."""
     kind = CATALOGUE.get(instance.node.id)
     if kind is None or not kind.waits:
         return False

@@ -30,6 +30,7 @@ from btlang.engine.script.values import truth
 from btlang.engine.status import FAILURE, IDLE, NAMES, RUNNING, SKIPPED, SUCCESS
 from btlang.text.spelling import distance
 from btlang.tree.catalogue import POST_CONDITIONS, PRE_CONDITIONS, SUBTREE
+from btlang.tree.node import Node
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -52,6 +53,11 @@ def is_editor_attribute(port: str) -> bool:
         return False
     written, known = port.lower(), [condition.lower() for condition in (*PRE_CONDITIONS, *POST_CONDITIONS)]
     return not any(distance(written, each) <= _NEAR or each.startswith(written) for each in known)
+
+
+def has_conditions(node: Node) -> bool:
+    """Return whether a node has pre- or post-conditions."""
+    return any(port in PRE_CONDITIONS or port in POST_CONDITIONS for port, _ in node.ports)
 
 
 def add_conditions(instance: NodeInstance, compiled: Compiled) -> Compiled:

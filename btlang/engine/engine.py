@@ -5,6 +5,7 @@ from __future__ import annotations
 from _thread import get_ident  # `threading` takes longer to import
 from collections.abc import Callable, Mapping, Sequence
 
+from btlang.engine import generation
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.changes import Changes
 from btlang.engine.clock import Clock
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from btlang.engine.clock import LeafTimer
-    from btlang.engine.instance import Hooks
+    from btlang.engine.instance import Compiled, Hooks
     from btlang.engine.status_trace import Listener
 
 # A node, its trace, its pre-conditions, and the check of ports from the blackboard; twice, because what starts at the
@@ -95,10 +96,11 @@ class Engine:
         with gc_paused:
             self._instances = expand(tree, self.blackboard, self._state)
             self._trace = None if listener is None else StatusTrace(self._state, listener, self._instances)
-            self._tick, self._halt = compile_instances(self._instances, self._trace, hooks)
-        frames = _depth(self._instances) * _FRAMES_PER_LEVEL + _FRAMES_FOR_LEAVES
-        if frames > _FRAMES_ASSUMED:
-            self._tick, self._halt = allow_depth(frames, self._tick), allow_depth(frames, self._halt)
+            compiled = compile_instances(self._instances, self._trace, hooks)
+        self._frames = _depth(self._instances) * _FRAMES_PER_LEVEL + _FRAMES_FOR_LEAVES
+        self._tick, self._halt = self._allow_depth(compiled)
+        if self._trace is None and hooks is None and len(self._instances) <= generation.MOST_NODES:
+            self._generate_later()
         listened = self._instances if listener is not None else ()
         self._keyed = frozenset([s.index for s in listened if any("{" in text for _, text in s.node.ports)])
         self._busy = False
@@ -300,6 +302,35 @@ class Engine:
             self.raised[failure.index] = failure
         if self._on_warning is not None:
             self._on_warning(failure)
+
+    def _allow_depth(self, compiled: Compiled) -> Compiled:
+        tick, halt = compiled
+        if self._frames <= _FRAMES_ASSUMED:
+            return compiled
+        return allow_depth(self._frames, tick), allow_depth(self._frames, halt)
+
+    def _generate_later(self) -> None:
+        """Count the ticks, and generate regions of nodes when there have been enough."""
+        tick, left = self._tick, generation.TICKS_BEFORE
+        steps = generation.generate(self._instances)
+
+        def generate() -> bool:
+            with gc_paused:
+                compiled = next(steps)
+            if compiled is not None:
+                self._tick, self._halt = self._allow_depth(compiled)
+            return compiled is not None
+
+        def counted_tick() -> int:
+            nonlocal left
+            left -= 1
+            return self._tick() if left < 0 and generate() else tick()
+
+        if left:
+            self._tick = counted_tick
+        else:
+            while not generate():
+                pass
 
     def _wake(self) -> None:
         if self.on_wake is not None:

@@ -11,10 +11,11 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 from btlang.engine.instance import NodeInstance
-from btlang.engine.leaves.callables import fail_with, find_function, status_of
+from btlang.engine.leaves.callables import find_function, find_status
 from btlang.engine.nodes import control
 from btlang.engine.nodes.control import reactive_fallback, reactive_sequence
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
+from btlang.tree.node import Node
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -23,7 +24,8 @@ if TYPE_CHECKING:
     from btlang.engine.functions_trace import FunctionsTrace
     from btlang.engine.instance import Compiled, Halt
 
-    Ticks: TypeAlias = tuple[Callable[[], Any], ...]
+    Call: TypeAlias = Callable[[], Any]
+    Ticks: TypeAlias = tuple[Call, ...]
     Calls: TypeAlias = tuple[Ticks, tuple[Halt, ...], tuple[NodeInstance | None, ...]]
     Compile: TypeAlias = Callable[[NodeInstance, Sequence[Compiled]], Compiled]
 
@@ -35,11 +37,15 @@ _MANY = 4
 def choose_compiler(usual: Compile, instance: NodeInstance, children: Sequence[Compiled]) -> Compile:
     """Return the function that compiles a node fastest: its `usual` one, or a variant of it."""
     if usual is control.parallel:
-        port = instance.node.port
-        return default_parallel if port("success_count", "-1") == "-1" and port("failure_count", "1") == "1" else usual
+        return default_parallel if has_usual_thresholds(instance.node) else usual
     if usual in _VARIANTS and any(find_function(tick) for tick, _ in children):
         return _VARIANTS[usual]
     return usual
+
+
+def has_usual_thresholds(node: Node) -> bool:
+    """Return whether a Parallel has its default thresholds; any other node counts as one that has."""
+    return node.port("success_count", "-1") == "-1" and node.port("failure_count", "1") == "1"
 
 
 def traces_functions(usual: Compile, instance: NodeInstance, children: Sequence[Compiled]) -> bool:
@@ -73,9 +79,7 @@ def normalize_status(instance: NodeInstance | None, answer: object) -> int:
             raise answer
         assert isinstance(answer, int)
         return answer
-    if answer is FAILURE:
-        return instance.refuse()
-    return fail_with(instance, answer) if isinstance(answer, BaseException) else status_of(instance, answer)
+    return find_status(instance, answer)
 
 
 def in_order(instance: NodeInstance, children: Sequence[Compiled], passes: int) -> Compiled:
@@ -153,13 +157,15 @@ def default_parallel(instance: NodeInstance, children: Sequence[Compiled]) -> Co
     ticks, halts, instances = _calls(children)
     trace = _trace_functions(instance, children, SUCCESS)
     everyone = tuple(enumerate(ticks))
-    left = everyone  # those that have not completed
+    left: tuple[tuple[int, Call], ...] | None = everyone  # those that have not completed; None: it isn't known
     completed = [False] * len(ticks)
     state = instance.state
 
     def tick(going_on: int = RUNNING, trace: FunctionsTrace | None = trace) -> int:
         nonlocal left
         running = fewer = skipped = False
+        if left is None:
+            left = find_left()
         whole = left is everyone
         if trace is not None:
             trace.marked = 0 if whole else len(everyone)
@@ -198,7 +204,7 @@ def default_parallel(instance: NodeInstance, children: Sequence[Compiled]) -> Co
             trace.write(len(everyone))
         if running:
             if fewer:
-                find_left()
+                left = None
             return RUNNING
         if skipped:
             halt(False)
@@ -207,17 +213,17 @@ def default_parallel(instance: NodeInstance, children: Sequence[Compiled]) -> Co
             left = everyone
         return SUCCESS
 
-    def find_left() -> None:
-        nonlocal left
-        left = tuple([each for each in everyone if not completed[each[0]]])
+    def find_left() -> tuple[tuple[int, Call], ...]:
+        return everyone if not any(completed) else tuple([each for each in everyone if not completed[each[0]]])
 
     def halt(keep: bool) -> None:
+        nonlocal left
         for index, stop in enumerate(halts):
             if not completed[index]:
                 stop(keep)
         if not keep:
             completed[:] = [False] * len(completed)
-        find_left()
+        left = None
 
     if trace is not None:
         trace.follow(lambda: trace.asked)

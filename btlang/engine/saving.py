@@ -3,6 +3,7 @@
 The memory of a node is what the cells of its `tick` hold: numbers, truths, texts, lists of these, failures, and objects
 with `saved` and `restore`, such as a Stopwatch. (Its `halt` may be that of its child.) Leaves have none: one that was
 running starts again, as after a pause. So nodes need no code for it, and pay nothing for it while they are ticked.
+In a generated region it is in slots, which have the same names (regions.py): either restores what the other has saved.
 """
 
 from __future__ import annotations
@@ -20,12 +21,46 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+    from btlang.engine.instance import Memory
     from btlang.engine.status_trace import StatusTrace
 
 FORMAT = 1
 """Of what is saved; it grows when a node remembers something else."""
 _DEEPEST = 40  # lists in each other, each of which is one in an object: see btlang.text.json_text.DEEPEST
 _PLAIN = (bool, int, float, str, type(None))
+
+
+class SlotMemory:
+    """What a node of a generated region remembers, in slots one behind the other; see regions.py."""
+
+    __slots__ = ("_first", "_slots", "names")
+
+    def __init__(self, slots: list[Any], first: int, names: tuple[str, ...]) -> None:
+        self._slots = slots
+        self._first = first
+        self.names = names
+
+    def cells(self) -> dict[str, Slot]:
+        """Return its slots by their names."""
+        return {name: Slot(self._slots, self._first + number) for number, name in enumerate(self.names)}
+
+
+class Slot:
+    """A slot, used as the cell of a closure."""
+
+    __slots__ = ("_at", "_slots")
+
+    def __init__(self, slots: list[Any], at: int) -> None:
+        self._slots = slots
+        self._at = at
+
+    @property
+    def cell_contents(self) -> Any:
+        return self._slots[self._at]
+
+    @cell_contents.setter
+    def cell_contents(self, value: Any) -> None:
+        self._slots[self._at] = value
 
 
 class SaveError(Exception):
@@ -69,12 +104,27 @@ def _scopes(instances: Sequence[NodeInstance]) -> Iterator[Blackboard]:
     return iter(dict.fromkeys(instance.scope for instance in instances))
 
 
-def _cells(tick: Callable[..., Any]) -> dict[str, CellType]:
+def move_memory(old: Sequence[Memory], new: Sequence[Memory]) -> None:
+    """Let a node that was compiled once more remember what it remembered so far, between two ticks."""
+    for before, after in zip(old, new, strict=True):
+        found = _cells(before)
+        for name, cell in _cells(after).items():
+            if name in found and _is_memory(value := found[name].cell_contents):
+                cell.cell_contents = value
+
+
+def _is_memory(value: object) -> bool:
+    return isinstance(value, (*_PLAIN, list, deque, Fault, NodeInstance)) or hasattr(value, "saved")
+
+
+def _cells(tick: Memory) -> Mapping[str, CellType | Slot]:
+    if isinstance(tick, SlotMemory):
+        return tick.cells()
     code = getattr(tick, "__code__", None)  # a partial has none, and remembers nothing
     return {} if code is None else dict(zip(code.co_freevars, tick.__closure__ or (), strict=True))
 
 
-def _read(tick: Callable[..., Any]) -> dict[str, Any]:
+def _read(tick: Memory) -> dict[str, Any]:
     memory: dict[str, Any] = {}
     for name, cell in _cells(tick).items():
         value = cell.cell_contents
@@ -89,9 +139,11 @@ def _read(tick: Callable[..., Any]) -> dict[str, Any]:
     return memory
 
 
-def _write(tick: Callable[..., Any], memory: Mapping[str, Any], instances: Sequence[NodeInstance]) -> None:
+def _write(tick: Memory, memory: Mapping[str, Any], instances: Sequence[NodeInstance]) -> None:
     cells = _cells(tick)
     for name, value in memory.items():
+        if name not in cells and isinstance(tick, SlotMemory):  # a closure has cells of what never changes, too
+            continue
         cell = cells[name]
         if not isinstance(value, dict):
             cell.cell_contents = value

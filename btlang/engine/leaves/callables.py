@@ -97,21 +97,29 @@ class GeneratorLeaf:
                 if interrupts or self.trace is not None:
                     _begin(interrupts, self.trace)
                 self.generator = self.call() if values is None else self.call(**values)
-            given = next(self.generator)
-            if given is None or given == RUNNING:
+            status = self.yielded(next(self.generator))
+            if status == RUNNING:
                 return RUNNING
-            running, self.generator = self.generator, None
-            running.close()
-            status = self.instance.cannot_know(f"it yielded {given!r}: to end, return that; a yield says that it runs")
-        except StopIteration as stop:
-            self.generator = None
-            status = status_of(self.instance, stop.value)
         except KeyboardInterrupt:
             raise
         except BaseException as problem:
-            self.generator = None
-            status = fail_with(self.instance, problem)
+            status = self.ended(problem)
         return status if self.trace is None else self.trace.ended(status)
+
+    def yielded(self, given: object) -> int:
+        """Return the status if the generator yielded this."""
+        if given is None or given == RUNNING:
+            return RUNNING
+        running, self.generator = self.generator, None
+        running.close()
+        return self.instance.cannot_know(f"it yielded {given!r}: to end, return that; a yield says that it runs")
+
+    def ended(self, problem: BaseException) -> int:
+        """Return the status if this ended the generator."""
+        self.generator = None
+        if isinstance(problem, StopIteration):
+            return status_of(self.instance, problem.value)
+        return fail_with(self.instance, problem)
 
     def halt(self, keep: bool) -> None:
         if self.generator is not None:
@@ -254,6 +262,11 @@ def answering(call: Callable[..., Any]) -> Callable[..., Any]:
         return answer
 
     return ask
+
+
+def find_status(instance: NodeInstance, answer: object) -> int:
+    """Return the status of what a function returned, or of the exception that it raised instead."""
+    return fail_with(instance, answer) if isinstance(answer, BaseException) else status_of(instance, answer)
 
 
 def status_of(instance: NodeInstance, result: object) -> int:

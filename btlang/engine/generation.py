@@ -1,0 +1,131 @@
+"""When and how an engine exchanges the closures of its nodes for generated regions, which tick several times faster.
+
+To generate and compile a region takes as long as some hundred ticks of it. So this begins when a tree has been ticked
+`TICKS_BEFORE` times, and goes on a little at each tick; the closures tick the tree until all is ready. What nodes
+remember is then moved, and leaves stay the objects that they are: nothing can be seen of the exchange.
+
+Nodes without a template (nodes/templates.py), and those with scripts as conditions, stay closures between regions. A
+tree whose changes of status somebody listens to, or with hooks, stays as it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+
+from btlang.engine.compile import compile_node, waits
+from btlang.engine.conditions import add_conditions, has_conditions
+from btlang.engine.fused import has_usual_thresholds
+from btlang.engine.instance import NodeInstance, halt_nothing
+from btlang.engine.resume_path import find_resume_paths, mark_resumable, resume_at_top
+from btlang.engine.saving import move_memory
+from btlang.tree.catalogue import SUBTREE
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.engine.instance import Compiled, Memory
+    from btlang.engine.regions import Fragment, Item
+
+TICKS_BEFORE = 100
+"""Ticks after which a tree is generated. 0: before the first one."""
+MOST_NODES = 20_000
+"""Nodes of the largest tree that is generated: the exchange takes a tick of some microseconds a node."""
+NODES_A_TICK = 300
+"""Nodes that are looked at in one tick, unless a region is to be compiled, which takes some milliseconds."""
+
+
+def generate(instances: Sequence[NodeInstance]) -> Iterator[Compiled | None]:
+    """Generate all nodes of a tree. Yields None after each step, and at last what ticks and halts the tree."""
+    generation = _Generation()
+    waiting: list[Fragment | Compiled] = []  # as in compile_instances, which this follows
+    around = find_resume_paths(instances, waits)
+    for looked, instance in enumerate(reversed(instances), 1):
+        count = 1 if instance.node.id == SUBTREE else len(instance.node.children)
+        made: Fragment | Compiled
+        if count:
+            made = generation.combine(instance, waiting[: -count - 1 : -1])
+            del waiting[-count:]
+        else:
+            made = instance.leaf or compile_node(instance, ())
+        path, above = around[instance.index], instance.above
+        if path is not None and path.used and path.top == instance.index:
+            made = resume_at_top(path, generation.close(made))
+        if path is None and above is not None and not (isinstance(made, tuple) and made[1] is halt_nothing):
+            wider = around[above.index]
+            if wider is not None and wider.top != above.index:
+                made = mark_resumable(wider, generation.close(made))
+        waiting.append(made)
+        if generation.has_compiled or not looked % NODES_A_TICK:
+            generation.has_compiled = False
+            yield None
+    [root] = waiting
+    compiled = generation.close(root)
+    for instance, memory in generation.memories:
+        move_memory(instance.memory, memory)
+        instance.memory = memory
+    yield compiled
+
+
+class _Generation:
+    """The regions that are being generated, and what their nodes will remember."""
+
+    def __init__(self) -> None:
+        from btlang.engine import regions  # which few short runs need
+        from btlang.engine.nodes import templates
+
+        self._regions = regions
+        self._templates = templates.TEMPLATES
+        self._names = templates.NAMES
+        self.memories: list[tuple[NodeInstance, tuple[Memory, ...]]] = []
+        self.has_compiled = False
+
+    def combine(self, instance: NodeInstance, children: Sequence[Fragment | Compiled]) -> Fragment | Compiled:
+        """Make a node of its children: a part of a region if it has a template, else a closure."""
+        node = instance.node
+        emit = self._templates.get(node.id)
+        is_asked = has_conditions(node)
+        if node.id == SUBTREE:
+            made = children[0]
+        elif emit is None or len(children) > self._regions.LARGEST or not has_usual_thresholds(node):
+            return self._remembering(instance, (), lambda: compile_node(instance, [*map(self.close, children)]))
+        else:
+            made = self._regions.Fragment(instance, emit, self._join(children))
+        if not is_asked:
+            return made
+        memory = ()
+        compiled = self.close(made)
+        if node.id != SUBTREE:
+            _, memory = self.memories.pop()
+        return self._remembering(instance, memory, lambda: add_conditions(instance, compiled))
+
+    def _join(self, children: Sequence[Fragment | Compiled]) -> list[Item]:
+        """Return the items of a fragment. Children that would make its region too deep or too large are closed."""
+        regions = self._regions
+        left = regions.LARGEST - len(children)
+        joined: list[Fragment | Compiled] = []
+        for child in children:
+            if not isinstance(child, tuple):
+                left -= child.size
+                if left < 0 or child.height == regions.DEEPEST:
+                    left += child.size
+                    child = self.close(child)
+            joined.append(child)
+        return regions.find_items(joined)
+
+    def close(self, made: Fragment | Compiled) -> Compiled:
+        """Let a region begin with this node."""
+        if isinstance(made, tuple):
+            return made
+        compiled, memories, is_new = self._regions.make_region(made, self._names)
+        self.memories += [(instance, (memory,)) for instance, memory in reversed(memories)]
+        self.has_compiled = self.has_compiled or is_new
+        return compiled
+
+    def _remembering(
+        self, instance: NodeInstance, memory: tuple[Memory, ...], compile: Callable[[], Compiled]
+    ) -> Compiled:
+        """Compile a node that is still being ticked as it was: note what it will remember apart from that."""
+        before, instance.memory = instance.memory, memory
+        compiled = compile()
+        self.memories.append((instance, instance.memory))
+        instance.memory = before
+        return compiled

@@ -1,0 +1,207 @@
+"""Regions: parts of a tree that one generated Python function ticks, in place of a closure for each node.
+
+A region has one list, `S`: the state of the engine, then the functions and leaves that it calls, and what its nodes
+remember, each in a slot. What a node does is written in nodes/templates.py, once for each kind of node; here the
+texts of all nodes of a region become one function. Regions of the same shape share its code. The text of a tree never
+becomes code: what is generated holds the words of the templates and the numbers of slots, nothing else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from types import CodeType, FunctionType
+
+from btlang.engine.instance import EngineState, NodeInstance
+from btlang.engine.leaves.callables import FunctionLeaf, GeneratorLeaf, find_function
+from btlang.engine.saving import SlotMemory
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any, TypeAlias
+
+    from btlang.engine.instance import Compiled
+
+    Slots: TypeAlias = list[Any]
+    Layout: TypeAlias = tuple[Callable[[Slots, int, Any, bool], None], int, Any]
+    Emit: TypeAlias = Callable[["Region", "Fragment", int, int], Layout]
+
+DEEPEST = 8
+"""Levels of nodes in a region. Each takes a loop, and Python nests 20 of these at most."""
+LARGEST = 60
+"""Children of the nodes of a region. Long functions are compiled slowly, and a step of generation is one of them."""
+_MOST_SHAPES = 2000
+
+
+class Fragment:
+    """A node that is to be a part of a region, with the nodes below it that are to be in the same one."""
+
+    __slots__ = ("emit", "height", "instance", "items", "size")
+
+    def __init__(self, instance: NodeInstance, emit: Emit, items: list[Item]) -> None:
+        self.instance = instance
+        self.emit = emit
+        self.items = items
+        below = [item.child for item in items if isinstance(item.child, Fragment)]
+        self.height = 1 + max([each.height for each in below], default=0)
+        self.size = len(items) + sum(each.size for each in below)
+
+    @property
+    def count(self) -> int:
+        """The number of its children."""
+        return self.items[-1].end
+
+
+class Item:
+    """A child of a fragment, or several functions in a row. `first` is the position of the first, `end` that behind."""
+
+    __slots__ = ("child", "end", "first")
+
+    def __init__(self, first: int, child: Fragment | GeneratorLeaf | Compiled | list[FunctionLeaf]) -> None:
+        self.first = first
+        self.end = first + (len(child) if isinstance(child, list) else 1)
+        self.child = child
+
+
+def find_items(children: list[Fragment | Compiled]) -> list[Item]:
+    """Return the children of a node as the items of its fragment."""
+    items: list[Item] = []
+    for position, child in enumerate(children):
+        if isinstance(child, Fragment):
+            items.append(Item(position, child))
+            continue
+        function, leaf = find_function(child[0]), getattr(child[0], "__self__", None)
+        if function is None:
+            items.append(Item(position, leaf if leaf.__class__ is GeneratorLeaf else child))
+        elif items and isinstance(items[-1].child, list):
+            items[-1].child.append(function)
+            items[-1].end += 1
+        else:
+            items.append(Item(position, [function]))
+    return items
+
+
+class Region:
+    """The text and the slots of a region while they are written."""
+
+    def __init__(self, state: EngineState) -> None:
+        self.values: Slots = [state]
+        self.layouts: list[Layout] = []
+        self.memories: list[tuple[NodeInstance, SlotMemory]] = []
+        self._lines: list[str] = []
+
+    def add(self, depth: int, *lines: str) -> None:
+        """Write lines."""
+        self._lines += [" " * depth + line for line in lines]
+
+    def slot(self, value: object) -> int:
+        """Return the number of a new slot."""
+        self.values.append(value)
+        return len(self.values) - 1
+
+    def remember(self, instance: NodeInstance, **initial: object) -> int:
+        """Make slots for what a node remembers, one behind the other, and return the first one's number. Names are
+        those that its closure has for the same: what one of them has saved, the other one restores.
+        """
+        if not initial:
+            self.memories.append((instance, _NO_MEMORY))
+            return 0
+        first = len(self.values)
+        self.values += initial.values()
+        self.memories.append((instance, SlotMemory(self.values, first, tuple(initial))))
+        return first
+
+    def layout(self, layout: Layout) -> int:
+        """Return the number of a layout, by which the text names it."""
+        self.layouts.append(layout)
+        return len(self.layouts) - 1
+
+    def child(self, item: Item, depth: int, level: int) -> Layout:
+        """Write what ticks a child and leaves its status in `r`; return its layout."""
+        child = item.child
+        if isinstance(child, Fragment):
+            return child.emit(self, child, depth, level)
+        if isinstance(child, list):
+            self._function(child[0], depth)
+            return _NOTHING
+        if isinstance(child, GeneratorLeaf):
+            at = self.slot(child)
+            self.add(
+                depth,
+                f"g = S[{at}].generator",
+                f"if g is None: r = S[{at}].tick()",
+                "else:",
+                " try:",
+                "  r = next(g)",
+                f"  r = 2 if r is None else S[{at}].yielded(r)",
+                " except KeyboardInterrupt: raise",
+                f" except BaseException as problem: r = S[{at}].ended(problem)",
+            )
+            return _halt_leaf, at, None
+        tick, halt = child
+        at = self.slot(tick)
+        self.slot(halt)
+        self.add(depth, f"r = S[{at}]()")
+        return _halt_pair, at + 1, None
+
+    def _function(self, leaf: FunctionLeaf, depth: int) -> None:
+        at = self.slot(leaf.call)
+        self.slot(leaf.instance)
+        self.add(
+            depth,
+            f"try: r = S[{at}]()",
+            "except KeyboardInterrupt: raise",
+            "except BaseException as problem: r = problem",
+            f"if r is False: S[0].fault = S[{at + 1}]",
+            f"elif r is not True: r = find_status(S[{at + 1}], r)",
+        )
+
+    @property
+    def text(self) -> str:
+        """The whole function."""
+        return "\n".join(["def tick(S, L):", *self._lines, " return r"])
+
+
+_shapes: dict[str, tuple[CodeType, tuple[Layout, ...], Layout]] = {}
+
+
+def make_region(
+    fragment: Fragment, names: dict[str, Any]
+) -> tuple[Compiled, list[tuple[NodeInstance, SlotMemory]], bool]:
+    """Generate a region. Returns what ticks and halts it, what its nodes remember, and whether its shape is new.
+    `names` are all that the code knows.
+    """
+    region = Region(fragment.instance.state)
+    top = fragment.emit(region, fragment, 1, 0)
+    text = region.text
+    is_new = text not in _shapes
+    if is_new:
+        if len(_shapes) >= _MOST_SHAPES:
+            _shapes.clear()
+        [code] = [each for each in compile(text, "<tree>", "exec").co_consts if isinstance(each, CodeType)]
+        _shapes[text] = code, tuple(region.layouts), top
+    code, layouts, (halt, at, children) = _shapes[text]
+    tick = FunctionType(code, names, None, (region.values, layouts))
+    return (tick, partial(halt, region.values, at, children)), region.memories, is_new
+
+
+def halt_part(slots: Slots, layout: Layout, keep: bool) -> None:
+    """Halt a node of a region, or suspend it."""
+    halt, at, children = layout
+    halt(slots, at, children, keep)
+
+
+def _halt_leaf(slots: Slots, at: int, children: object, keep: bool) -> None:
+    slots[at].halt(keep)
+
+
+def _halt_pair(slots: Slots, at: int, children: object, keep: bool) -> None:
+    slots[at](keep)
+
+
+def _halt_nothing(slots: Slots, at: int, children: object, keep: bool) -> None:
+    pass
+
+
+_NO_MEMORY = SlotMemory([], 0, ())
+_NOTHING: Layout = (_halt_nothing, 0, None)
