@@ -128,11 +128,11 @@ class Region:
             at = self.slot(child)
             self.add(
                 depth,
-                f"g = S[{at}].generator",
-                f"if g is None: r = S[{at}].tick()",
+                f"send = S[{at}].send",
+                f"if send is None: r = S[{at}].tick()",
                 "else:",
                 " try:",
-                "  r = next(g)",
+                "  r = send(None)",
                 f"  r = 2 if r is None else S[{at}].yielded(r)",
                 " except KeyboardInterrupt: raise",
                 f" except BaseException as problem: r = S[{at}].ended(problem)",
@@ -155,6 +155,11 @@ class Region:
             f"if r is False: S[0].fault = S[{at + 1}]",
             f"elif r is not True: r = find_status(S[{at + 1}], r)",
         )
+
+    @property
+    def next_line(self) -> int:
+        """The number of the line that is written next."""
+        return len(self._lines) + 2
 
     @property
     def text(self) -> str:

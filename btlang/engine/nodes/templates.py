@@ -48,6 +48,7 @@ def in_order(region: Region, node: Fragment, depth: int, level: int, passes: int
             region.add(
                 inside,
                 f"if x != {item.end}:",
+                *_decide(item, first, passes, f"S[{at}] = S[{at + 1}] = 0"),
                 f" r = order_functions(S, {at}, {item.first}, {first}, {item.end}, x, r, {passes})",
                 f" if r is not {passes}: break",
             )
@@ -87,17 +88,31 @@ def _functions(region: Region, item: Item, depth: int, passes: int, resumed: str
     if resumed:
         region.add(depth, f"if {resumed}: x, r = {begin}, AGAIN", "else:")
         depth += 1
-    other = "r is not True and r is not None" if passes else "r is not False"
+    other = "is not True and r is not None" if passes else "is not False"
     region.add(depth, "try:", " while True:")
+    line = region.next_line
     for number in range(len(row)):
-        region.add(depth + 2, f"x = {item.first + number}", f"r = S[{first + number}]()", f"if {other}: break")
+        region.add(depth + 2, f"if (r := S[{first + number}]()) {other}: x = {item.first + number}; break")
     region.add(depth + 2, f"x = {item.end}")
     if not passes:  # the failure of the last one may be that of the node
         region.add(depth + 2, f"S[0].fault = S[{instances}][-1]")
     region.add(
-        depth, "  break", "except KeyboardInterrupt: raise", "except BaseException as problem: r = problem"
+        depth,
+        "  break",
+        "except KeyboardInterrupt: raise",
+        "except BaseException as problem:",  # whose line says in which function: to note that would take time
+        f" r, x = problem, problem.__traceback__.tb_lineno - {line - item.first}",
     )
     return first
+
+
+def _decide(item: Item, first: int, passes: int, then: str) -> tuple[str, ...]:
+    """Return the lines for a plain answer of a function that isn't the one that passes: the node ends with it."""
+    if passes:
+        instances = first + item.end - item.first
+        at = f"x - {item.first}" if item.first else "x"
+        return " if r is False:", f"  S[0].fault = S[{instances}][{at}]", f"  {then}", "  break"
+    return " if r is True or r is None:", "  r = True", f"  {then}", "  break"
 
 
 def order_functions(
@@ -173,6 +188,7 @@ def reactive(region: Region, node: Fragment, depth: int, level: int, passes: int
             region.add(
                 depth + 1,
                 f"if x != {item.end}:",
+                *_decide(item, first, passes, f"S[{at + 1}] = x"),
                 f" r = react_functions(S, {at}, {item.first}, {first}, {item.end}, x, r, {passes})",
                 f" if r is not {passes}: break",
             )
@@ -268,7 +284,9 @@ def parallel(region: Region, node: Fragment, depth: int, level: int) -> Layout:
             region.add(
                 inside,
                 f"if x == {item.end}: r = True",
-                f"else: r, {fewer} = join_functions(S, {at}, {item.first}, {first}, {item.end}, x, r), True",
+                "else:",
+                *_decide(item, first, SUCCESS, "pass"),
+                f" r, {fewer} = join_functions(S, {at}, {item.first}, {first}, {item.end}, x, r), True",
             )
             done = "pass"
             if len(node.items) > 1:
@@ -396,7 +414,7 @@ TEMPLATES: dict[str, Emit] = {
 }
 """The template of each node that has one, by its id. None of them reads a port."""
 NAMES: dict[str, Any] = {
-    "__builtins__": {each.__name__: each for each in (BaseException, KeyboardInterrupt, next)},
+    "__builtins__": {each.__name__: each for each in (BaseException, KeyboardInterrupt)},
     "AGAIN": _AGAIN,
     **{
         each.__name__: each
