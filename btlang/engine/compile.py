@@ -168,8 +168,6 @@ def compile_instances(
             node_trace = NodeTrace(instance, trace)
         instance.state.node_trace = node_trace if hooks is None else None  # a hook may change what a leaf would report
         compiled = compile_node(instance, children)
-        if not count and find_function(compiled[0]) is None:
-            instance.leaf = compiled
         lasts = compiled[1] is not halt_nothing
         path = around[instance.index]
         if path is not None and path.used and path.top == instance.index:
@@ -178,6 +176,8 @@ def compile_instances(
             compiled = hooks.wrap(instance.index, compiled)
         if node_trace is not None and not (instance.index and find_function(compiled[0])):
             compiled = node_trace.wrap(compiled)
+        if not count and find_function(compiled[0]) is None:
+            instance.leaf = compiled
         if path is None and above is not None and lasts:
             wider = around[above.index]
             if wider is not None and wider.top != above.index:  # else the way down is not longer

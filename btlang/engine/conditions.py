@@ -26,8 +26,9 @@ from btlang.engine.blackboard import Blackboard
 from btlang.engine.instance import Fault, NodeInstance
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.engine.nodes.built_in_leaves import always_skipped, read_script
+from btlang.engine.nodes.ports import STATUSES
 from btlang.engine.script.values import truth
-from btlang.engine.status import FAILURE, IDLE, NAMES, RUNNING, SKIPPED, SUCCESS
+from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.text.spelling import distance
 from btlang.tree.catalogue import POST_CONDITIONS, PRE_CONDITIONS, SUBTREE
 from btlang.tree.node import Node
@@ -40,7 +41,7 @@ if TYPE_CHECKING:
 
     Script: TypeAlias = Callable[[Blackboard], Any]
 
-_DECIDES = {port: (answer, NAMES.index(status)) for port, (answer, status) in PRE_CONDITIONS.items()}
+_DECIDES = {port: (answer, STATUSES[status]) for port, (answer, status) in PRE_CONDITIONS.items()}
 _NEAR = 2  # one letter, as `distance` counts
 
 

@@ -99,7 +99,7 @@ class Engine:
             compiled = compile_instances(self._instances, self._trace, hooks)
         self._frames = _depth(self._instances) * _FRAMES_PER_LEVEL + _FRAMES_FOR_LEAVES
         self._tick, self._halt = self._allow_depth(compiled)
-        if self._trace is None and hooks is None and len(self._instances) <= generation.MOST_NODES:
+        if hooks is None and len(self._instances) <= generation.MOST_NODES:
             self._generate_later()
         listened = self._instances if listener is not None else ()
         self._keyed = frozenset([s.index for s in listened if any("{" in text for _, text in s.node.ports)])
@@ -312,7 +312,7 @@ class Engine:
     def _generate_later(self) -> None:
         """Count the ticks, and generate regions of nodes when there have been enough."""
         tick, left = self._tick, generation.TICKS_BEFORE
-        steps = generation.generate(self._instances)
+        steps = generation.generate(self._instances, self._trace)
 
         def generate() -> bool:
             with gc_paused:

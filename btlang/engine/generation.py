@@ -18,6 +18,7 @@ from btlang.engine.fused import has_usual_thresholds
 from btlang.engine.instance import NodeInstance, halt_nothing
 from btlang.engine.resume_path import find_resume_paths, mark_resumable, resume_at_top
 from btlang.engine.saving import move_memory
+from btlang.engine.status_trace import NodeTrace, StatusTrace
 from btlang.tree.catalogue import SUBTREE
 
 TYPE_CHECKING = False
@@ -33,14 +34,15 @@ NODES_A_TICK = 300
 """Nodes that are looked at in one tick, unless a region is to be compiled, which takes some milliseconds."""
 
 
-def generate(instances: Sequence[NodeInstance]) -> Iterator[Compiled | None]:
+def generate(instances: Sequence[NodeInstance], trace: StatusTrace | None) -> Iterator[Compiled | None]:
     """Generate all nodes of a tree. Yields None after each step, and at last what ticks and halts the tree."""
-    generation = _Generation()
+    generation = _Generation(trace)
     waiting: list[Fragment | Compiled] = []  # as in compile_instances, which this follows
     around = find_resume_paths(instances, waits)
     for looked, instance in enumerate(reversed(instances), 1):
         count = 1 if instance.node.id == SUBTREE else len(instance.node.children)
         made: Fragment | Compiled
+        node_trace = instance.state.node_trace = None if trace is None else NodeTrace(instance, trace)
         if count:
             made = generation.combine(instance, waiting[: -count - 1 : -1])
             del waiting[-count:]
@@ -49,6 +51,8 @@ def generate(instances: Sequence[NodeInstance]) -> Iterator[Compiled | None]:
         path, above = around[instance.index], instance.above
         if path is not None and path.used and path.top == instance.index:
             made = resume_at_top(path, generation.close(made))
+        if count and node_trace is not None:
+            made = generation.traced(node_trace, made)
         if path is None and above is not None and not (isinstance(made, tuple) and made[1] is halt_nothing):
             wider = around[above.index]
             if wider is not None and wider.top != above.index:
@@ -68,13 +72,14 @@ def generate(instances: Sequence[NodeInstance]) -> Iterator[Compiled | None]:
 class _Generation:
     """The regions that are being generated, and what their nodes will remember."""
 
-    def __init__(self) -> None:
+    def __init__(self, trace: StatusTrace | None) -> None:
         from btlang.engine import regions  # which few short runs need
         from btlang.engine.nodes import templates
 
         self._regions = regions
         self._templates = templates.TEMPLATES
         self._names = templates.NAMES
+        self._trace = trace
         self.memories: list[tuple[NodeInstance, tuple[Memory, ...]]] = []
         self.has_compiled = False
 
@@ -84,11 +89,17 @@ class _Generation:
         emit = self._templates.get(node.id)
         is_asked = has_conditions(node)
         if node.id == SUBTREE:
-            made = children[0]
+            [made] = children
+            if (trace := instance.state.node_trace) is None:
+                pass
+            elif isinstance(made, tuple):
+                [made] = trace.wrap_functions([made], keeps=False)
+            else:  # both have a trace
+                made = self._regions.Fragment(instance, emit, self._join(instance, children))
         elif emit is None or len(children) > self._regions.LARGEST or not has_usual_thresholds(node):
             return self._remembering(instance, (), lambda: compile_node(instance, [*map(self.close, children)]))
         else:
-            made = self._regions.Fragment(instance, emit, self._join(children))
+            made = self._regions.Fragment(instance, emit, self._join(instance, children))
         if not is_asked:
             return made
         memory = ()
@@ -97,13 +108,25 @@ class _Generation:
             _, memory = self.memories.pop()
         return self._remembering(instance, memory, lambda: add_conditions(instance, compiled))
 
-    def _join(self, children: Sequence[Fragment | Compiled]) -> list[Item]:
+    def traced(self, trace: NodeTrace, made: Fragment | Compiled) -> Fragment | Compiled:
+        """Trace a node with children: within its region, or around what ticks it, as the root, which counts the ticks."""
+        if not trace.index:
+            made = self.close(made)
+        if isinstance(made, tuple):
+            return trace.wrap(made)
+        made.trace = trace
+        return made
+
+    def _join(self, instance: NodeInstance, children: Sequence[Fragment | Compiled]) -> list[Item]:
         """Return the items of a fragment. Children that would make its region too deep or too large are closed."""
         regions = self._regions
         left = regions.LARGEST - len(children)
         joined: list[Fragment | Compiled] = []
         for child in children:
-            if not isinstance(child, tuple):
+            if isinstance(child, tuple):
+                if instance.state.node_trace is not None:  # what takes more than to note its status is no part of a row
+                    [child] = instance.state.node_trace.wrap_functions([child], keeps=True)
+            else:
                 left -= child.size
                 if left < 0 or child.height == regions.DEEPEST:
                     left += child.size
@@ -115,7 +138,7 @@ class _Generation:
         """Let a region begin with this node."""
         if isinstance(made, tuple):
             return made
-        compiled, memories, is_new = self._regions.make_region(made, self._names)
+        compiled, memories, is_new = self._regions.make_region(made, self._names, self._trace)
         self.memories += [(instance, (memory,)) for instance, memory in reversed(memories)]
         self.has_compiled = self.has_compiled or is_new
         return compiled

@@ -12,15 +12,19 @@ from collections.abc import Callable
 from functools import partial
 from types import CodeType, FunctionType
 
+from btlang.engine.changes import REACHED
 from btlang.engine.instance import EngineState, NodeInstance
 from btlang.engine.leaves.callables import FunctionLeaf, GeneratorLeaf, find_function
+from btlang.engine.row_trace import RowTrace
 from btlang.engine.saving import SlotMemory
+from btlang.engine.status import SUCCESS
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, TypeAlias
 
-    from btlang.engine.instance import Compiled
+    from btlang.engine.instance import Compiled, Halt
+    from btlang.engine.status_trace import NodeTrace, StatusTrace
 
     Slots: TypeAlias = list[Any]
     Layout: TypeAlias = tuple[Callable[[Slots, int, Any, bool], None], int, Any]
@@ -36,12 +40,13 @@ _MOST_SHAPES = 2000
 class Fragment:
     """A node that is to be a part of a region, with the nodes below it that are to be in the same one."""
 
-    __slots__ = ("emit", "height", "instance", "items", "size")
+    __slots__ = ("emit", "height", "instance", "items", "size", "trace")
 
     def __init__(self, instance: NodeInstance, emit: Emit, items: list[Item]) -> None:
         self.instance = instance
         self.emit = emit
         self.items = items
+        self.trace: NodeTrace | None = None
         below = [item.child for item in items if isinstance(item.child, Fragment)]
         self.height = 1 + max([each.height for each in below], default=0)
         self.size = len(items) + sum(each.size for each in below)
@@ -57,10 +62,20 @@ class Item:
 
     __slots__ = ("child", "end", "first")
 
-    def __init__(self, first: int, child: Fragment | GeneratorLeaf | Compiled | list[FunctionLeaf]) -> None:
+    def __init__(self, first: int, child: Fragment | Resumed | Compiled | list[FunctionLeaf]) -> None:
         self.first = first
         self.end = first + (len(child) if isinstance(child, list) else 1)
         self.child = child
+
+
+class Resumed:
+    """A generator leaf, with what halts it, which may be traced."""
+
+    __slots__ = ("halt", "leaf")
+
+    def __init__(self, leaf: GeneratorLeaf, halt: Halt) -> None:
+        self.leaf = leaf
+        self.halt = halt
 
 
 def find_items(children: list[Fragment | Compiled]) -> list[Item]:
@@ -72,7 +87,7 @@ def find_items(children: list[Fragment | Compiled]) -> list[Item]:
             continue
         function, leaf = find_function(child[0]), getattr(child[0], "__self__", None)
         if function is None:
-            items.append(Item(position, leaf if leaf.__class__ is GeneratorLeaf else child))
+            items.append(Item(position, Resumed(leaf, child[1]) if isinstance(leaf, GeneratorLeaf) else child))
         elif items and isinstance(items[-1].child, list):
             items[-1].child.append(function)
             items[-1].end += 1
@@ -84,8 +99,9 @@ def find_items(children: list[Fragment | Compiled]) -> list[Item]:
 class Region:
     """The text and the slots of a region while they are written."""
 
-    def __init__(self, state: EngineState) -> None:
+    def __init__(self, state: EngineState, trace: StatusTrace | None) -> None:
         self.values: Slots = [state]
+        self.trace = trace
         self.layouts: list[Layout] = []
         self.memories: list[tuple[NodeInstance, SlotMemory]] = []
         self._lines: list[str] = []
@@ -120,12 +136,12 @@ class Region:
         """Write what ticks a child and leaves its status in `r`; return its layout."""
         child = item.child
         if isinstance(child, Fragment):
-            return child.emit(self, child, depth, level)
+            return self.node(child, depth, level)
         if isinstance(child, list):
-            self._function(child[0], depth)
-            return _NOTHING
-        if isinstance(child, GeneratorLeaf):
-            at = self.slot(child)
+            return self._function(child[0], depth)
+        if isinstance(child, Resumed):
+            at = self.slot(child.leaf)
+            self.slot(child.halt)
             self.add(
                 depth,
                 f"send = S[{at}].send",
@@ -137,14 +153,27 @@ class Region:
                 " except KeyboardInterrupt: raise",
                 f" except BaseException as problem: r = S[{at}].ended(problem)",
             )
-            return _halt_leaf, at, None
+            return _halt_pair, at + 1, None
         tick, halt = child
         at = self.slot(tick)
         self.slot(halt)
         self.add(depth, f"r = S[{at}]()")
         return _halt_pair, at + 1, None
 
-    def _function(self, leaf: FunctionLeaf, depth: int) -> None:
+    def node(self, node: Fragment, depth: int, level: int) -> Layout:
+        """Write what ticks a node, and traces its status; return its layout."""
+        layout = node.emit(self, node, depth, level)
+        trace = node.trace
+        if trace is None:
+            return layout
+        at = self.slot(trace.place)
+        self.slot(trace)
+        note = f"S[{at + 1}].complete(r)"
+        same = f"if W[S[{at}]] == r: W[S[{at}]] = r | {REACHED}"
+        self.add(depth, *([note] if trace.every else [same, f"else: {note}"]))
+        return _halt_traced, at + 1, layout
+
+    def _function(self, leaf: FunctionLeaf, depth: int) -> Layout:
         at = self.slot(leaf.call)
         self.slot(leaf.instance)
         self.add(
@@ -155,6 +184,24 @@ class Region:
             f"if r is False: S[0].fault = S[{at + 1}]",
             f"elif r is not True: r = find_status(S[{at + 1}], r)",
         )
+        if self.trace is None:
+            return _NOTHING
+        row = self.slot(self.trace_row([leaf], SUCCESS))
+        self.add(depth, f"S[{row}].answered(0, r)")
+        return _halt_function, row, 0
+
+    def trace_row(self, row: list[FunctionLeaf], passes: int) -> RowTrace | None:
+        """Return the trace of functions in a row."""
+        if self.trace is None:
+            return None
+        return RowTrace(self.trace, [leaf.instance for leaf in row], passes)
+
+    def halt_row(self, item: Item, first: int) -> dict[int, Layout]:
+        """Return what records that functions in a row were halted: itself, that takes nothing. `first` is their slot."""
+        count = item.end - item.first
+        if self.trace is None:
+            return {}
+        return {item.first + number: (_halt_function, first + count + 1, number) for number in range(count)}
 
     @property
     def next_line(self) -> int:
@@ -164,20 +211,20 @@ class Region:
     @property
     def text(self) -> str:
         """The whole function."""
-        return "\n".join(["def tick(S, L):", *self._lines, " return r"])
+        return "\n".join(["def tick(S, L, W):", *self._lines, " return r"])
 
 
 _shapes: dict[str, tuple[CodeType, tuple[Layout, ...], Layout]] = {}
 
 
 def make_region(
-    fragment: Fragment, names: dict[str, Any]
+    fragment: Fragment, names: dict[str, Any], trace: StatusTrace | None
 ) -> tuple[Compiled, list[tuple[NodeInstance, SlotMemory]], bool]:
     """Generate a region. Returns what ticks and halts it, what its nodes remember, and whether its shape is new.
     `names` are all that the code knows.
     """
-    region = Region(fragment.instance.state)
-    top = fragment.emit(region, fragment, 1, 0)
+    region = Region(fragment.instance.state, trace)
+    top = region.node(fragment, 1, 0)
     text = region.text
     is_new = text not in _shapes
     if is_new:
@@ -186,7 +233,7 @@ def make_region(
         [code] = [each for each in compile(text, "<tree>", "exec").co_consts if isinstance(each, CodeType)]
         _shapes[text] = code, tuple(region.layouts), top
     code, layouts, (halt, at, children) = _shapes[text]
-    tick = FunctionType(code, names, None, (region.values, layouts))
+    tick = FunctionType(code, names, None, (region.values, layouts, None if trace is None else trace.now))
     return (tick, partial(halt, region.values, at, children)), region.memories, is_new
 
 
@@ -196,8 +243,13 @@ def halt_part(slots: Slots, layout: Layout, keep: bool) -> None:
     halt(slots, at, children, keep)
 
 
-def _halt_leaf(slots: Slots, at: int, children: object, keep: bool) -> None:
-    slots[at].halt(keep)
+def _halt_traced(slots: Slots, at: int, node: Layout, keep: bool) -> None:
+    halt_part(slots, node, keep)
+    slots[at].halted()
+
+
+def _halt_function(slots: Slots, at: int, number: int, keep: bool) -> None:
+    slots[at].halted(number)
 
 
 def _halt_pair(slots: Slots, at: int, children: object, keep: bool) -> None:

@@ -184,6 +184,26 @@ class NodeTrace:
             self.change(status)
         return status
 
+    def complete(self, status: int) -> None:
+        """Note the status of a tick, or record it at once where it can't be compared later."""
+        trace, place = self.trace, self.place
+        before = trace.last[place]
+        if status == RUNNING or before == RUNNING or self.every:
+            self.change(status)
+            return
+        if place <= trace.high:
+            trace.begin(place)
+            before = trace.last[place]
+        trace.high = place
+        trace.now[place] = status | REACHED
+        if not status and before:
+            trace.faults[self.index] = trace.state.fault
+
+    def halted(self) -> None:
+        """Record that the node was halted, if it was RUNNING."""
+        if self.trace.last[self.place] == RUNNING:
+            self.change(IDLE)
+
     def reach(self, status: int) -> None:
         """Note the status that a function has now, to be compared later with the one before."""
         trace, place = self.trace, self.place
@@ -215,7 +235,6 @@ class NodeTrace:
         def traced_tick(
             place: int = self.place,
             trace: StatusTrace = self.trace,
-            last: bytearray = self.trace.last,
             now: bytearray = self.trace.now,
             opened: list[Callable[[], None]] = self.trace.open,
         ) -> int:
@@ -230,17 +249,7 @@ class NodeTrace:
             if now[place] == status and not every:  # as before, and not reached so far
                 now[place] = status | REACHED
                 return status
-            before = last[place]
-            if status == RUNNING or before == RUNNING or every:
-                self.change(status)
-                return status
-            if place <= trace.high:
-                trace.begin(place)
-                before = last[place]
-            trace.high = place
-            now[place] = status | REACHED
-            if not status and before:
-                trace.faults[self.index] = trace.state.fault
+            self.complete(status)
             return status
 
         return traced_tick
@@ -317,8 +326,7 @@ class NodeTrace:
     def _trace_halt(self, halt: Halt) -> Halt:
         def traced_halt(keep: bool) -> None:
             halt(keep)
-            if self.trace.last[self.place] == RUNNING:
-                self.change(IDLE)
+            self.halted()
 
         return traced_halt
 

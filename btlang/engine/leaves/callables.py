@@ -97,29 +97,37 @@ class GeneratorLeaf:
                 if interrupts or self.trace is not None:
                     _begin(interrupts, self.trace)
                 self.send = (self.call() if values is None else self.call(**values)).send
-            status = self.yielded(self.send(None))
-            if status == RUNNING:
-                return RUNNING
+            given = self.send(None)
         except KeyboardInterrupt:
             raise
         except BaseException as problem:
-            status = self.ended(problem)
-        return status if self.trace is None else self.trace.ended(status)
+            return self.ended(problem)
+        return RUNNING if given is None else self.yielded(given)
 
     def yielded(self, given: object) -> int:
-        """Return the status if the generator yielded this."""
-        if given is None or given == RUNNING:
+        """Return the status if the generator has yielded this."""
+        if given == RUNNING:
             return RUNNING
         running, self.send = self.send, None
-        running.__self__.close()
-        return self.instance.cannot_know(f"it yielded {given!r}: to end, return that; a yield says that it runs")
+        try:
+            running.__self__.close()
+        except KeyboardInterrupt:
+            raise
+        except BaseException as problem:
+            return self.ended(problem)
+        reason = f"it yielded {given!r}: to end, return that; a yield says that it runs"
+        return self._completed(self.instance.cannot_know(reason))
 
     def ended(self, problem: BaseException) -> int:
-        """Return the status if this ended the generator."""
+        """Return the status if this has ended the generator."""
         self.send = None
-        if isinstance(problem, StopIteration):
-            return status_of(self.instance, problem.value)
-        return fail_with(self.instance, problem)
+        returned = isinstance(problem, StopIteration)
+        return self._completed(
+            status_of(self.instance, problem.value) if returned else fail_with(self.instance, problem)
+        )
+
+    def _completed(self, status: int) -> int:
+        return status if self.trace is None else self.trace.ended(status)
 
     def halt(self, keep: bool) -> None:
         if self.send is not None:

@@ -48,10 +48,11 @@ def in_order(region: Region, node: Fragment, depth: int, level: int, passes: int
             region.add(
                 inside,
                 f"if x != {item.end}:",
-                *_decide(item, first, passes, f"S[{at}] = S[{at + 1}] = 0"),
+                *_decide(region, item, first, passes, f"S[{at}] = S[{at + 1}] = 0"),
                 f" r = order_functions(S, {at}, {item.first}, {first}, {item.end}, x, r, {passes})",
                 f" if r is not {passes}: break",
             )
+            children.update(region.halt_row(item, first))
             continue
         region.add(inside, f"S[{at}] = {item.first}")
         children[item.first] = layout = region.child(item, inside, level + 1)
@@ -85,6 +86,7 @@ def _functions(region: Region, item: Item, depth: int, passes: int, resumed: str
     for leaf in row[1:]:
         region.slot(leaf.call)
     instances = region.slot(tuple([leaf.instance for leaf in row]))
+    trace = region.slot(region.trace_row(row, passes))
     if resumed:
         region.add(depth, f"if {resumed}: x, r = {begin}, AGAIN", "else:")
         depth += 1
@@ -96,6 +98,8 @@ def _functions(region: Region, item: Item, depth: int, passes: int, resumed: str
     region.add(depth + 2, f"x = {item.end}")
     if not passes:  # the failure of the last one may be that of the node
         region.add(depth + 2, f"S[0].fault = S[{instances}][-1]")
+    if region.trace is not None:
+        region.add(depth + 2, f"S[{trace}].passed(0, {len(row)})")
     region.add(
         depth,
         "  break",
@@ -106,21 +110,23 @@ def _functions(region: Region, item: Item, depth: int, passes: int, resumed: str
     return first
 
 
-def _decide(item: Item, first: int, passes: int, then: str) -> tuple[str, ...]:
+def _decide(region: Region, item: Item, first: int, passes: int, then: str) -> list[str]:
     """Return the lines for a plain answer of a function that isn't the one that passes: the node ends with it."""
+    instances = first + item.end - item.first
+    at = f"x - {item.first}" if item.first else "x"
+    lines = [" if r is True or r is None:", "  r = True"]
     if passes:
-        instances = first + item.end - item.first
-        at = f"x - {item.first}" if item.first else "x"
-        return " if r is False:", f"  S[0].fault = S[{instances}][{at}]", f"  {then}", "  break"
-    return " if r is True or r is None:", "  r = True", f"  {then}", "  break"
+        lines = [" if r is False:", f"  S[0].fault = S[{instances}][{at}]"]
+    if region.trace is not None:
+        lines.append(f"  S[{instances + 1}].decided({at}, r)")
+    return [*lines, f"  {then}", "  break"]
 
 
 def order_functions(
     slots: Slots, at: int, begin: int, first: int, end: int, position: int, answer: object, passes: int
 ) -> int:
     """Go on in a row of functions at a position, from an answer that isn't plain. Returns `passes` if all have."""
-    for position, instance, answer in _answers(slots, begin, first, end, position, answer, passes):
-        status = find_status(instance, answer)
+    for position, status in _statuses(slots, begin, first, end, position, answer, passes):
         if status == RUNNING:
             slots[at] = position
             return RUNNING
@@ -132,17 +138,24 @@ def order_functions(
     return passes
 
 
-def _answers(
+def _statuses(
     slots: Slots, begin: int, first: int, end: int, position: int, answer: object, passes: int
-) -> Iterator[tuple[int, NodeInstance, object]]:
-    """Yield positions, instances and answers, or exceptions, of the functions of a row from a position."""
-    instances = slots[first + end - begin]
-    if passes is FAILURE and position > begin and answer is not _AGAIN:
-        slots[0].fault = instances[position - begin - 1]  # whose answer was plain
-    for position in range(position, end):
+) -> Iterator[tuple[int, int]]:
+    """Yield positions and statuses of the functions of a row, from one that gave an answer that isn't plain."""
+    count, behind = end - begin, position - begin
+    instances, trace = slots[first + count : first + count + 2]
+    if behind and answer is not _AGAIN:
+        if trace is not None:
+            trace.passed(0, behind)
+        if passes is FAILURE:
+            slots[0].fault = instances[behind - 1]
+    for number in range(behind, count):
         if answer is _AGAIN:
-            answer = _ask(slots[first + position - begin])
-        yield position, instances[position - begin], answer
+            answer = _ask(slots[first + number])
+        status = find_status(instances[number], answer)
+        if trace is not None:
+            trace.answered(number, status)
+        yield begin + number, status
         answer = _AGAIN
 
 
@@ -188,10 +201,11 @@ def reactive(region: Region, node: Fragment, depth: int, level: int, passes: int
             region.add(
                 depth + 1,
                 f"if x != {item.end}:",
-                *_decide(item, first, passes, f"S[{at + 1}] = x"),
+                *_decide(region, item, first, passes, f"S[{at + 1}] = x"),
                 f" r = react_functions(S, {at}, {item.first}, {first}, {item.end}, x, r, {passes})",
                 f" if r is not {passes}: break",
             )
+            children.update(region.halt_row(item, first))
             continue
         region.add(depth + 1, f"S[{at + 1}] = {item.first}")
         children[item.first] = layout = region.child(item, depth + 1, level + 1)
@@ -220,8 +234,7 @@ def react_functions(
     slots: Slots, at: int, begin: int, first: int, end: int, position: int, answer: object, passes: int
 ) -> int:
     """Go on in a row of functions at a position, from an answer that isn't plain. Returns `passes` if all have."""
-    for position, instance, answer in _answers(slots, begin, first, end, position, answer, passes):
-        status = find_status(instance, answer)
+    for position, status in _statuses(slots, begin, first, end, position, answer, passes):
         if status == SKIPPED:
             slots[at + 2] += 1
         elif status is not passes:
@@ -285,9 +298,10 @@ def parallel(region: Region, node: Fragment, depth: int, level: int) -> Layout:
                 inside,
                 f"if x == {item.end}: r = True",
                 "else:",
-                *_decide(item, first, SUCCESS, "pass"),
+                *_decide(region, item, first, SUCCESS, "pass"),
                 f" r, {fewer} = join_functions(S, {at}, {item.first}, {first}, {item.end}, x, r), True",
             )
+            children.update(region.halt_row(item, first))
             done = "pass"
             if len(node.items) > 1:
                 done = f"{completed}[{item.first}:{item.end}] = [True] * {item.end - item.first}; {fewer} = True"
@@ -321,9 +335,12 @@ def join_functions(slots: Slots, at: int, begin: int, first: int, end: int, posi
     """Go on among functions at a position, from an answer that isn't plain. Returns FAILURE if one failed, else RUNNING
     or SKIPPED if one is, else SUCCESS. Those before were called in this tick if there is an answer.
     """
-    completed, instances = slots[at], slots[first + end - begin]
-    if answer is not _AGAIN:
+    completed = slots[at]
+    instances, trace = slots[first + end - begin : first + end - begin + 2]
+    if answer is not _AGAIN and position > begin:
         completed[begin:position] = [True] * (position - begin)
+        if trace is not None:
+            trace.passed(0, position - begin)
     result = SUCCESS
     for position in range(position, end):
         if answer is _AGAIN:
@@ -332,6 +349,8 @@ def join_functions(slots: Slots, at: int, begin: int, first: int, end: int, posi
             answer = _ask(slots[first + position - begin])
         status = find_status(instances[position - begin], answer)
         answer = _AGAIN
+        if trace is not None:
+            trace.answered(position - begin, status)
         if status is FAILURE:
             return FAILURE
         if status is SUCCESS:
@@ -401,6 +420,11 @@ def keep_running_until_failure(region: Region, node: Fragment, depth: int, level
     return layout
 
 
+def subtree(region: Region, node: Fragment, depth: int, level: int) -> Layout:
+    """Write a SubTree."""
+    return region.child(node.items[0], depth, level)
+
+
 TEMPLATES: dict[str, Emit] = {
     "Sequence": partial(in_order, passes=SUCCESS),
     "Fallback": partial(in_order, passes=FAILURE),
@@ -410,6 +434,7 @@ TEMPLATES: dict[str, Emit] = {
     "Inverter": inverter,
     "ForceSuccess": force_success,
     "ForceFailure": force_failure,
+    "SubTree": subtree,
     "KeepRunningUntilFailure": keep_running_until_failure,
 }
 """The template of each node that has one, by its id. None of them reads a port."""
