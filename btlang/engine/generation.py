@@ -24,7 +24,8 @@ from btlang.tree.catalogue import SUBTREE
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.engine.instance import Compiled, Memory
-    from btlang.engine.regions import Fragment, Item
+    from btlang.engine.regions import Fragment
+    from btlang.tree.node import Node
 
 TICKS_BEFORE = 100
 """Ticks after which a tree is generated. 0: before the first one."""
@@ -53,6 +54,8 @@ def generate(instances: Sequence[NodeInstance], trace: StatusTrace | None) -> It
             made = resume_at_top(path, generation.close(made))
         if count and node_trace is not None:
             made = generation.traced(node_trace, made)
+        if above is None or not generation.takes_parts(above.node):
+            made = generation.close(made)
         if path is None and above is not None and not (isinstance(made, tuple) and made[1] is halt_nothing):
             wider = around[above.index]
             if wider is not None and wider.top != above.index:
@@ -61,8 +64,8 @@ def generate(instances: Sequence[NodeInstance], trace: StatusTrace | None) -> It
         if generation.has_compiled or not looked % NODES_A_TICK:
             generation.has_compiled = False
             yield None
-    [root] = waiting
-    compiled = generation.close(root)
+    [compiled] = waiting
+    assert isinstance(compiled, tuple)
     for instance, memory in generation.memories:
         move_memory(instance.memory, memory)
         instance.memory = memory
@@ -83,10 +86,14 @@ class _Generation:
         self.memories: list[tuple[NodeInstance, tuple[Memory, ...]]] = []
         self.has_compiled = False
 
+    def takes_parts(self, node: Node) -> bool:
+        """Return whether a node can be in a region with its children."""
+        few = len(node.children) <= self._regions.LARGEST
+        return node.id in self._templates and few and has_usual_thresholds(node)
+
     def combine(self, instance: NodeInstance, children: Sequence[Fragment | Compiled]) -> Fragment | Compiled:
         """Make a node of its children: a part of a region if it has a template, else a closure."""
         node = instance.node
-        emit = self._templates.get(node.id)
         is_asked = has_conditions(node)
         if node.id == SUBTREE:
             [made] = children
@@ -95,11 +102,11 @@ class _Generation:
             elif isinstance(made, tuple):
                 [made] = trace.wrap_functions([made], keeps=False)
             else:  # both have a trace
-                made = self._regions.Fragment(instance, emit, self._join(instance, children))
-        elif emit is None or len(children) > self._regions.LARGEST or not has_usual_thresholds(node):
-            return self._remembering(instance, (), lambda: compile_node(instance, [*map(self.close, children)]))
+                made = self._part(instance, children)
+        elif self.takes_parts(node):
+            made = self._part(instance, children)
         else:
-            made = self._regions.Fragment(instance, emit, self._join(instance, children))
+            return self._remembering(instance, (), lambda: compile_node(instance, [*map(self.close, children)]))
         if not is_asked:
             return made
         memory = ()
@@ -117,8 +124,8 @@ class _Generation:
         made.trace = trace
         return made
 
-    def _join(self, instance: NodeInstance, children: Sequence[Fragment | Compiled]) -> list[Item]:
-        """Return the items of a fragment. Children that would make its region too deep or too large are closed."""
+    def _part(self, instance: NodeInstance, children: Sequence[Fragment | Compiled]) -> Fragment:
+        """Make a part of a region. Children that would make that too deep or too large begin a region themselves."""
         regions = self._regions
         left = regions.LARGEST - len(children)
         joined: list[Fragment | Compiled] = []
@@ -132,7 +139,7 @@ class _Generation:
                     left += child.size
                     child = self.close(child)
             joined.append(child)
-        return regions.find_items(joined)
+        return regions.Fragment(instance, self._templates[instance.node.id], regions.find_items(joined))
 
     def close(self, made: Fragment | Compiled) -> Compiled:
         """Let a region begin with this node."""

@@ -150,8 +150,7 @@ class Region:
                 " try:",
                 "  r = send(None)",
                 f"  r = 2 if r is None else S[{at}].yielded(r)",
-                " except KeyboardInterrupt: raise",
-                f" except BaseException as problem: r = S[{at}].ended(problem)",
+                f" except: r = S[{at}].ended(caught())",
             )
             return _halt_pair, at + 1, None
         tick, halt = child
@@ -179,8 +178,7 @@ class Region:
         self.add(
             depth,
             f"try: r = S[{at}]()",
-            "except KeyboardInterrupt: raise",
-            "except BaseException as problem: r = problem",
+            "except: r = caught()",
             f"if r is False: S[0].fault = S[{at + 1}]",
             f"elif r is not True: r = find_status(S[{at + 1}], r)",
         )

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import partial
+from sys import exc_info
 
 from btlang.engine.instance import Fault, NodeInstance
 from btlang.engine.leaves.callables import find_status
@@ -100,14 +101,26 @@ def _functions(region: Region, item: Item, depth: int, passes: int, resumed: str
         region.add(depth + 2, f"S[0].fault = S[{instances}][-1]")
     if region.trace is not None:
         region.add(depth + 2, f"S[{trace}].passed(0, {len(row)})")
-    region.add(
-        depth,
-        "  break",
-        "except KeyboardInterrupt: raise",
-        "except BaseException as problem:",  # whose line says in which function: to note that would take time
-        f" r, x = problem, problem.__traceback__.tb_lineno - {line - item.first}",
-    )
+    region.add(depth, "  break", f"except: r, x = caught_in({line - item.first})")
     return first
+
+
+def caught() -> BaseException:
+    """Return the exception that is being handled. Raises KeyboardInterrupt."""
+    problem = exc_info()[1]
+    if isinstance(problem, KeyboardInterrupt):
+        raise
+    assert problem is not None
+    return problem
+
+
+def caught_in(line: int) -> tuple[BaseException, int]:
+    """Return the exception that is being handled, and how many lines behind a line it was raised: each function of a
+    row has a line, and to note at each tick which of them is called would take time.
+    """
+    problem = caught()
+    assert problem.__traceback__ is not None
+    return problem, problem.__traceback__.tb_lineno - line
 
 
 def _decide(region: Region, item: Item, first: int, passes: int, then: str) -> list[str]:
@@ -439,12 +452,12 @@ TEMPLATES: dict[str, Emit] = {
 }
 """The template of each node that has one, by its id. None of them reads a port."""
 NAMES: dict[str, Any] = {
-    "__builtins__": {each.__name__: each for each in (BaseException, KeyboardInterrupt)},
+    "__builtins__": {},
     "AGAIN": _AGAIN,
     **{
         each.__name__: each
         for each in (
-            end_parallel, find_status, halt_part, join_functions, order_functions, overtake, react_functions, skip,
+            caught, caught_in, end_parallel, find_status, halt_part, join_functions, order_functions, overtake, react_functions, skip,
         )
     },
 }  # fmt: skip
