@@ -8,7 +8,7 @@ becomes code: what is generated holds the words of the templates and the numbers
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from types import CodeType, FunctionType
 
@@ -132,27 +132,32 @@ class Region:
         self.layouts.append(layout)
         return len(self.layouts) - 1
 
-    def child(self, item: Item, depth: int, level: int) -> Layout:
-        """Write what ticks a child and leaves its status in `r`; return its layout."""
+    def child(
+        self, item: Item, depth: int, level: int, before: Sequence[str] = (), running: str = "r = 2"
+    ) -> Layout:
+        """Write what ticks a child and leaves its status in `r`; return its layout. `before` are lines that are needed
+        before it starts, `running` is what to do at once if it is a generator that goes on.
+        """
         child = item.child
-        if isinstance(child, Fragment):
-            return self.node(child, depth, level)
-        if isinstance(child, list):
-            return self._function(child[0], depth)
         if isinstance(child, Resumed):
             at = self.slot(child.leaf)
             self.slot(child.halt)
             self.add(
                 depth,
                 f"send = S[{at}].send",
-                f"if send is None: r = S[{at}].tick()",
+                f"if send is None: {'; '.join([*before, f'r = S[{at}].tick()'])}",
                 "else:",
                 " try:",
-                "  r = send(None)",
-                f"  r = 2 if r is None else S[{at}].yielded(r)",
+                f"  if (r := send(None)) is None: {running}",
+                f"  else: r = S[{at}].yielded(r)",
                 f" except: r = S[{at}].ended(caught())",
             )
             return _halt_pair, at + 1, None
+        self.add(depth, *before)
+        if isinstance(child, Fragment):
+            return self.node(child, depth, level)
+        if isinstance(child, list):
+            return self._function(child[0], depth)
         tick, halt = child
         at = self.slot(tick)
         self.slot(halt)

@@ -73,7 +73,7 @@ def check(drawn: Drawn, world: World, orders: str, watched: bool, engines: list[
             if order == "r":
                 engine = make()
                 engine.restore(json.loads(saved))
-                assert json.dumps(engine.save()) == saved or len(set(engines)) > 1
+                assert json.dumps(engine.save()) == saved or engines not in ([NEVER], [0])
         else:
             ours, theirs = engine.tick(), reference.execute()
             assert LETTER[ours] == LETTER[theirs]

@@ -18,7 +18,7 @@ from sys import exc_info
 from btlang.engine.instance import Fault, NodeInstance
 from btlang.engine.leaves.callables import find_status
 from btlang.engine.nodes.decorators import NOT_THIS_TIME, WAS_TRUE
-from btlang.engine.regions import halt_part
+from btlang.engine.regions import Resumed, halt_part
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
 
 TYPE_CHECKING = False
@@ -55,8 +55,9 @@ def in_order(region: Region, node: Fragment, depth: int, level: int, passes: int
             )
             children.update(region.halt_row(item, first))
             continue
-        region.add(inside, f"S[{at}] = {item.first}")
-        children[item.first] = layout = region.child(item, inside, level + 1)
+        children[item.first] = layout = region.child(
+            item, inside, level + 1, [f"S[{at}] = {item.first}"], "r = 2; break"
+        )
         region.add(
             inside,
             f"if r is not {passes}:",
@@ -228,17 +229,16 @@ def reactive(region: Region, node: Fragment, depth: int, level: int, passes: int
             f" if r is {not passes} or r == 2: break",
             f" skip(S, L[{region.layout(layout)}], {skipped})",
         )
-    region.add(depth + 1, f"r = {passes} if S[{skipped}] != {node.count} else 3", "break")
+    region.add(
+        depth + 1, f"r = {passes}", f"if S[{skipped}] == {node.count}: r, S[{at + 1}] = 3, {node.count}", "break"
+    )
     own = _halt_reactive, at, children
     if interrupts:
         region.add(depth, f"if S[0].interrupts and S[0].interrupts[-1] is S[{stop}]: S[0].interrupts.pop()")
     region.add(
         depth,
         f"if r is {passes}: S[{at}] = -1",
-        f"elif r is {not passes} or r == 2:",
-        f" if S[{at + 1}] < S[{at}]: overtake(S, L[{region.layout(own)}], r)",
-        f" S[{at}] = S[{at + 1}] if r == 2 else -1",
-        f"else: S[{at}] = -1",
+        f"elif r is {not passes} or S[{at + 1}] != S[{at}]: end_reactive(S, L[{region.layout(own)}], r)",
     )
     return own
 
@@ -256,12 +256,15 @@ def react_functions(
     return passes
 
 
-def overtake(slots: Slots, layout: Layout, status: int) -> None:
-    """Halt the child of a reactive node that was RUNNING, since one before it has decided."""
+def end_reactive(slots: Slots, layout: Layout, status: int) -> None:
+    """Note that a child decided, or is RUNNING and wasn't; halt a later one that was. All may have been SKIPPED."""
     _, at, children = layout
-    if status is FAILURE:
-        slots[at + 3].pass_on("its guard failed on the way")
-    _halt_child(slots, children, slots[at])
+    running, asked = slots[at], slots[at + 1]
+    if asked < running:
+        if status is FAILURE:
+            slots[at + 3].pass_on("its guard failed on the way")
+        _halt_child(slots, children, running)
+    slots[at] = asked if status == RUNNING else -1
 
 
 def _interrupt(slots: Slots, at: int, children: Layouts) -> None:
@@ -321,10 +324,13 @@ def parallel(region: Region, node: Fragment, depth: int, level: int) -> Layout:
         else:
             region.add(inside, f"if not {some} or not {completed}[{item.first}]:")
             inside += 1
-            children[item.first] = region.child(item, inside, level + 1)
+            children[item.first] = region.child(item, inside, level + 1, running=f"{running} = True")
+            if isinstance(item.child, Resumed):
+                region.add(inside, "if r is None: pass", f"elif r is True: {done}")
+                done = ""
         region.add(
             inside,
-            f"if r is True: {done}",
+            *([f"if r is True: {done}"] if done else []),
             f"elif r == 2: {running} = True",
             "elif r is False: break",
             f"else: {skipped} = True",
@@ -457,7 +463,7 @@ NAMES: dict[str, Any] = {
     **{
         each.__name__: each
         for each in (
-            caught, caught_in, end_parallel, find_status, halt_part, join_functions, order_functions, overtake, react_functions, skip,
+            caught, caught_in, end_parallel, find_status, halt_part, end_reactive, join_functions, order_functions, react_functions, skip,
         )
     },
 }  # fmt: skip
