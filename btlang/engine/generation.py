@@ -16,6 +16,7 @@ from btlang.engine.compile import compile_node, waits
 from btlang.engine.conditions import add_conditions, has_conditions
 from btlang.engine.fused import has_usual_thresholds
 from btlang.engine.instance import NodeInstance, halt_nothing
+from btlang.engine.leaves.callables import find_function
 from btlang.engine.resume_path import find_resume_paths, mark_resumable, resume_at_top
 from btlang.engine.saving import move_memory
 from btlang.engine.status_trace import NodeTrace, StatusTrace
@@ -25,7 +26,6 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.engine.instance import Compiled, Memory
     from btlang.engine.regions import Fragment
-    from btlang.tree.node import Node
 
 TICKS_BEFORE = 100
 """Ticks after which a tree is generated. 0: before the first one."""
@@ -54,7 +54,7 @@ def generate(instances: Sequence[NodeInstance], trace: StatusTrace | None) -> It
             made = resume_at_top(path, generation.close(made))
         if count and node_trace is not None:
             made = generation.traced(node_trace, made)
-        if above is None or not generation.takes_parts(above.node):
+        if above is None or not generation.takes_parts(above):
             made = generation.close(made)
         if path is None and above is not None and not (isinstance(made, tuple) and made[1] is halt_nothing):
             wider = around[above.index]
@@ -85,11 +85,21 @@ class _Generation:
         self._trace = trace
         self.memories: list[tuple[NodeInstance, tuple[Memory, ...]]] = []
         self.has_compiled = False
+        self._takes_parts: dict[int, bool] = {}
 
-    def takes_parts(self, node: Node) -> bool:
-        """Return whether a node can be in a region with its children."""
-        few = len(node.children) <= self._regions.LARGEST
-        return node.id in self._templates and few and has_usual_thresholds(node)
+    def takes_parts(self, instance: NodeInstance) -> bool:
+        """Return whether a node can be in a region with its children. Its closure ticks very many just as fast."""
+        found = self._takes_parts.get(instance.index)
+        if found is None:
+            node, signatures = instance.node, instance.state.signatures
+            functions = [
+                not child.children and child.id in signatures and signatures[child.id].kind == "function"
+                for child in node.children
+            ]
+            found = node.id in self._templates and has_usual_thresholds(node)
+            found = found and self._regions.find_size(functions) <= self._regions.LARGEST
+            self._takes_parts[instance.index] = found
+        return found
 
     def combine(self, instance: NodeInstance, children: Sequence[Fragment | Compiled]) -> Fragment | Compiled:
         """Make a node of its children: a part of a region if it has a template, else a closure."""
@@ -102,9 +112,9 @@ class _Generation:
             elif isinstance(made, tuple):
                 [made] = trace.wrap_functions([made], keeps=False)
             else:  # both have a trace
-                made = self._part(instance, children)
-        elif self.takes_parts(node):
-            made = self._part(instance, children)
+                made = self._part(instance, children) or self.close(made)
+        elif self.takes_parts(instance) and (part := self._part(instance, children)) is not None:
+            made = part
         else:
             return self._remembering(instance, (), lambda: compile_node(instance, [*map(self.close, children)]))
         if not is_asked:
@@ -112,7 +122,7 @@ class _Generation:
         memory = ()
         compiled = self.close(made)
         if node.id != SUBTREE:
-            _, memory = self.memories.pop()
+            _, memory = self.memories.pop()  # that of the highest node comes last
         return self._remembering(instance, memory, lambda: add_conditions(instance, compiled))
 
     def traced(self, trace: NodeTrace, made: Fragment | Compiled) -> Fragment | Compiled:
@@ -124,22 +134,28 @@ class _Generation:
         made.trace = trace
         return made
 
-    def _part(self, instance: NodeInstance, children: Sequence[Fragment | Compiled]) -> Fragment:
-        """Make a part of a region. Children that would make that too deep or too large begin a region themselves."""
-        regions = self._regions
-        left = regions.LARGEST - len(children)
-        joined: list[Fragment | Compiled] = []
+    def _part(self, instance: NodeInstance, children: Sequence[Fragment | Compiled]) -> Fragment | None:
+        """Make a part of a region, None if there is too much in it. Children that would make the region too deep or too
+        large begin a region themselves.
+        """
+        regions, trace = self._regions, instance.state.node_trace
+        functions = []
+        single: list[Fragment | Compiled] = []
         for child in children:
-            if isinstance(child, tuple):
-                if instance.state.node_trace is not None:  # what takes more than to note its status is no part of a row
-                    [child] = instance.state.node_trace.wrap_functions([child], keeps=True)
-            else:
-                left -= child.size
-                if left < 0 or child.height == regions.DEEPEST:
-                    left += child.size
-                    child = self.close(child)
-            joined.append(child)
-        return regions.Fragment(instance, self._templates[instance.node.id], regions.find_items(joined))
+            if isinstance(child, tuple) and trace is not None:  # a function that tells more than its status is in no row
+                [child] = trace.wrap_functions([child], keeps=True)
+            single.append(child)
+            functions.append(isinstance(child, tuple) and find_function(child[0]) is not None)
+        left = regions.LARGEST - regions.find_size(functions)
+        if left < 0:
+            return None
+        for position, child in enumerate(single):
+            if not isinstance(child, tuple):
+                if child.size > left or child.height == regions.DEEPEST:
+                    single[position] = self.close(child)
+                else:
+                    left -= child.size
+        return regions.Fragment(instance, self._templates[instance.node.id], regions.find_items(single))
 
     def close(self, made: Fragment | Compiled) -> Compiled:
         """Let a region begin with this node."""

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import partial
+from itertools import groupby
 from types import CodeType, FunctionType
 
 from btlang.engine.changes import REACHED
@@ -33,7 +34,9 @@ if TYPE_CHECKING:
 DEEPEST = 8
 """Levels of nodes in a region. Each takes a loop, and Python nests 20 of these at most."""
 LARGEST = 60
-"""Children of the nodes of a region. Long functions are compiled slowly, and a step of generation is one of them."""
+"""Children in a region. Long functions are compiled slowly, and a step of generation is one of them."""
+WIDE = 16
+"""Functions in a row from which on a loop calls them: each by itself would be faster, and is more code."""
 _MOST_SHAPES = 2000
 
 
@@ -49,7 +52,8 @@ class Fragment:
         self.trace: NodeTrace | None = None
         below = [item.child for item in items if isinstance(item.child, Fragment)]
         self.height = 1 + max([each.height for each in below], default=0)
-        self.size = len(items) + sum(each.size for each in below)
+        self.size = sum([1 if item.is_wide else item.end - item.first for item in items])
+        self.size += sum([each.size for each in below])
 
     @property
     def count(self) -> int:
@@ -66,6 +70,20 @@ class Item:
         self.first = first
         self.end = first + (len(child) if isinstance(child, list) else 1)
         self.child = child
+
+    @property
+    def is_wide(self) -> bool:
+        """Whether they are functions that a loop calls."""
+        return self.end - self.first >= WIDE
+
+
+def find_size(functions: Sequence[bool]) -> int:
+    """Return how many children a node counts for, which of them are functions."""
+    size = 0
+    for are_functions, row in groupby(functions):
+        count = sum(1 for _ in row)
+        size += 1 if are_functions and count >= WIDE else count
+    return size
 
 
 class Resumed:
@@ -191,20 +209,13 @@ class Region:
             return _NOTHING
         row = self.slot(self.trace_row([leaf], SUCCESS))
         self.add(depth, f"S[{row}].answered(0, r)")
-        return _halt_function, row, 0
+        return halt_row, row, None
 
     def trace_row(self, row: list[FunctionLeaf], passes: int) -> RowTrace | None:
         """Return the trace of functions in a row."""
         if self.trace is None:
             return None
         return RowTrace(self.trace, [leaf.instance for leaf in row], passes)
-
-    def halt_row(self, item: Item, first: int) -> dict[int, Layout]:
-        """Return what records that functions in a row were halted: itself, that takes nothing. `first` is their slot."""
-        count = item.end - item.first
-        if self.trace is None:
-            return {}
-        return {item.first + number: (_halt_function, first + count + 1, number) for number in range(count)}
 
     @property
     def next_line(self) -> int:
@@ -251,8 +262,10 @@ def _halt_traced(slots: Slots, at: int, node: Layout, keep: bool) -> None:
     slots[at].halted()
 
 
-def _halt_function(slots: Slots, at: int, number: int, keep: bool) -> None:
-    slots[at].halted(number)
+def halt_row(slots: Slots, at: int, children: object, keep: bool) -> None:
+    """Record that functions in a row were halted, if somebody listens: they know nothing of it."""
+    if slots[at] is not None:
+        slots[at].halted()
 
 
 def _halt_pair(slots: Slots, at: int, children: object, keep: bool) -> None:

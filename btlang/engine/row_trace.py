@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from btlang.engine.changes import REACHED
 from btlang.engine.instance import NodeInstance
+from btlang.engine.status import IDLE, RUNNING
 from btlang.engine.status_trace import NodeTrace, StatusTrace
 
 
@@ -49,6 +50,9 @@ class RowTrace:
                 trace.faults[self._instances[number].index] = trace.state.fault
         trace.now[place] = status | REACHED
 
-    def halted(self, number: int) -> None:
-        """Record that one was halted, if it was RUNNING."""
-        NodeTrace(self._instances[number], self._trace).halt_function(False)
+    def halted(self) -> None:
+        """Record that those that were RUNNING are halted."""
+        trace, first = self._trace, self._first
+        for instance, status in zip(self._instances, trace.now[first : first + len(self._instances)], strict=True):
+            if status & ~REACHED == RUNNING:
+                NodeTrace(instance, trace).change(IDLE)

@@ -11,20 +11,21 @@ the slots alone.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from sys import exc_info
 
 from btlang.engine.instance import Fault, NodeInstance
 from btlang.engine.leaves.callables import find_status
 from btlang.engine.nodes.decorators import NOT_THIS_TIME, WAS_TRUE
-from btlang.engine.regions import Resumed, halt_part
+from btlang.engine.regions import Resumed, halt_part, halt_row
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, TypeAlias
 
+    from btlang.engine.row_trace import RowTrace
     from btlang.engine.regions import Emit, Fragment, Item, Layout, Region, Slots
 
     Layouts: TypeAlias = dict[int, Layout]
@@ -45,15 +46,15 @@ def in_order(region: Region, node: Fragment, depth: int, level: int, passes: int
             region.add(inside, f"if {position} < {item.end}:")
             inside += 1
         if isinstance(item.child, list):
-            first = _functions(region, item, inside, passes, f"{position} > {item.first}", position)
+            row = _functions(region, item, inside, passes, f"{position} > {item.first}", position)
             region.add(
                 inside,
                 f"if x != {item.end}:",
-                *_decide(region, item, first, passes, f"S[{at}] = S[{at + 1}] = 0"),
-                f" r = order_functions(S, {at}, {item.first}, {first}, {item.end}, x, r, {passes})",
+                *_decide(region, item, row, passes, f"S[{at}] = S[{at + 1}] = 0"),
+                f" r = order_functions(S, {at}, {item.first}, {row}, x, r, {passes})",
                 f" if r is not {passes}: break",
             )
-            children.update(region.halt_row(item, first))
+            children[item.first] = halt_row, row + 1, None
             continue
         children[item.first] = layout = region.child(
             item, inside, level + 1, [f"S[{at}] = {item.first}"], "r = 2; break"
@@ -79,31 +80,38 @@ def in_order(region: Region, node: Fragment, depth: int, level: int, passes: int
 
 def _functions(region: Region, item: Item, depth: int, passes: int, resumed: str, begin: str) -> int:
     """Write what calls functions in a row, until one gives another answer than the plain one that passes. `x` is then
-    its position, and `r` the answer; else `x` is the end. Returns the slot of the first; behind them is one with their
-    instances. `resumed` says whether the row was left at a function, whose position is `begin`.
+    its position, and `r` the answer; else `x` is the end. Returns the slot of their instances; their trace is behind it,
+    and they before it. `resumed` says whether the row was left at a function, whose position is `begin`.
     """
     assert isinstance(item.child, list)
-    row = item.child
-    first = region.slot(row[0].call)
-    for leaf in row[1:]:
-        region.slot(leaf.call)
-    instances = region.slot(tuple([leaf.instance for leaf in row]))
-    trace = region.slot(region.trace_row(row, passes))
+    leaves = item.child
+    calls = [leaf.call for leaf in leaves]
+    first = len(region.values)
+    region.values += [tuple(calls)] if item.is_wide else calls
+    row = region.slot(tuple([leaf.instance for leaf in leaves]))
+    region.slot(region.trace_row(leaves, passes))
     if resumed:
         region.add(depth, f"if {resumed}: x, r = {begin}, AGAIN", "else:")
         depth += 1
     other = "is not True and r is not None" if passes else "is not False"
+    all_passed = [f"x = {item.end}"]
+    if not passes:  # the failure of the last one may be that of the node
+        all_passed.append(f"S[0].fault = S[{row}][-1]")
+    if region.trace is not None:
+        all_passed.append(f"S[{row + 1}].passed(0, {len(leaves)})")
+    if item.is_wide:
+        region.add(depth, f"x = {item.first - 1}", "try:")
+        region.add(depth + 1, f"for f in S[{first}]:", " x += 1", f" if (r := f()) {other}: break")
+        region.add(depth + 1, f"else: {'; '.join(all_passed)}")
+        region.add(depth, "except: r = caught()")
+        return row
     region.add(depth, "try:", " while True:")
     line = region.next_line
-    for number in range(len(row)):
+    for number in range(len(leaves)):
         region.add(depth + 2, f"if (r := S[{first + number}]()) {other}: x = {item.first + number}; break")
-    region.add(depth + 2, f"x = {item.end}")
-    if not passes:  # the failure of the last one may be that of the node
-        region.add(depth + 2, f"S[0].fault = S[{instances}][-1]")
-    if region.trace is not None:
-        region.add(depth + 2, f"S[{trace}].passed(0, {len(row)})")
-    region.add(depth, "  break", f"except: r, x = caught_in({line - item.first})")
-    return first
+    region.add(depth + 2, *all_passed, "break")
+    region.add(depth, f"except: r, x = caught_in({line - item.first})")
+    return row
 
 
 def caught() -> BaseException:
@@ -124,23 +132,22 @@ def caught_in(line: int) -> tuple[BaseException, int]:
     return problem, problem.__traceback__.tb_lineno - line
 
 
-def _decide(region: Region, item: Item, first: int, passes: int, then: str) -> list[str]:
+def _decide(region: Region, item: Item, row: int, passes: int, then: str) -> list[str]:
     """Return the lines for a plain answer of a function that isn't the one that passes: the node ends with it."""
-    instances = first + item.end - item.first
     at = f"x - {item.first}" if item.first else "x"
     lines = [" if r is True or r is None:", "  r = True"]
     if passes:
-        lines = [" if r is False:", f"  S[0].fault = S[{instances}][{at}]"]
+        lines = [" if r is False:", f"  S[0].fault = S[{row}][{at}]"]
     if region.trace is not None:
-        lines.append(f"  S[{instances + 1}].decided({at}, r)")
+        lines.append(f"  S[{row + 1}].decided({at}, r)")
     return [*lines, f"  {then}", "  break"]
 
 
 def order_functions(
-    slots: Slots, at: int, begin: int, first: int, end: int, position: int, answer: object, passes: int
+    slots: Slots, at: int, begin: int, row: int, position: int, answer: object, passes: int
 ) -> int:
     """Go on in a row of functions at a position, from an answer that isn't plain. Returns `passes` if all have."""
-    for position, status in _statuses(slots, begin, first, end, position, answer, passes):
+    for position, status in _statuses(slots, begin, row, position, answer, passes):
         if status == RUNNING:
             slots[at] = position
             return RUNNING
@@ -152,20 +159,26 @@ def order_functions(
     return passes
 
 
+def _row(slots: Slots, row: int) -> tuple[Sequence[Callable[[], object]], tuple[NodeInstance, ...], RowTrace | None]:
+    """Return the functions of a row, their instances and their trace."""
+    instances, before = slots[row], slots[row - 1]
+    return before if before.__class__ is tuple else slots[row - len(instances) : row], instances, slots[row + 1]
+
+
 def _statuses(
-    slots: Slots, begin: int, first: int, end: int, position: int, answer: object, passes: int
+    slots: Slots, begin: int, row: int, position: int, answer: object, passes: int
 ) -> Iterator[tuple[int, int]]:
     """Yield positions and statuses of the functions of a row, from one that gave an answer that isn't plain."""
-    count, behind = end - begin, position - begin
-    instances, trace = slots[first + count : first + count + 2]
+    calls, instances, trace = _row(slots, row)
+    behind = position - begin
     if behind and answer is not _AGAIN:
         if trace is not None:
             trace.passed(0, behind)
         if passes is FAILURE:
             slots[0].fault = instances[behind - 1]
-    for number in range(behind, count):
+    for number in range(behind, len(instances)):
         if answer is _AGAIN:
-            answer = _ask(slots[first + number])
+            answer = _ask(calls[number])
         status = find_status(instances[number], answer)
         if trace is not None:
             trace.answered(number, status)
@@ -189,9 +202,7 @@ def skip(slots: Slots, layout: Layout, count: int) -> None:
 
 
 def _halt_in_order(slots: Slots, at: int, children: Layouts, keep: bool) -> None:
-    child = children.get(slots[at])
-    if child is not None:
-        halt_part(slots, child, keep)
+    halt_part(slots, children[_find_item(children, slots[at])], keep)
     if not keep:
         slots[at] = slots[at + 1] = 0
 
@@ -211,15 +222,15 @@ def reactive(region: Region, node: Fragment, depth: int, level: int, passes: int
     region.add(depth, f"S[{skipped}] = 0", "while True:")
     for item in node.items:
         if isinstance(item.child, list):
-            first = _functions(region, item, depth + 1, passes, "", "")
+            row = _functions(region, item, depth + 1, passes, "", "")
             region.add(
                 depth + 1,
                 f"if x != {item.end}:",
-                *_decide(region, item, first, passes, f"S[{at + 1}] = x"),
-                f" r = react_functions(S, {at}, {item.first}, {first}, {item.end}, x, r, {passes})",
+                *_decide(region, item, row, passes, f"S[{at + 1}] = x"),
+                f" r = react_functions(S, {at}, {item.first}, {row}, x, r, {passes})",
                 f" if r is not {passes}: break",
             )
-            children.update(region.halt_row(item, first))
+            children[item.first] = halt_row, row + 1, None
             continue
         region.add(depth + 1, f"S[{at + 1}] = {item.first}")
         children[item.first] = layout = region.child(item, depth + 1, level + 1)
@@ -244,10 +255,10 @@ def reactive(region: Region, node: Fragment, depth: int, level: int, passes: int
 
 
 def react_functions(
-    slots: Slots, at: int, begin: int, first: int, end: int, position: int, answer: object, passes: int
+    slots: Slots, at: int, begin: int, row: int, position: int, answer: object, passes: int
 ) -> int:
     """Go on in a row of functions at a position, from an answer that isn't plain. Returns `passes` if all have."""
-    for position, status in _statuses(slots, begin, first, end, position, answer, passes):
+    for position, status in _statuses(slots, begin, row, position, answer, passes):
         if status == SKIPPED:
             slots[at + 2] += 1
         elif status is not passes:
@@ -275,9 +286,11 @@ def _interrupt(slots: Slots, at: int, children: Layouts) -> None:
 
 
 def _halt_child(slots: Slots, children: Layouts, position: int) -> None:
-    child = children.get(position)
-    if child is not None:
-        halt_part(slots, child, False)
+    halt_part(slots, children[_find_item(children, position)], False)
+
+
+def _find_item(children: Layouts, position: int) -> int:
+    return position if position in children else max([first for first in children if first < position])
 
 
 def _halt_reactive(slots: Slots, at: int, children: Layouts, keep: bool) -> None:
@@ -309,15 +322,15 @@ def parallel(region: Region, node: Fragment, depth: int, level: int) -> Layout:
         inside = depth + 1
         done = f"{completed}[{item.first}] = {fewer} = True"
         if isinstance(item.child, list):
-            first = _functions(region, item, inside, SUCCESS, some, str(item.first))
+            row = _functions(region, item, inside, SUCCESS, some, str(item.first))
             region.add(
                 inside,
                 f"if x == {item.end}: r = True",
                 "else:",
-                *_decide(region, item, first, SUCCESS, "pass"),
-                f" r, {fewer} = join_functions(S, {at}, {item.first}, {first}, {item.end}, x, r), True",
+                *_decide(region, item, row, SUCCESS, "pass"),
+                f" r, {fewer} = join_functions(S, {at}, {item.first}, {row}, x, r), True",
             )
-            children.update(region.halt_row(item, first))
+            children[item.first] = halt_row, row + 1, None
             done = "pass"
             if len(node.items) > 1:
                 done = f"{completed}[{item.first}:{item.end}] = [True] * {item.end - item.first}; {fewer} = True"
@@ -350,30 +363,30 @@ def parallel(region: Region, node: Fragment, depth: int, level: int) -> Layout:
     return own
 
 
-def join_functions(slots: Slots, at: int, begin: int, first: int, end: int, position: int, answer: object) -> int:
+def join_functions(slots: Slots, at: int, begin: int, row: int, position: int, answer: object) -> int:
     """Go on among functions at a position, from an answer that isn't plain. Returns FAILURE if one failed, else RUNNING
     or SKIPPED if one is, else SUCCESS. Those before were called in this tick if there is an answer.
     """
     completed = slots[at]
-    instances, trace = slots[first + end - begin : first + end - begin + 2]
+    calls, instances, trace = _row(slots, row)
     if answer is not _AGAIN and position > begin:
         completed[begin:position] = [True] * (position - begin)
         if trace is not None:
             trace.passed(0, position - begin)
     result = SUCCESS
-    for position in range(position, end):
+    for number in range(position - begin, len(instances)):
         if answer is _AGAIN:
-            if completed[position]:
+            if completed[begin + number]:
                 continue
-            answer = _ask(slots[first + position - begin])
-        status = find_status(instances[position - begin], answer)
+            answer = _ask(calls[number])
+        status = find_status(instances[number], answer)
         answer = _AGAIN
         if trace is not None:
-            trace.answered(position - begin, status)
+            trace.answered(number, status)
         if status is FAILURE:
             return FAILURE
         if status is SUCCESS:
-            completed[position] = True
+            completed[begin + number] = True
         elif status == RUNNING or result is SUCCESS:
             result = status
     return result
@@ -389,7 +402,7 @@ def end_parallel(slots: Slots, layout: Layout) -> None:
 def _halt_parallel(slots: Slots, at: int, children: Layouts, keep: bool) -> None:
     completed = slots[at]
     for position, child in children.items():
-        if not completed[position]:
+        if child[0] is halt_row or not completed[position]:
             halt_part(slots, child, keep)
     if not keep:
         slots[at] = [False] * len(completed)
