@@ -157,14 +157,14 @@ def default_parallel(instance: NodeInstance, children: Sequence[Compiled]) -> Co
     ticks, halts, instances = _calls(children)
     trace = _trace_functions(instance, children, SUCCESS)
     everyone = tuple(enumerate(ticks))
-    left: tuple[tuple[int, Call], ...] | None = everyone  # those that have not completed; None: it isn't known
+    left = everyone  # those that have not completed; none where they are to be found
     completed = [False] * len(ticks)
     state = instance.state
 
     def tick(going_on: int = RUNNING, trace: FunctionsTrace | None = trace) -> int:
         nonlocal left
         running = fewer = skipped = False
-        if left is None:
+        if not left:
             left = find_left()
         whole = left is everyone
         if trace is not None:
@@ -204,7 +204,7 @@ def default_parallel(instance: NodeInstance, children: Sequence[Compiled]) -> Co
             trace.write(len(everyone))
         if running:
             if fewer:
-                left = None
+                left = ()
             return RUNNING
         if skipped:
             halt(False)
@@ -223,7 +223,7 @@ def default_parallel(instance: NodeInstance, children: Sequence[Compiled]) -> Co
                 stop(keep)
         if not keep:
             completed[:] = [False] * len(completed)
-        left = None
+        left = ()
 
     if trace is not None:
         trace.follow(lambda: trace.asked)
