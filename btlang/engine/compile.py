@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.clock import Clock
 from btlang.engine.conditions import add_conditions
-from btlang.engine.fused import choose_compiler, traces_functions
+from btlang.engine.fused import choose_compiler
 from btlang.engine.instance import EngineError, EngineState, NodeInstance, blackboard_key, halt_nothing
 from btlang.engine.leaves.binding import bind_leaf
 from btlang.engine.leaves.callables import find_function
@@ -222,7 +222,7 @@ def _compile_built_in(instance: NodeInstance, kind: NodeKind, children: Sequence
             raise instance.error(f"{kind.id} takes no port {port}")
     usual = SEMANTICS[kind.id]
     if (trace := instance.state.node_trace) is not None:
-        children = trace.wrap_functions(children, keeps=traces_functions(usual, instance, children))
+        children = trace.wrap_functions(children, keeps=False)
     compiled = choose_compiler(usual, instance, children)(instance, children)
     if kind.id != SUBTREE:  # which is its child
         instance.memory = (compiled[0],)

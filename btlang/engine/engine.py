@@ -5,11 +5,11 @@ from __future__ import annotations
 from _thread import get_ident  # `threading` takes longer to import
 from collections.abc import Callable, Mapping, Sequence
 
-from btlang.engine import generation
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.changes import Changes
 from btlang.engine.clock import Clock
 from btlang.engine.compile import allow_depth, compile_instances, expand
+from btlang.engine.generation import generate_later
 from btlang.engine.instance import EngineError, EngineState, Fault, NodeInstance, blackboard_key
 from btlang.engine.leaves.leaf import REFUSED, ActionFailed, LeafBinding, ignore_progress, reason_text
 from btlang.engine.saving import restore_nodes, save_nodes
@@ -98,9 +98,9 @@ class Engine:
             self._trace = None if listener is None else StatusTrace(self._state, listener, self._instances)
             compiled = compile_instances(self._instances, self._trace, hooks)
         self._frames = _depth(self._instances) * _FRAMES_PER_LEVEL + _FRAMES_FOR_LEAVES
-        self._tick, self._halt = self._allow_depth(compiled)
-        if hooks is None and len(self._instances) <= generation.MOST_NODES:
-            self._generate_later()
+        self._use(compiled)
+        if hooks is None:
+            generate_later(self._instances, self._trace, compiled, self._use)
         listened = self._instances if listener is not None else ()
         self._keyed = frozenset([s.index for s in listened if any("{" in text for _, text in s.node.ports)])
         self._busy = False
@@ -303,34 +303,12 @@ class Engine:
         if self._on_warning is not None:
             self._on_warning(failure)
 
-    def _allow_depth(self, compiled: Compiled) -> Compiled:
+    def _use(self, compiled: Compiled) -> None:
+        """Tick and halt by these from now on."""
         tick, halt = compiled
-        if self._frames <= _FRAMES_ASSUMED:
-            return compiled
-        return allow_depth(self._frames, tick), allow_depth(self._frames, halt)
-
-    def _generate_later(self) -> None:
-        """Count the ticks, and generate regions of nodes when there have been enough."""
-        tick, left = self._tick, generation.TICKS_BEFORE
-        steps = generation.generate(self._instances, self._trace)
-
-        def generate() -> bool:
-            with gc_paused:
-                compiled = next(steps)
-            if compiled is not None:
-                self._tick, self._halt = self._allow_depth(compiled)
-            return compiled is not None
-
-        def counted_tick() -> int:
-            nonlocal left
-            left -= 1
-            return self._tick() if left < 0 and generate() else tick()
-
-        if left:
-            self._tick = counted_tick
-        else:
-            while not generate():
-                pass
+        deep = self._frames > _FRAMES_ASSUMED
+        self._tick = allow_depth(self._frames, tick) if deep else tick
+        self._halt = allow_depth(self._frames, halt) if deep else halt
 
     def _wake(self) -> None:
         if self.on_wake is not None:

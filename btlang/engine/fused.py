@@ -13,7 +13,6 @@ from functools import partial
 from btlang.engine.instance import NodeInstance
 from btlang.engine.leaves.callables import find_function, find_status
 from btlang.engine.nodes import control
-from btlang.engine.nodes.control import reactive_fallback, reactive_sequence
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
 from btlang.tree.node import Node
 
@@ -21,17 +20,12 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, TypeAlias
 
-    from btlang.engine.functions_trace import FunctionsTrace
     from btlang.engine.instance import Compiled, Halt
 
     Call: TypeAlias = Callable[[], Any]
     Ticks: TypeAlias = tuple[Call, ...]
     Calls: TypeAlias = tuple[Ticks, tuple[Halt, ...], tuple[NodeInstance | None, ...]]
     Compile: TypeAlias = Callable[[NodeInstance, Sequence[Compiled]], Compiled]
-
-
-_MANY = 4
-"""Functions that are traced together: fewer take as long each by itself."""
 
 
 def choose_compiler(usual: Compile, instance: NodeInstance, children: Sequence[Compiled]) -> Compile:
@@ -48,12 +42,6 @@ def has_usual_thresholds(node: Node) -> bool:
     return node.port("success_count", "-1") == "-1" and node.port("failure_count", "1") == "1"
 
 
-def traces_functions(usual: Compile, instance: NodeInstance, children: Sequence[Compiled]) -> bool:
-    """Return whether a node has a variant that also traces the functions below it, and these are enough for that."""
-    functions = sum(find_function(tick) is not None for tick, _ in children)
-    return functions >= _MANY and choose_compiler(usual, instance, children) is not usual
-
-
 def _calls(children: Sequence[Compiled]) -> Calls:
     """Return what to call for a tick of each child, the halts, and the instances of function leaves, None for other
     children.
@@ -65,11 +53,6 @@ def _calls(children: Sequence[Compiled]) -> Calls:
     ticks = [tick if leaf is None else leaf.call for (tick, _), leaf in zip(children, functions, strict=True)]
     instances = [None if leaf is None else leaf.instance for leaf in functions]
     return tuple(ticks), tuple([halt for _, halt in children]), tuple(instances)
-
-
-def _trace_functions(instance: NodeInstance, children: Sequence[Compiled], passes: int) -> FunctionsTrace | None:
-    trace = instance.state.node_trace
-    return None if trace is None else trace.trace_functions([find_function(tick) for tick, _ in children], passes)
 
 
 def normalize_status(instance: NodeInstance | None, answer: object) -> int:
@@ -85,24 +68,13 @@ def normalize_status(instance: NodeInstance | None, answer: object) -> int:
 def in_order(instance: NodeInstance, children: Sequence[Compiled], passes: int) -> Compiled:
     """Compile a Sequence or Fallback; see nodes/control.py."""
     ticks, halts, instances = _calls(children)
-    trace = _trace_functions(instance, children, passes)
     nothing = None if passes is SUCCESS else passes  # what functions return is most often nothing
-    nothing_to_say = SUCCESS if passes is SUCCESS else None  # it goes on, and has no reason to be kept
     index = skipped = 0
 
     # what does not change are defaults: a cell for each would be a third of the memory of a tree
-    def tick(
-        ticks: Ticks = ticks,
-        count: int = len(ticks),
-        passes: int = passes,
-        nothing: int | None = nothing,
-        nothing_to_say: int | None = nothing_to_say,
-        trace: FunctionsTrace | None = trace,
-    ) -> int:
+    def tick(ticks: Ticks = ticks, count: int = len(ticks), passes: int = passes, nothing: int | None = nothing) -> int:
         nonlocal index, skipped
         plain = -1  # the latest child that passed, whose answer has not been normalized
-        if trace is not None:
-            trace.marked = index
         while index < count:
             try:
                 status = ticks[index]()
@@ -111,16 +83,12 @@ def in_order(instance: NodeInstance, children: Sequence[Compiled], passes: int) 
                     index += 1
                     continue
                 if status == RUNNING:
-                    if trace is not None:
-                        trace.decide(index, RUNNING)
                     return RUNNING
             except KeyboardInterrupt:
                 raise
             except BaseException as problem:
                 status = problem
             status = SKIPPED if status == SKIPPED else normalize_status(instances[index], status)
-            if trace is not None and status is not nothing_to_say:
-                trace.decide(index, status)
             if status == SKIPPED:
                 halts[index](False)
                 skipped += 1
@@ -130,8 +98,6 @@ def in_order(instance: NodeInstance, children: Sequence[Compiled], passes: int) 
                 index = skipped = 0
                 return status
             index += 1
-        if trace is not None:
-            trace.write(count)
         if skipped:
             passes = SKIPPED if skipped == count else passes
             skipped = 0
@@ -147,50 +113,36 @@ def in_order(instance: NodeInstance, children: Sequence[Compiled], passes: int) 
         if not keep:
             index = skipped = 0
 
-    if trace is not None:
-        trace.follow(lambda: index)
     return tick, halt
 
 
 def default_parallel(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
     """Compile a Parallel with its default thresholds: it ends with the first failure, or when no child is RUNNING."""
     ticks, halts, instances = _calls(children)
-    trace = _trace_functions(instance, children, SUCCESS)
     everyone = tuple(enumerate(ticks))
     left = everyone  # those that have not completed; none where they are to be found
     completed = [False] * len(ticks)
     state = instance.state
 
-    def tick(going_on: int = RUNNING, trace: FunctionsTrace | None = trace) -> int:
+    def tick(going_on: int = RUNNING) -> int:
         nonlocal left
         running = fewer = skipped = False
         if not left:
             left = find_left()
-        whole = left is everyone
-        if trace is not None:
-            trace.marked = 0 if whole else len(everyone)
         for index, child in left:
-            if trace is not None:
-                trace.asked = index
             try:
                 status = child()
                 if status is going_on or status == RUNNING:  # what nearly all say, compared as fast as can be
                     running = True
-                    if trace is not None:
-                        (trace.decide if whole else trace.write_one)(index, RUNNING)
                     continue
                 if status is SUCCESS or status is None:
                     completed[index] = fewer = True
-                    if trace is not None and not whole:
-                        trace.write_one(index, SUCCESS)
                     continue
             except KeyboardInterrupt:
                 raise
             except BaseException as problem:
                 status = problem
             status = SKIPPED if status == SKIPPED else normalize_status(instances[index], status)
-            if trace is not None:
-                (trace.decide if whole else trace.write_one)(index, status)
             if status == SKIPPED:
                 skipped = True
             elif status is FAILURE:
@@ -200,8 +152,6 @@ def default_parallel(instance: NodeInstance, children: Sequence[Compiled]) -> Co
                 return FAILURE
             else:
                 completed[index] = fewer = True
-        if trace is not None and whole:
-            trace.write(len(everyone))
         if running:
             if fewer:
                 left = ()
@@ -225,95 +175,10 @@ def default_parallel(instance: NodeInstance, children: Sequence[Compiled]) -> Co
             completed[:] = [False] * len(completed)
         left = ()
 
-    if trace is not None:
-        trace.follow(lambda: trace.asked)
-    return tick, halt
-
-
-def reactive(instance: NodeInstance, children: Sequence[Compiled], passes: int) -> Compiled:
-    """Compile a ReactiveSequence or ReactiveFallback; see nodes/control.py."""
-    ticks, halts, instances = _calls(children)
-    trace = _trace_functions(instance, children, passes)
-    pairs, count = tuple(enumerate(ticks)), len(ticks)
-    nothing_to_say = SUCCESS if passes is SUCCESS else None
-    interrupts = instance.state.interrupts
-    fails = SUCCESS if passes is FAILURE else FAILURE
-    running = -1  # the child that was RUNNING at the last tick
-    asked = 0  # the child that is being ticked
-
-    def interrupt() -> None:
-        nonlocal running
-        if asked < running:
-            child, running = running, -1
-            halts[child](False)
-
-    # not cells, for what the plain variant doesn't have: cells are saved
-    def tick(
-        trace: FunctionsTrace | None = trace, nothing_to_say: int | None = nothing_to_say, fails: int = fails
-    ) -> int:
-        nonlocal running, asked
-        if running > 0:
-            interrupts.append(interrupt)
-        skipped = 0
-        plain = -1  # the latest child that passed, whose answer has not been normalized
-        status = passes
-        if trace is not None:
-            trace.marked = 0
-        for asked, child in pairs:
-            try:
-                status = child()
-                if status is passes:
-                    plain = asked
-                    continue
-                if status != RUNNING and status != SKIPPED:
-                    status = normalize_status(instances[asked], status)
-            except KeyboardInterrupt:
-                raise
-            except BaseException as problem:
-                status = normalize_status(instances[asked], problem)
-            if trace is not None and status is not nothing_to_say:
-                trace.decide(asked, status)
-            if status is passes:
-                plain = -1
-            elif status == SKIPPED:
-                halts[asked](False)
-                skipped += 1
-            else:
-                break
-        else:
-            if trace is not None:
-                trace.write(count)
-        if interrupts and interrupts[-1] is interrupt:
-            interrupts.pop()
-        if status is fails or status == RUNNING:
-            if asked < running:
-                if status is FAILURE:
-                    instance.pass_on("its guard failed on the way")
-                halts[running](False)
-            running = -1 if status is fails else asked
-            return status
-        running = -1
-        if skipped == count:
-            return SKIPPED
-        if passes is FAILURE and plain >= 0:
-            normalize_status(instances[plain], FAILURE)
-        return passes
-
-    def halt(keep: bool) -> None:
-        nonlocal running
-        for stop in halts:
-            stop(keep)
-        if not keep:
-            running = -1
-
-    if trace is not None:
-        trace.follow(lambda: asked)
     return tick, halt
 
 
 _VARIANTS: dict[Compile, Compile] = {
     control.sequence: partial(in_order, passes=SUCCESS),
     control.fallback: partial(in_order, passes=FAILURE),
-    reactive_sequence: partial(reactive, passes=SUCCESS),
-    reactive_fallback: partial(reactive, passes=FAILURE),
 }

@@ -20,6 +20,7 @@ from btlang.engine.leaves.callables import find_function
 from btlang.engine.resume_path import find_resume_paths, mark_resumable, resume_at_top
 from btlang.engine.saving import move_memory
 from btlang.engine.status_trace import NodeTrace, StatusTrace
+from btlang.support.gc_pause import gc_paused
 from btlang.tree.catalogue import SUBTREE
 
 TYPE_CHECKING = False
@@ -33,6 +34,39 @@ MOST_NODES = 20_000
 """Nodes of the largest tree that is generated: the exchange takes a tick of some microseconds a node."""
 NODES_A_TICK = 300
 """Nodes that are looked at in one tick, unless a region is to be compiled, which takes some milliseconds."""
+
+
+def generate_later(
+    instances: Sequence[NodeInstance],
+    trace: StatusTrace | None,
+    compiled: Compiled,
+    exchange: Callable[[Compiled], None],
+) -> None:
+    """Count the ticks of a tree, and have what ticks and halts it exchanged when there have been enough."""
+    if len(instances) > MOST_NODES:
+        return
+    tick, halt = compiled
+    left = TICKS_BEFORE
+    steps = generate(instances, trace)
+
+    def next_step() -> Compiled | None:
+        with gc_paused:
+            made = next(steps)
+        if made is not None:
+            exchange(made)
+        return made
+
+    def counted_tick() -> int:
+        nonlocal left
+        left -= 1
+        made = next_step() if left < 0 else None
+        return tick() if made is None else made[0]()
+
+    if left:
+        exchange((counted_tick, halt))
+        return
+    while next_step() is None:
+        pass
 
 
 def generate(instances: Sequence[NodeInstance], trace: StatusTrace | None) -> Iterator[Compiled | None]:
@@ -119,14 +153,14 @@ class _Generation:
             return self._remembering(instance, (), lambda: compile_node(instance, [*map(self.close, children)]))
         if not is_asked:
             return made
-        memory = ()
+        memory: tuple[Memory, ...] = ()
         compiled = self.close(made)
         if node.id != SUBTREE:
             _, memory = self.memories.pop()  # that of the highest node comes last
         return self._remembering(instance, memory, lambda: add_conditions(instance, compiled))
 
     def traced(self, trace: NodeTrace, made: Fragment | Compiled) -> Fragment | Compiled:
-        """Trace a node with children: within its region, or around what ticks it, as the root, which counts the ticks."""
+        """Trace a node with children: within its region, or around what ticks it. The root counts the ticks."""
         if not trace.index:
             made = self.close(made)
         if isinstance(made, tuple):
@@ -142,7 +176,9 @@ class _Generation:
         functions = []
         single: list[Fragment | Compiled] = []
         for child in children:
-            if isinstance(child, tuple) and trace is not None:  # a function that tells more than its status is in no row
+            if (
+                isinstance(child, tuple) and trace is not None
+            ):  # a function that tells more than its status is in no row
                 [child] = trace.wrap_functions([child], keeps=True)
             single.append(child)
             functions.append(isinstance(child, tuple) and find_function(child[0]) is not None)
@@ -155,7 +191,8 @@ class _Generation:
                     single[position] = self.close(child)
                 else:
                     left -= child.size
-        return regions.Fragment(instance, self._templates[instance.node.id], regions.find_items(single))
+        items = regions.find_items(single)
+        return self._regions.Fragment(instance, self._templates[instance.node.id], items)
 
     def close(self, made: Fragment | Compiled) -> Compiled:
         """Let a region begin with this node."""

@@ -51,8 +51,6 @@ if TYPE_CHECKING:
 
         def wrap_functions(self, children: Sequence[Compiled], keeps: bool) -> list[Compiled]: ...
 
-        def trace_functions(self, leaves: Sequence[Any], passes: int) -> Any: ...
-
     class Hooks(Protocol):
         """Calls before and behind the ticks of nodes; see Breakpoints in btlang/monitor/breakpoints.py."""
 
@@ -178,7 +176,9 @@ class NodeInstance:
         self.scope = scope
         self.state = state
         self._usual: Fault | None = None
-        self.memory: tuple[Memory, ...] = ()  # what it remembers: functions whose cells hold that, or slots; see saving.py
+        self.memory: tuple[
+            Memory, ...
+        ] = ()  # what it remembers: functions whose cells hold that, or slots; see saving.py
         self.leaf: Compiled | None = None  # what a node without children was compiled to, unless it's a mere function
 
     @property

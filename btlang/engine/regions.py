@@ -51,7 +51,7 @@ class Fragment:
         self.items = items
         self.trace: NodeTrace | None = None
         below = [item.child for item in items if isinstance(item.child, Fragment)]
-        self.height = 1 + max([each.height for each in below], default=0)
+        self.height: int = 1 + max([each.height for each in below], default=0)
         self.size = sum([1 if item.is_wide else item.end - item.first for item in items])
         self.size += sum([each.size for each in below])
 
@@ -150,9 +150,7 @@ class Region:
         self.layouts.append(layout)
         return len(self.layouts) - 1
 
-    def child(
-        self, item: Item, depth: int, level: int, before: Sequence[str] = (), running: str = "r = 2"
-    ) -> Layout:
+    def child(self, item: Item, depth: int, level: int, before: Sequence[str] = (), running: str = "r = 2") -> Layout:
         """Write what ticks a child and leaves its status in `r`; return its layout. `before` are lines that are needed
         before it starts, `running` is what to do at once if it is a generator that goes on.
         """

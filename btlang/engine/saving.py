@@ -9,7 +9,7 @@ In a generated region it is in slots, which have the same names (regions.py): ei
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from types import CellType
 
 from btlang.engine.blackboard import Blackboard

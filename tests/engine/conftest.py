@@ -1,4 +1,4 @@
-"""Each test of the engine runs twice: with closures alone, and with regions that are generated before the first tick."""
+"""Each test of the engine runs twice: with closures alone, and with regions generated before the first tick."""
 
 from __future__ import annotations
 

@@ -110,7 +110,6 @@ def plain_but_parallel(usual: Any, *others: Any) -> Any:
 def singly() -> Iterator[None]:
     """Have each node record its own changes at once."""
     with (
-        patch("btlang.engine.fused._MANY", 10**9),
         patch("btlang.engine.compile.choose_compiler", plain_but_parallel),
         patch.object(NodeTrace, "_trace_tick", one_by_one),
         patch.object(NodeTrace, "_trace_function", function_by_itself),

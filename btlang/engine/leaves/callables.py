@@ -121,10 +121,9 @@ class GeneratorLeaf:
     def ended(self, problem: BaseException) -> int:
         """Return the status if this has ended the generator."""
         self.send = None
-        returned = isinstance(problem, StopIteration)
-        return self._completed(
-            status_of(self.instance, problem.value) if returned else fail_with(self.instance, problem)
-        )
+        if isinstance(problem, StopIteration):
+            return self._completed(status_of(self.instance, problem.value))
+        return self._completed(fail_with(self.instance, problem))
 
     def _completed(self, status: int) -> int:
         return status if self.trace is None else self.trace.ended(status)

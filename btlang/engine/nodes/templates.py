@@ -11,27 +11,31 @@ the slots alone.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
 from functools import partial
-from sys import exc_info
 
-from btlang.engine.instance import Fault, NodeInstance
+from btlang.engine.instance import Fault
 from btlang.engine.leaves.callables import find_status
 from btlang.engine.nodes.decorators import NOT_THIS_TIME, WAS_TRUE
+from btlang.engine.nodes.rows import (
+    AGAIN,
+    caught,
+    caught_in,
+    end_at_answer,
+    join_functions,
+    order_functions,
+    react_functions,
+    write_row,
+)
 from btlang.engine.regions import Resumed, halt_part, halt_row
-from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
+from btlang.engine.status import FAILURE, RUNNING, SUCCESS
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, TypeAlias
 
-    from btlang.engine.row_trace import RowTrace
-    from btlang.engine.regions import Emit, Fragment, Item, Layout, Region, Slots
+    from btlang.engine.regions import Emit, Fragment, Layout, Region, Slots
 
     Layouts: TypeAlias = dict[int, Layout]
-
-_AGAIN = object()
-"""In place of an answer: the function hasn't been asked."""
 
 
 def in_order(region: Region, node: Fragment, depth: int, level: int, passes: int) -> Layout:
@@ -46,11 +50,11 @@ def in_order(region: Region, node: Fragment, depth: int, level: int, passes: int
             region.add(inside, f"if {position} < {item.end}:")
             inside += 1
         if isinstance(item.child, list):
-            row = _functions(region, item, inside, passes, f"{position} > {item.first}", position)
+            row = write_row(region, item, inside, passes, f"{position} > {item.first}", position)
             region.add(
                 inside,
                 f"if x != {item.end}:",
-                *_decide(region, item, row, passes, f"S[{at}] = S[{at + 1}] = 0"),
+                *end_at_answer(region, item, row, passes, f"S[{at}] = S[{at + 1}] = 0"),
                 f" r = order_functions(S, {at}, {item.first}, {row}, x, r, {passes})",
                 f" if r is not {passes}: break",
             )
@@ -76,123 +80,6 @@ def in_order(region: Region, node: Fragment, depth: int, level: int, passes: int
         "break",
     )
     return _halt_in_order, at, children
-
-
-def _functions(region: Region, item: Item, depth: int, passes: int, resumed: str, begin: str) -> int:
-    """Write what calls functions in a row, until one gives another answer than the plain one that passes. `x` is then
-    its position, and `r` the answer; else `x` is the end. Returns the slot of their instances; their trace is behind it,
-    and they before it. `resumed` says whether the row was left at a function, whose position is `begin`.
-    """
-    assert isinstance(item.child, list)
-    leaves = item.child
-    calls = [leaf.call for leaf in leaves]
-    first = len(region.values)
-    region.values += [tuple(calls)] if item.is_wide else calls
-    row = region.slot(tuple([leaf.instance for leaf in leaves]))
-    region.slot(region.trace_row(leaves, passes))
-    if resumed:
-        region.add(depth, f"if {resumed}: x, r = {begin}, AGAIN", "else:")
-        depth += 1
-    other = "is not True and r is not None" if passes else "is not False"
-    all_passed = [f"x = {item.end}"]
-    if not passes:  # the failure of the last one may be that of the node
-        all_passed.append(f"S[0].fault = S[{row}][-1]")
-    if region.trace is not None:
-        all_passed.append(f"S[{row + 1}].passed(0, {len(leaves)})")
-    if item.is_wide:
-        region.add(depth, f"x = {item.first - 1}", "try:")
-        region.add(depth + 1, f"for f in S[{first}]:", " x += 1", f" if (r := f()) {other}: break")
-        region.add(depth + 1, f"else: {'; '.join(all_passed)}")
-        region.add(depth, "except: r = caught()")
-        return row
-    region.add(depth, "try:", " while True:")
-    line = region.next_line
-    for number in range(len(leaves)):
-        region.add(depth + 2, f"if (r := S[{first + number}]()) {other}: x = {item.first + number}; break")
-    region.add(depth + 2, *all_passed, "break")
-    region.add(depth, f"except: r, x = caught_in({line - item.first})")
-    return row
-
-
-def caught() -> BaseException:
-    """Return the exception that is being handled. Raises KeyboardInterrupt."""
-    problem = exc_info()[1]
-    if isinstance(problem, KeyboardInterrupt):
-        raise
-    assert problem is not None
-    return problem
-
-
-def caught_in(line: int) -> tuple[BaseException, int]:
-    """Return the exception that is being handled, and how many lines behind a line it was raised: each function of a
-    row has a line, and to note at each tick which of them is called would take time.
-    """
-    problem = caught()
-    assert problem.__traceback__ is not None
-    return problem, problem.__traceback__.tb_lineno - line
-
-
-def _decide(region: Region, item: Item, row: int, passes: int, then: str) -> list[str]:
-    """Return the lines for a plain answer of a function that isn't the one that passes: the node ends with it."""
-    at = f"x - {item.first}" if item.first else "x"
-    lines = [" if r is True or r is None:", "  r = True"]
-    if passes:
-        lines = [" if r is False:", f"  S[0].fault = S[{row}][{at}]"]
-    if region.trace is not None:
-        lines.append(f"  S[{row + 1}].decided({at}, r)")
-    return [*lines, f"  {then}", "  break"]
-
-
-def order_functions(
-    slots: Slots, at: int, begin: int, row: int, position: int, answer: object, passes: int
-) -> int:
-    """Go on in a row of functions at a position, from an answer that isn't plain. Returns `passes` if all have."""
-    for position, status in _statuses(slots, begin, row, position, answer, passes):
-        if status == RUNNING:
-            slots[at] = position
-            return RUNNING
-        if status == SKIPPED:
-            slots[at + 1] += 1
-        elif status is not passes:
-            slots[at] = slots[at + 1] = 0
-            return status
-    return passes
-
-
-def _row(slots: Slots, row: int) -> tuple[Sequence[Callable[[], object]], tuple[NodeInstance, ...], RowTrace | None]:
-    """Return the functions of a row, their instances and their trace."""
-    instances, before = slots[row], slots[row - 1]
-    return before if before.__class__ is tuple else slots[row - len(instances) : row], instances, slots[row + 1]
-
-
-def _statuses(
-    slots: Slots, begin: int, row: int, position: int, answer: object, passes: int
-) -> Iterator[tuple[int, int]]:
-    """Yield positions and statuses of the functions of a row, from one that gave an answer that isn't plain."""
-    calls, instances, trace = _row(slots, row)
-    behind = position - begin
-    if behind and answer is not _AGAIN:
-        if trace is not None:
-            trace.passed(0, behind)
-        if passes is FAILURE:
-            slots[0].fault = instances[behind - 1]
-    for number in range(behind, len(instances)):
-        if answer is _AGAIN:
-            answer = _ask(calls[number])
-        status = find_status(instances[number], answer)
-        if trace is not None:
-            trace.answered(number, status)
-        yield begin + number, status
-        answer = _AGAIN
-
-
-def _ask(function: Callable[[], object]) -> object:
-    try:
-        return function()
-    except KeyboardInterrupt:
-        raise
-    except BaseException as problem:
-        return problem
 
 
 def skip(slots: Slots, layout: Layout, count: int) -> None:
@@ -222,11 +109,11 @@ def reactive(region: Region, node: Fragment, depth: int, level: int, passes: int
     region.add(depth, f"S[{skipped}] = 0", "while True:")
     for item in node.items:
         if isinstance(item.child, list):
-            row = _functions(region, item, depth + 1, passes, "", "")
+            row = write_row(region, item, depth + 1, passes, "", "")
             region.add(
                 depth + 1,
                 f"if x != {item.end}:",
-                *_decide(region, item, row, passes, f"S[{at + 1}] = x"),
+                *end_at_answer(region, item, row, passes, f"S[{at + 1}] = x"),
                 f" r = react_functions(S, {at}, {item.first}, {row}, x, r, {passes})",
                 f" if r is not {passes}: break",
             )
@@ -252,19 +139,6 @@ def reactive(region: Region, node: Fragment, depth: int, level: int, passes: int
         f"elif r is {not passes} or S[{at + 1}] != S[{at}]: end_reactive(S, L[{region.layout(own)}], r)",
     )
     return own
-
-
-def react_functions(
-    slots: Slots, at: int, begin: int, row: int, position: int, answer: object, passes: int
-) -> int:
-    """Go on in a row of functions at a position, from an answer that isn't plain. Returns `passes` if all have."""
-    for position, status in _statuses(slots, begin, row, position, answer, passes):
-        if status == SKIPPED:
-            slots[at + 2] += 1
-        elif status is not passes:
-            slots[at + 1] = position
-            return status
-    return passes
 
 
 def end_reactive(slots: Slots, layout: Layout, status: int) -> None:
@@ -322,12 +196,12 @@ def parallel(region: Region, node: Fragment, depth: int, level: int) -> Layout:
         inside = depth + 1
         done = f"{completed}[{item.first}] = {fewer} = True"
         if isinstance(item.child, list):
-            row = _functions(region, item, inside, SUCCESS, some, str(item.first))
+            row = write_row(region, item, inside, SUCCESS, some, str(item.first))
             region.add(
                 inside,
                 f"if x == {item.end}: r = True",
                 "else:",
-                *_decide(region, item, row, SUCCESS, "pass"),
+                *end_at_answer(region, item, row, SUCCESS, "pass"),
                 f" r, {fewer} = join_functions(S, {at}, {item.first}, {row}, x, r), True",
             )
             children[item.first] = halt_row, row + 1, None
@@ -361,35 +235,6 @@ def parallel(region: Region, node: Fragment, depth: int, level: int) -> Layout:
     )
     region.add(depth, f"if r is False: end_parallel(S, L[{number}])")
     return own
-
-
-def join_functions(slots: Slots, at: int, begin: int, row: int, position: int, answer: object) -> int:
-    """Go on among functions at a position, from an answer that isn't plain. Returns FAILURE if one failed, else RUNNING
-    or SKIPPED if one is, else SUCCESS. Those before were called in this tick if there is an answer.
-    """
-    completed = slots[at]
-    calls, instances, trace = _row(slots, row)
-    if answer is not _AGAIN and position > begin:
-        completed[begin:position] = [True] * (position - begin)
-        if trace is not None:
-            trace.passed(0, position - begin)
-    result = SUCCESS
-    for number in range(position - begin, len(instances)):
-        if answer is _AGAIN:
-            if completed[begin + number]:
-                continue
-            answer = _ask(calls[number])
-        status = find_status(instances[number], answer)
-        answer = _AGAIN
-        if trace is not None:
-            trace.answered(number, status)
-        if status is FAILURE:
-            return FAILURE
-        if status is SUCCESS:
-            completed[begin + number] = True
-        elif status == RUNNING or result is SUCCESS:
-            result = status
-    return result
 
 
 def end_parallel(slots: Slots, layout: Layout) -> None:
@@ -472,11 +317,12 @@ TEMPLATES: dict[str, Emit] = {
 """The template of each node that has one, by its id. None of them reads a port."""
 NAMES: dict[str, Any] = {
     "__builtins__": {},
-    "AGAIN": _AGAIN,
+    "AGAIN": AGAIN,
     **{
         each.__name__: each
         for each in (
-            caught, caught_in, end_parallel, find_status, halt_part, end_reactive, join_functions, order_functions, react_functions, skip,
+            caught, caught_in, end_parallel, end_reactive, find_status, halt_part, join_functions, order_functions,
+            react_functions, skip,
         )
     },
 }  # fmt: skip
