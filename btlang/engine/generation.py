@@ -160,9 +160,7 @@ class _Generation:
         return self._remembering(instance, memory, lambda: add_conditions(instance, compiled))
 
     def traced(self, trace: NodeTrace, made: Fragment | Compiled) -> Fragment | Compiled:
-        """Trace a node with children: within its region, or around what ticks it. The root counts the ticks."""
-        if not trace.index:
-            made = self.close(made)
+        """Trace a node with children: within its region, or around what ticks it."""
         if isinstance(made, tuple):
             return trace.wrap(made)
         made.trace = trace

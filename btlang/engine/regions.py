@@ -181,7 +181,9 @@ class Region:
         return _halt_pair, at + 1, None
 
     def node(self, node: Fragment, depth: int, level: int) -> Layout:
-        """Write what ticks a node, and traces its status; return its layout."""
+        """Write what ticks a node, and traces its status; return its layout. The root counts the ticks."""
+        if node.trace is not None and not node.trace.index:
+            self.add(depth, f"S[{self.slot(node.trace.trace.begin_tick)}]()")
         layout = node.emit(self, node, depth, level)
         trace = node.trace
         if trace is None:

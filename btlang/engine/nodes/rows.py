@@ -59,7 +59,7 @@ def write_row(region: Region, item: Item, depth: int, passes: int, resumed: str,
     return row
 
 
-def end_at_answer(region: Region, item: Item, row: int, passes: int, then: str) -> list[str]:
+def end_at_answer(region: Region, item: Item, row: int, passes: int, *then: str) -> list[str]:
     """Return the lines for a plain answer of a function that isn't the one that passes: the node ends with it."""
     at = f"x - {item.first}" if item.first else "x"
     lines = [" if r is True or r is None:", "  r = True"]
@@ -67,7 +67,7 @@ def end_at_answer(region: Region, item: Item, row: int, passes: int, then: str) 
         lines = [" if r is False:", f"  S[0].fault = S[{row}][{at}]"]
     if region.trace is not None:
         lines.append(f"  S[{row + 1}].decided({at}, r)")
-    return [*lines, f"  {then}", "  break"]
+    return [*lines, *[f"  {line}" for line in then], "  break"]
 
 
 def caught() -> BaseException:

@@ -51,14 +51,14 @@ def in_order(region: Region, node: Fragment, depth: int, level: int, passes: int
             inside += 1
         if isinstance(item.child, list):
             row = write_row(region, item, inside, passes, f"{position} > {item.first}", position)
+            children[item.first] = halt_row, row + 1, None
             region.add(
                 inside,
                 f"if x != {item.end}:",
-                *end_at_answer(region, item, row, passes, f"S[{at}] = S[{at + 1}] = 0"),
+                *end_at_answer(region, item, row, passes, *([f"S[{at}] = S[{at + 1}] = 0"] if item.first else [])),
                 f" r = order_functions(S, {at}, {item.first}, {row}, x, r, {passes})",
                 f" if r is not {passes}: break",
             )
-            children[item.first] = halt_row, row + 1, None
             continue
         children[item.first] = layout = region.child(
             item, inside, level + 1, [f"S[{at}] = {item.first}"], "r = 2; break"
@@ -70,8 +70,9 @@ def in_order(region: Region, node: Fragment, depth: int, level: int, passes: int
             " if r == 2: break",
             f" skip(S, L[{region.layout(layout)}], {at + 1})",
         )
+    is_row = len(node.items) == 1 and isinstance(node.items[0].child, list)  # of which nothing changed if all passed
     region.add(
-        depth + 1,
+        depth + 1 + is_row,
         f"r = {passes}",
         f"if S[{at + 1}]:",
         f" if S[{at + 1}] == {node.count}: r = 3",
@@ -79,6 +80,8 @@ def in_order(region: Region, node: Fragment, depth: int, level: int, passes: int
         f"S[{at}] = 0",
         "break",
     )
+    if is_row:
+        region.add(depth + 1, f"r = {passes}", "break")
     return _halt_in_order, at, children
 
 
@@ -201,7 +204,7 @@ def parallel(region: Region, node: Fragment, depth: int, level: int) -> Layout:
                 inside,
                 f"if x == {item.end}: r = True",
                 "else:",
-                *end_at_answer(region, item, row, SUCCESS, "pass"),
+                *end_at_answer(region, item, row, SUCCESS),
                 f" r, {fewer} = join_functions(S, {at}, {item.first}, {row}, x, r), True",
             )
             children[item.first] = halt_row, row + 1, None
