@@ -103,6 +103,8 @@ def generate(instances: Sequence[NodeInstance], trace: StatusTrace | None) -> It
     for instance, memory in generation.memories:
         move_memory(instance.memory, memory)
         instance.memory = memory
+    for instance in instances:
+        instance.leaf = None  # which regions have now
     yield compiled
 
 

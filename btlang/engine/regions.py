@@ -15,7 +15,7 @@ from types import CodeType, FunctionType
 
 from btlang.engine.changes import REACHED
 from btlang.engine.instance import EngineState, NodeInstance
-from btlang.engine.leaves.callables import FunctionLeaf, GeneratorLeaf, find_function
+from btlang.engine.leaves.callables import ClassLeaf, FunctionLeaf, GeneratorLeaf, find_function
 from btlang.engine.row_trace import RowTrace
 from btlang.engine.saving import SlotMemory
 from btlang.engine.status import SUCCESS
@@ -87,11 +87,11 @@ def find_size(functions: Sequence[bool]) -> int:
 
 
 class Resumed:
-    """A generator leaf, with what halts it, which may be traced."""
+    """A leaf that is a generator or an object, with what halts it, which may be traced."""
 
     __slots__ = ("halt", "leaf")
 
-    def __init__(self, leaf: GeneratorLeaf, halt: Halt) -> None:
+    def __init__(self, leaf: ClassLeaf | GeneratorLeaf, halt: Halt) -> None:
         self.leaf = leaf
         self.halt = halt
 
@@ -105,7 +105,9 @@ def find_items(children: list[Fragment | Compiled]) -> list[Item]:
             continue
         function, leaf = find_function(child[0]), getattr(child[0], "__self__", None)
         if function is None:
-            items.append(Item(position, Resumed(leaf, child[1]) if isinstance(leaf, GeneratorLeaf) else child))
+            items.append(
+                Item(position, Resumed(leaf, child[1]) if leaf.__class__ in (ClassLeaf, GeneratorLeaf) else child)
+            )
         elif items and isinstance(items[-1].child, list):
             items[-1].child.append(function)
             items[-1].end += 1
@@ -152,7 +154,7 @@ class Region:
 
     def child(self, item: Item, depth: int, level: int, before: Sequence[str] = (), running: str = "r = 2") -> Layout:
         """Write what ticks a child and leaves its status in `r`; return its layout. `before` are lines that are needed
-        before it starts, `running` is what to do at once if it is a generator that goes on.
+        before it starts, `running` is what to do at once if it goes on, as a generator or an object.
         """
         child = item.child
         if isinstance(child, Resumed):
@@ -164,7 +166,7 @@ class Region:
                 f"if send is None: {'; '.join([*before, f'r = S[{at}].tick()'])}",
                 "else:",
                 " try:",
-                f"  if (r := send(None)) is None: {running}",
+                f"  if (r := send({'None' if child.leaf.__class__ is GeneratorLeaf else ''})) is None: {running}",
                 f"  else: r = S[{at}].yielded(r)",
                 f" except: r = S[{at}].ended(caught())",
             )
