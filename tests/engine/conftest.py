@@ -3,14 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 from unittest.mock import patch
 
 import pytest
+from hypothesis import strategies as st
 
 from btlang.engine import generation
 
 NEVER = 1 << 60
 """So many ticks before regions are generated."""
+SIZES = st.sampled_from(({}, {"DEEPEST": 2, "LARGEST": 4, "WIDE": 2}, {"WIDE": 2}, {"LARGEST": 8}))
+"""Limits of regions, so that small trees have several of them and rows of functions in a loop."""
+
+
+def limited(sizes: dict[str, int]) -> Any:
+    """Limits regions."""
+    return patch.multiple("btlang.engine.regions", **sizes)
 
 
 @pytest.fixture(autouse=True, scope="module", params=[NEVER, 0], ids=["closures", "generated"])

@@ -22,7 +22,7 @@ from btlang.engine.status import IDLE
 from btlang.tree.node import Node
 from tests.profiles import searches
 
-from .conftest import NEVER
+from .conftest import NEVER, SIZES, limited
 from .random_trees import BUSY, TREES, Drawn, letters
 from .reference import Reference
 from .reference_board import Board
@@ -37,15 +37,17 @@ ENGINES = st.lists(st.sampled_from((NEVER, 0, 1, 2)), min_size=1, max_size=4)
 """After how many ticks the first engine generates its regions, the second, and so on, and again from the first."""
 
 
-@example(LEFT_RUNNING, "ttt", False, True, [NEVER])
-@example(LEFT_RUNNING, "ttt", False, True, [0])
+@example(LEFT_RUNNING, "ttt", False, True, [NEVER], {})
+@example(LEFT_RUNNING, "ttt", False, True, [0], {})
 @searches(150, 20000)
-@given(TREES | BUSY, letters("ttttthperm", 3, 12), st.booleans(), st.booleans(), ENGINES)
-def test_engine_equals_reference(shape: Node, orders: str, watched: bool, fused: bool, engines: list[int]) -> None:
+@given(TREES | BUSY, letters("ttttthperm", 3, 12), st.booleans(), st.booleans(), ENGINES, SIZES)
+def test_engine_equals_reference(
+    shape: Node, orders: str, watched: bool, fused: bool, engines: list[int], sizes: dict[str, int]
+) -> None:
     drawn, world = Drawn(shape), World()
     drawn.bind(world)
     variants = nullcontext() if fused else patch("btlang.engine.compile.choose_compiler", lambda usual, *_: usual)
-    with variants:
+    with variants, limited(sizes):
         check(drawn, world, orders, watched, engines if fused else [NEVER])  # each Parallel saves other things
 
 

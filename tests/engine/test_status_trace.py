@@ -29,7 +29,7 @@ from btlang.run.snapshot import RunState, Shape
 from btlang.tree.node import Node, Tree
 from tests.profiles import searches
 
-from .conftest import NEVER
+from .conftest import NEVER, SIZES, limited
 from .random_trees import BUSY, TREES, Drawn, letters
 from .scripted import World, n
 
@@ -118,13 +118,17 @@ def singly() -> Iterator[None]:
 
 
 @searches(150, 20000)
-@given(TREES | BUSY, letters("tttttthperm", 3, 12), st.sampled_from((NEVER, 0, 2)))
-def test_changes_together_are_those_one_by_one(shape: Node, orders: str, ticks_before: int) -> None:
-    together = Watched(shape, ticks_before)
+@given(TREES | BUSY, letters("tttttthperm", 3, 12), st.sampled_from((NEVER, 0, 2)), SIZES)
+def test_changes_together_are_those_one_by_one(
+    shape: Node, orders: str, ticks_before: int, sizes: dict[str, int]
+) -> None:
+    with limited(sizes):
+        together = Watched(shape, ticks_before)
     with singly():
         alone = Watched(shape, NEVER)
     for order in orders:
-        together.obey(order)
+        with limited(sizes):
+            together.obey(order)
         with singly():
             alone.obey(order)
         assert together.changes == alone.changes

@@ -77,8 +77,8 @@ def function_leaf(instance: NodeInstance, call: Callable[..., Any], stored: Stor
 class GeneratorLeaf:
     """A leaf that runs a generator function; `stored` returns the values that are read at each start.
 
-    A class and not two closures as most nodes are: there are many of them, and each would need six cells. `send` goes on
-    with what runs, and is None if nothing does; regions (regions.py) call it themselves, and hand on what isn't None.
+    A class and not two closures as most nodes are: there are many of them, and each would need six cells. `send` goes
+    on with what runs, and is None if nothing does; regions (regions.py) call it, and hand on what isn't None.
     """
 
     __slots__ = ("call", "instance", "send", "stored", "trace")
