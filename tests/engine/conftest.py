@@ -9,11 +9,12 @@ from unittest.mock import patch
 import pytest
 from hypothesis import strategies as st
 
-from btlang.engine import generation
+from btlang.engine import generation, regions
 
 NEVER = 1 << 60
 """So many ticks before regions are generated."""
-SIZES = st.sampled_from(({}, {"DEEPEST": 2, "LARGEST": 4, "WIDE": 2}, {"WIDE": 2}, {"LARGEST": 8}))
+USUAL = {"DEEPEST": regions.DEEPEST}
+SIZES = st.sampled_from((USUAL, {"DEEPEST": 2, "LARGEST": 4, "WIDE": 2}, {"WIDE": 2}, {"LARGEST": 8}))
 """Limits of regions, so that small trees have several of them and rows of functions in a loop."""
 
 

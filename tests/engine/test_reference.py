@@ -22,7 +22,7 @@ from btlang.engine.status import IDLE
 from btlang.tree.node import Node
 from tests.profiles import searches
 
-from .conftest import NEVER, SIZES, limited
+from .conftest import NEVER, SIZES, USUAL, limited
 from .random_trees import BUSY, TREES, Drawn, letters
 from .reference import Reference
 from .reference_board import Board
@@ -37,8 +37,8 @@ ENGINES = st.lists(st.sampled_from((NEVER, 0, 1, 2)), min_size=1, max_size=4)
 """After how many ticks the first engine generates its regions, the second, and so on, and again from the first."""
 
 
-@example(LEFT_RUNNING, "ttt", False, True, [NEVER], {})
-@example(LEFT_RUNNING, "ttt", False, True, [0], {})
+@example(LEFT_RUNNING, "ttt", False, True, [NEVER], USUAL)
+@example(LEFT_RUNNING, "ttt", False, True, [0], USUAL)
 @searches(150, 20000)
 @given(TREES | BUSY, letters("ttttthperm", 3, 12), st.booleans(), st.booleans(), ENGINES, SIZES)
 def test_engine_equals_reference(
