@@ -48,29 +48,63 @@ def generate_later(
     tick, halt = compiled
     left = TICKS_BEFORE
     steps = generate(instances, trace)
+    made: Generated | None = None
 
-    def next_step() -> Compiled | None:
-        with gc_paused:
-            made = next(steps)
-        if made is not None:
-            exchange(made)
-        return made
+    def step() -> bool:
+        """Go on with the regions; return whether they tick the tree from now on."""
+        nonlocal made
+        try:
+            with gc_paused:
+                made = next(steps)
+            if made is not None:
+                exchange(made.compiled)
+                made.take_over()
+        except BaseException:  # KeyboardInterrupt, in any line: all of it is done, or nothing
+            exchange(compiled if made is None else made.compiled)
+            if made is not None:
+                made.take_over()
+            raise
+        return made is not None
 
     def counted_tick() -> int:
         nonlocal left
         left -= 1
-        made = next_step() if left < 0 else None
-        return tick() if made is None else made[0]()
+        return made.compiled[0]() if left < 0 and step() and made is not None else tick()
 
     if left:
         exchange((counted_tick, halt))
         return
-    while next_step() is None:
+    while not step():
         pass
 
 
-def generate(instances: Sequence[NodeInstance], trace: StatusTrace | None) -> Iterator[Compiled | None]:
-    """Generate all nodes of a tree. Yields None after each step, and at last what ticks and halts the tree."""
+class Generated:
+    """What ticks and halts a tree by its regions, and what their nodes will remember from then on."""
+
+    __slots__ = ("_instances", "_memories", "compiled")
+
+    def __init__(
+        self,
+        compiled: Compiled,
+        instances: Sequence[NodeInstance],
+        memories: list[tuple[NodeInstance, tuple[Memory, ...]]],
+    ) -> None:
+        self.compiled = compiled
+        self._instances = instances
+        self._memories = memories
+        for instance, memory in memories:
+            move_memory(instance.memory, memory)
+
+    def take_over(self) -> None:
+        """Let what the nodes remember be found in the regions."""
+        for instance, memory in self._memories:
+            instance.memory = memory
+        for instance in self._instances:
+            instance.leaf = None  # which the regions have
+
+
+def generate(instances: Sequence[NodeInstance], trace: StatusTrace | None) -> Iterator[Generated | None]:
+    """Generate all nodes of a tree. Yields None after each step, and at last the whole."""
     generation = _Generation(trace)
     waiting: list[Fragment | Compiled] = []  # as in compile_instances, which this follows
     around = find_resume_paths(instances, waits)
@@ -100,12 +134,7 @@ def generate(instances: Sequence[NodeInstance], trace: StatusTrace | None) -> It
             yield None
     [compiled] = waiting
     assert isinstance(compiled, tuple)
-    for instance, memory in generation.memories:
-        move_memory(instance.memory, memory)
-        instance.memory = memory
-    for instance in instances:
-        instance.leaf = None  # which regions have now
-    yield compiled
+    yield Generated(compiled, instances, generation.memories)
 
 
 class _Generation:
@@ -208,7 +237,9 @@ class _Generation:
     ) -> Compiled:
         """Compile a node that is still being ticked as it was: note what it will remember apart from that."""
         before, instance.memory = instance.memory, memory
-        compiled = compile()
-        self.memories.append((instance, instance.memory))
-        instance.memory = before
+        try:
+            compiled = compile()
+            self.memories.append((instance, instance.memory))
+        finally:
+            instance.memory = before
         return compiled

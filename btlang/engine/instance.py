@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from typing import Any, Protocol, TypeAlias
 
     from btlang.engine.leaves.leaf import LeafSignature
-    from btlang.engine.saving import SlotMemory
+    from btlang.engine.slot_memory import SlotMemory
 
     Tick: TypeAlias = Callable[[], int]
     Halt: TypeAlias = Callable[[bool], None]

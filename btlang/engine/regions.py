@@ -17,7 +17,7 @@ from btlang.engine.changes import REACHED
 from btlang.engine.instance import EngineState, NodeInstance
 from btlang.engine.leaves.callables import ClassLeaf, FunctionLeaf, GeneratorLeaf, find_function
 from btlang.engine.row_trace import RowTrace
-from btlang.engine.saving import SlotMemory
+from btlang.engine.slot_memory import SlotMemory
 from btlang.engine.status import SUCCESS
 
 TYPE_CHECKING = False
@@ -37,7 +37,7 @@ LARGEST = 60
 """Children in a region. Long functions are compiled slowly, and a step of generation is one of them."""
 WIDE = 16
 """Functions in a row from which on a loop calls them: each by itself would be faster, and is more code."""
-_MOST_SHAPES = 2000
+_MOST_SHAPES = 500
 
 
 class Fragment:

@@ -15,6 +15,7 @@ from types import CellType
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.instance import Fault, NodeInstance
 from btlang.engine.leaves.leaf import REFUSED, reason_text
+from btlang.engine.slot_memory import Slot, SlotMemory
 from btlang.engine.status import IDLE, RUNNING
 
 TYPE_CHECKING = False
@@ -28,39 +29,6 @@ FORMAT = 1
 """Of what is saved; it grows when a node remembers something else."""
 _DEEPEST = 40  # lists in each other, each of which is one in an object: see btlang.text.json_text.DEEPEST
 _PLAIN = (bool, int, float, str, type(None))
-
-
-class SlotMemory:
-    """What a node of a generated region remembers, in slots one behind the other; see regions.py."""
-
-    __slots__ = ("_first", "_slots", "names")
-
-    def __init__(self, slots: list[Any], first: int, names: tuple[str, ...]) -> None:
-        self._slots = slots
-        self._first = first
-        self.names = names
-
-    def cells(self) -> dict[str, Slot]:
-        """Return its slots by their names."""
-        return {name: Slot(self._slots, self._first + number) for number, name in enumerate(self.names)}
-
-
-class Slot:
-    """A slot, used as the cell of a closure."""
-
-    __slots__ = ("_at", "_slots")
-
-    def __init__(self, slots: list[Any], at: int) -> None:
-        self._slots = slots
-        self._at = at
-
-    @property
-    def cell_contents(self) -> Any:
-        return self._slots[self._at]
-
-    @cell_contents.setter
-    def cell_contents(self, value: Any) -> None:
-        self._slots[self._at] = value
 
 
 class SaveError(Exception):

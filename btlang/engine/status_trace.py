@@ -1,8 +1,9 @@
 """Traces of statuses, which report changes. They are compiled in only if somebody listens.
 
 What completes within a tick, as nearly all nodes do, only writes its status into an array, and in a generated region
-functions in a row write theirs together (row_trace.py). `StatusTrace.settle` compares the array with the statuses before, for all nodes at once. So a
-change costs a few dozen nanoseconds; what takes time, is halted or is repeated costs more.
+functions in a row write theirs together (row_trace.py). `StatusTrace.settle` compares the array with the statuses
+before, for all nodes at once. So a change costs a few dozen nanoseconds; what takes time, is halted or is repeated
+costs more.
 """
 
 from __future__ import annotations

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import io
 import keyword
+import pkgutil
 import tokenize
 from collections.abc import Iterator
 from unittest.mock import patch
@@ -121,6 +122,28 @@ def test_a_very_large_tree_and_one_with_hooks_are_not_generated(made: dict[str, 
         with patch.object(generation, "MOST_NODES", 2):
             assert world.engine(root).tick() == SUCCESS
     assert not made
+
+
+@pytest.mark.parametrize("interrupted", ["regions.make_region", "generation.Generated.take_over"])
+def test_ctrl_c_while_it_is_generated_leaves_one_or_the_other(interrupted: str) -> None:
+    world = World()
+    root = n("RunOnce", n("Sequence", world.fn("A", "s"), world.cls("B", "rrrrs")), then_skip="false")
+    with patch.object(generation, "TICKS_BEFORE", 1):
+        engine = world.engine(root)
+    engine.tick()
+    target = f"btlang.engine.{interrupted}"
+    module, _, name = target.rpartition(".")
+    usual = pkgutil.resolve_name(target)
+
+    def interrupt(*arguments: object) -> object:
+        setattr(pkgutil.resolve_name(module), name, usual)
+        raise KeyboardInterrupt
+
+    with patch(target, interrupt), pytest.raises(KeyboardInterrupt):
+        world.ticks(engine, 4)
+    assert world.log[-1] == "B.halt"
+    assert world.ticks(engine, 6).lstrip("r").strip("s") == ""
+    assert engine.save()["nodes"]["0"][0]["result"] is True
 
 
 @pytest.mark.parametrize("watched", [False, True])
