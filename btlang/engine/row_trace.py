@@ -9,6 +9,8 @@ from btlang.engine.instance import NodeInstance
 from btlang.engine.status import IDLE, RUNNING
 from btlang.engine.status_trace import NodeTrace, StatusTrace
 
+_BYTES = [bytes([status]) for status in range(2 * REACHED)]
+
 
 class RowTrace:
     """The trace of functions in a row. Each of them passes, or has another status."""
@@ -21,6 +23,11 @@ class RowTrace:
         self._instances = instances
         self._passed = bytes([passes]) * len(instances)
         self._reached = bytes([passes | REACHED]) * len(instances)
+
+    @property
+    def whole(self) -> tuple[slice, bytes, bytes]:
+        """The places of all, and what is there if they have passed: before they are reached again, and then."""
+        return slice(self._first, self._first + len(self._passed)), self._passed, self._reached
 
     def passed(self, begin: int, end: int) -> None:
         """Write that those from one number up to another have passed."""
@@ -35,6 +42,11 @@ class RowTrace:
 
     def decided(self, number: int, status: int) -> None:
         """Write that all before one have passed, and its status."""
+        now, first = self._trace.now, self._first
+        behind = first + number + 1
+        if now[first:behind] == self._passed[:number] + _BYTES[status]:  # as before, and not reached so far
+            now[first:behind] = self._reached[:number] + _BYTES[status | REACHED]
+            return
         if number:
             self.passed(0, number)
         self.answered(number, status)

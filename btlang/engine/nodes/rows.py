@@ -34,7 +34,8 @@ def write_row(region: Region, item: Item, depth: int, passes: int, resumed: str,
     first = len(region.values)
     region.values += [tuple(calls)] if item.is_wide else calls
     row = region.slot(tuple([leaf.instance for leaf in leaves]))
-    region.slot(region.trace_row(leaves, passes))
+    trace = region.trace_row(leaves, passes)
+    region.slot(trace)
     if resumed:
         region.add(depth, f"if {resumed}: x, r = {begin}, AGAIN", "else:")
         depth += 1
@@ -42,12 +43,14 @@ def write_row(region: Region, item: Item, depth: int, passes: int, resumed: str,
     all_passed = [f"x = {item.end}"]
     if not passes:  # the failure of the last one may be that of the node
         all_passed.append(f"S[0].fault = S[{row}][-1]")
-    if region.trace is not None:
-        all_passed.append(f"S[{row + 1}].passed(0, {len(leaves)})")
+    if trace is not None:
+        places, before, after = (region.slot(each) for each in trace.whole)
+        same = f"if W[S[{places}]] == S[{before}]: W[S[{places}]] = S[{after}]"
+        all_passed += [same, f"else: S[{row + 1}].passed(0, {len(leaves)})"]
     if item.is_wide:
         region.add(depth, f"x = {item.first - 1}", "try:")
         region.add(depth + 1, f"for f in S[{first}]:", " x += 1", f" if (r := f()) {other}: break")
-        region.add(depth + 1, f"else: {'; '.join(all_passed)}")
+        region.add(depth + 1, "else:", *[f" {line}" for line in all_passed])
         region.add(depth, "except: r = caught()")
         return row
     region.add(depth, "try:", " while True:")
