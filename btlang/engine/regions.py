@@ -9,7 +9,6 @@ becomes code: what is generated holds the words of the templates and the numbers
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import partial
 from itertools import groupby
 from types import CodeType, FunctionType
 
@@ -242,15 +241,25 @@ def make_region(
     region = Region(fragment.instance.state, trace)
     top = region.node(fragment, 1, 0)
     text = region.text
-    is_new = text not in _shapes
-    if is_new:
+    known = _shapes.get(text)
+    shape = known or (_compile(text), tuple(region.layouts), top)
+    if known is None:
         if len(_shapes) >= _MOST_SHAPES:
             _shapes.clear()
-        [code] = [each for each in compile(text, "<tree>", "exec").co_consts if isinstance(each, CodeType)]
-        _shapes[text] = code, tuple(region.layouts), top
-    code, layouts, (halt, at, children) = _shapes[text]
-    tick = FunctionType(code, names, None, (region.values, layouts, None if trace is None else trace.now))
-    return (tick, partial(halt, region.values, at, children)), region.memories, is_new
+        _shapes[text] = shape
+    code, layouts, top = shape
+    slots = region.values
+    tick = FunctionType(code, names, None, (slots, layouts, None if trace is None else trace.now))
+
+    def halt(keep: bool) -> None:  # no partial: a deep tree would need much of the stack of C
+        halt_part(slots, top, keep)
+
+    return (tick, halt), region.memories, known is None
+
+
+def _compile(text: str) -> CodeType:
+    [code] = [each for each in compile(text, "<tree>", "exec").co_consts if isinstance(each, CodeType)]
+    return code
 
 
 def halt_part(slots: Slots, layout: Layout, keep: bool) -> None:

@@ -166,6 +166,19 @@ def test_depth_does_not_matter(around: str, depth: int, watched: bool) -> None:
     assert world.log == ["A", "B.start", "B.tick", "A", "B.start", "B.halt"]
 
 
+def test_a_region_for_each_of_many_levels_is_ticked_and_halted() -> None:
+    world = World()
+    root = world.cls("A", "r")
+    for level in range(30_000):
+        root = n(("Sequence", "Sequence", "Parallel")[level % 3], root)
+    with patch.object(generation, "MOST_NODES", 100_000):
+        engine = generated(world, root)
+    assert engine.tick() == RUNNING
+    engine.suspend()
+    engine.halt()
+    assert world.log == ["A.start", "A.halt"]
+
+
 def test_a_slot_is_the_cell_of_a_closure_for_what_is_saved() -> None:
     """What is saved by one engine has all that the other one needs, by the same names."""
     world = World()

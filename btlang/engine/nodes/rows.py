@@ -24,8 +24,9 @@ AGAIN = object()
 
 
 def write_row(region: Region, item: Item, depth: int, passes: int, resumed: str, begin: str) -> int:
-    """Write what calls functions in a row, until one gives another answer than the plain one that passes. `x` is then
-    its position, and `r` the answer; else `x` is the end. Returns the slot of their instances, which is
+    """Write what calls functions in a row, until one gives another answer than the plain one that passes.
+
+    `x` is then its position, and `r` the answer; else `x` is the end. Returns the slot of their instances, which is
     behind them; their trace follows. `resumed` says whether the row was left at a function, whose position is `begin`.
     """
     assert isinstance(item.child, list)
@@ -51,14 +52,14 @@ def write_row(region: Region, item: Item, depth: int, passes: int, resumed: str,
         region.add(depth, f"x = {item.first - 1}", "try:")
         region.add(depth + 1, f"for f in S[{first}]:", " x += 1", f" if (r := f()) {other}: break")
         region.add(depth + 1, "else:", *[f" {line}" for line in all_passed])
-        region.add(depth, "except: r = caught()")
+        region.add(depth, f"except: r, x = caught_at(x, {item.first}, {item.end})")
         return row
     region.add(depth, "try:", " while True:")
     line = region.next_line
     for number in range(len(leaves)):
         region.add(depth + 2, f"if (r := S[{first + number}]()) {other}: x = {item.first + number}; break")
     region.add(depth + 2, *all_passed, "break")
-    region.add(depth, f"except: r, x = caught_in({line - item.first})")
+    region.add(depth, f"except: r, x = caught_in({line}, {item.first}, {item.end})")
     return row
 
 
@@ -82,13 +83,23 @@ def caught() -> BaseException:
     return problem
 
 
-def caught_in(line: int) -> tuple[BaseException, int]:
-    """Return the exception that is being handled, and how many lines behind a line it was raised: each function of a
-    row has a line, and to note at each tick which of them is called would take time.
+def caught_at(position: int, begin: int, end: int) -> tuple[BaseException, int]:
+    """Return the exception that is being handled and the position, if it is one of a row.
+
+    Else raises the exception: that of a signal may come between two calls.
     """
     problem = caught()
-    assert problem.__traceback__ is not None
-    return problem, problem.__traceback__.tb_lineno - line
+    if not begin <= position < end:
+        raise
+    return problem, position
+
+
+def caught_in(line: int, begin: int, end: int) -> tuple[BaseException, int]:
+    """Return the exception that is being handled and the position of the function that raised it, which its line says,
+    beginning with this one: to note at each tick which function is called would take time.
+    """
+    trace = caught().__traceback__
+    return caught_at(-1 if trace is None else trace.tb_lineno - line + begin, begin, end)
 
 
 def order_functions(slots: Slots, at: int, begin: int, row: int, first: int, answer: object, passes: int) -> int:

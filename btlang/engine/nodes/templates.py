@@ -19,6 +19,7 @@ from btlang.engine.nodes.decorators import NOT_THIS_TIME, WAS_TRUE
 from btlang.engine.nodes.rows import (
     AGAIN,
     caught,
+    caught_at,
     caught_in,
     end_at_answer,
     join_functions,
@@ -324,8 +325,8 @@ NAMES: dict[str, Any] = {
     **{
         each.__name__: each
         for each in (
-            caught, caught_in, end_parallel, end_reactive, find_status, halt_part, join_functions, order_functions,
-            react_functions, skip,
+            caught, caught_at, caught_in, end_parallel, end_reactive, find_status, halt_part, join_functions,
+            order_functions, react_functions, skip,
         )
     },
 }  # fmt: skip
