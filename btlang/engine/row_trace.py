@@ -42,14 +42,18 @@ class RowTrace:
 
     def decided(self, number: int, status: int) -> None:
         """Write that all before one have passed, and its status."""
-        now, first = self._trace.now, self._first
-        behind = first + number + 1
-        if now[first:behind] == self._passed[:number] + _BYTES[status]:  # as before, and not reached so far
-            now[first:behind] = self._reached[:number] + _BYTES[status | REACHED]
+        if not number:
+            self.answered(0, status)
             return
-        if number:
-            self.passed(0, number)
-        self.answered(number, status)
+        trace, first, last = self._trace, self._first, self._first + number
+        now = trace.now
+        if now[first : last + 1] != self._passed[:number] + _BYTES[status]:  # else as before, and not reached so far
+            if first <= trace.high:
+                trace.begin(first)
+            trace.high = last
+            if not status and trace.last[last]:
+                trace.faults[self._instances[number].index] = trace.state.fault
+        now[first : last + 1] = self._reached[:number] + _BYTES[status | REACHED]
 
     def answered(self, number: int, status: int) -> None:
         """Write the status of one."""
