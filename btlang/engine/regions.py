@@ -276,7 +276,7 @@ def _halt_traced(slots: Slots, at: int, node: Layout, keep: bool) -> None:
 def halt_row(slots: Slots, at: int, children: object, keep: bool) -> None:
     """Record that functions in a row were halted, if somebody listens: they know nothing of it."""
     if slots[at] is not None:
-        slots[at].halted()
+        slots[at].all_halted()
 
 
 def _halt_pair(slots: Slots, at: int, children: object, keep: bool) -> None:

@@ -66,9 +66,12 @@ class RowTrace:
                 trace.faults[self._instances[number].index] = trace.state.fault
         trace.now[place] = status | REACHED
 
-    def halted(self) -> None:
-        """Record that those that were RUNNING are halted."""
-        trace, first = self._trace, self._first
-        for instance, status in zip(self._instances, trace.now[first : first + len(self._instances)], strict=True):
-            if status & ~REACHED == RUNNING:
-                NodeTrace(instance, trace).change(IDLE)
+    def halted(self, number: int) -> None:
+        """Record that one was halted, if it was RUNNING."""
+        if self._trace.now[self._first + number] & ~REACHED == RUNNING:
+            NodeTrace(self._instances[number], self._trace).change(IDLE)
+
+    def all_halted(self) -> None:
+        """Record that all were halted."""
+        for number in range(len(self._instances)):
+            self.halted(number)

@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from typing import Any
 from unittest.mock import patch
 
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from btlang.engine import generation
@@ -29,7 +29,7 @@ from btlang.run.snapshot import RunState, Shape
 from btlang.tree.node import Node, Tree
 from tests.profiles import searches
 
-from .conftest import NEVER, SIZES, limited
+from .conftest import NEVER, SIZES, USUAL, limited
 from .random_trees import BUSY, TREES, Drawn, letters
 from .scripted import World, n
 
@@ -117,6 +117,11 @@ def singly() -> Iterator[None]:
         yield
 
 
+FUNCTIONS = n("ReactiveSequence", Node("F:rs"), Node("F:r"))
+"""The first one halts the second one and nothing else."""
+
+
+@example(FUNCTIONS, "ttt", 0, USUAL)
 @searches(150, 20000)
 @given(TREES | BUSY, letters("tttttthperm", 3, 12), st.sampled_from((NEVER, 0, 2)), SIZES)
 def test_changes_together_are_those_one_by_one(

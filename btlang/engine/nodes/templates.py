@@ -93,9 +93,18 @@ def skip(slots: Slots, layout: Layout, count: int) -> None:
 
 
 def _halt_in_order(slots: Slots, at: int, children: Layouts, keep: bool) -> None:
-    halt_part(slots, children[_find_item(children, slots[at])], keep)
+    _halt_child(slots, children, slots[at], keep)
     if not keep:
         slots[at] = slots[at + 1] = 0
+
+
+def _halt_child(slots: Slots, children: Layouts, position: int, keep: bool) -> None:
+    first = position if position in children else max([first for first in children if first < position])
+    halt, at, _ = children[first]
+    if halt is not halt_row:
+        halt_part(slots, children[first], keep)
+    elif slots[at] is not None:
+        slots[at].halted(position - first)
 
 
 def reactive(region: Region, node: Fragment, depth: int, level: int, passes: int) -> Layout:
@@ -152,7 +161,7 @@ def end_reactive(slots: Slots, layout: Layout, status: int) -> None:
     if asked < running:
         if status is FAILURE:
             slots[at + 3].pass_on("its guard failed on the way")
-        _halt_child(slots, children, running)
+        _halt_child(slots, children, running, False)
     slots[at] = asked if status == RUNNING else -1
 
 
@@ -160,15 +169,7 @@ def _interrupt(slots: Slots, at: int, children: Layouts) -> None:
     running = slots[at]
     if slots[at + 1] < running:
         slots[at] = -1
-        _halt_child(slots, children, running)
-
-
-def _halt_child(slots: Slots, children: Layouts, position: int) -> None:
-    halt_part(slots, children[_find_item(children, position)], False)
-
-
-def _find_item(children: Layouts, position: int) -> int:
-    return position if position in children else max([first for first in children if first < position])
+        _halt_child(slots, children, running, False)
 
 
 def _halt_reactive(slots: Slots, at: int, children: Layouts, keep: bool) -> None:
