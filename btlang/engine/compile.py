@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.clock import Clock
 from btlang.engine.conditions import add_conditions
-from btlang.engine.fused import choose_compiler, traces_functions
+from btlang.engine.fused import choose_compiler
 from btlang.engine.instance import EngineError, EngineState, NodeInstance, blackboard_key, halt_nothing
 from btlang.engine.leaves.binding import bind_leaf
 from btlang.engine.leaves.callables import find_function
@@ -155,7 +155,7 @@ def compile_instances(
 ) -> Compiled:
     """Compile from the last node to the root, so that children are compiled before their parents."""
     waiting: list[Compiled] = []  # compiled nodes whose parents come later, so that the last ones are the next one's
-    around = find_resume_paths(instances, _waits)
+    around = find_resume_paths(instances, waits)
     for instance in reversed(instances):
         node = instance.node
         count = 1 if node.id == SUBTREE else len(node.children)
@@ -176,6 +176,8 @@ def compile_instances(
             compiled = hooks.wrap(instance.index, compiled)
         if node_trace is not None and not (instance.index and find_function(compiled[0])):
             compiled = node_trace.wrap(compiled)
+        if not count and find_function(compiled[0]) is None:
+            instance.leaf = compiled
         if path is None and above is not None and lasts:
             wider = around[above.index]
             if wider is not None and wider.top != above.index:  # else the way down is not longer
@@ -185,7 +187,8 @@ def compile_instances(
     return root
 
 
-def _waits(instance: NodeInstance) -> bool:
+def waits(instance: NodeInstance) -> bool:
+    """Return whether a node only asks its child while that is RUNNING, so that it may be part of a resume path."""
     kind = CATALOGUE.get(instance.node.id)
     if kind is None or not kind.waits:
         return False
@@ -219,7 +222,7 @@ def _compile_built_in(instance: NodeInstance, kind: NodeKind, children: Sequence
             raise instance.error(f"{kind.id} takes no port {port}")
     usual = SEMANTICS[kind.id]
     if (trace := instance.state.node_trace) is not None:
-        children = trace.wrap_functions(children, keeps=traces_functions(usual, instance, children))
+        children = trace.wrap_functions(children, keeps=False)
     compiled = choose_compiler(usual, instance, children)(instance, children)
     if kind.id != SUBTREE:  # which is its child
         instance.memory = (compiled[0],)

@@ -26,10 +26,12 @@ from btlang.engine.blackboard import Blackboard
 from btlang.engine.instance import Fault, NodeInstance
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.engine.nodes.built_in_leaves import always_skipped, read_script
+from btlang.engine.nodes.ports import STATUSES
 from btlang.engine.script.values import truth
-from btlang.engine.status import FAILURE, IDLE, NAMES, RUNNING, SKIPPED, SUCCESS
+from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.text.spelling import distance
 from btlang.tree.catalogue import POST_CONDITIONS, PRE_CONDITIONS, SUBTREE
+from btlang.tree.node import Node
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -39,7 +41,7 @@ if TYPE_CHECKING:
 
     Script: TypeAlias = Callable[[Blackboard], Any]
 
-_DECIDES = {port: (answer, NAMES.index(status)) for port, (answer, status) in PRE_CONDITIONS.items()}
+_DECIDES = {port: (answer, STATUSES[status]) for port, (answer, status) in PRE_CONDITIONS.items()}
 _NEAR = 2  # one letter, as `distance` counts
 
 
@@ -52,6 +54,11 @@ def is_editor_attribute(port: str) -> bool:
         return False
     written, known = port.lower(), [condition.lower() for condition in (*PRE_CONDITIONS, *POST_CONDITIONS)]
     return not any(distance(written, each) <= _NEAR or each.startswith(written) for each in known)
+
+
+def has_conditions(node: Node) -> bool:
+    """Return whether a node has pre- or post-conditions."""
+    return any(port in PRE_CONDITIONS or port in POST_CONDITIONS for port, _ in node.ports)
 
 
 def add_conditions(instance: NodeInstance, compiled: Compiled) -> Compiled:

@@ -9,6 +9,7 @@ from btlang.engine.blackboard import Blackboard
 from btlang.engine.changes import Changes
 from btlang.engine.clock import Clock
 from btlang.engine.compile import allow_depth, compile_instances, expand
+from btlang.engine.generation import generate_later
 from btlang.engine.instance import EngineError, EngineState, Fault, NodeInstance, blackboard_key
 from btlang.engine.leaves.leaf import REFUSED, ActionFailed, LeafBinding, ignore_progress, reason_text
 from btlang.engine.saving import restore_nodes, save_nodes
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from btlang.engine.clock import LeafTimer
-    from btlang.engine.instance import Hooks
+    from btlang.engine.instance import Compiled, Hooks
     from btlang.engine.status_trace import Listener
 
 # A node, its trace, its pre-conditions, and the check of ports from the blackboard; twice, because what starts at the
@@ -95,10 +96,11 @@ class Engine:
         with gc_paused:
             self._instances = expand(tree, self.blackboard, self._state)
             self._trace = None if listener is None else StatusTrace(self._state, listener, self._instances)
-            self._tick, self._halt = compile_instances(self._instances, self._trace, hooks)
-        frames = _depth(self._instances) * _FRAMES_PER_LEVEL + _FRAMES_FOR_LEAVES
-        if frames > _FRAMES_ASSUMED:
-            self._tick, self._halt = allow_depth(frames, self._tick), allow_depth(frames, self._halt)
+            compiled = compile_instances(self._instances, self._trace, hooks)
+        self._frames = _depth(self._instances) * _FRAMES_PER_LEVEL + _FRAMES_FOR_LEAVES
+        self._use(compiled)
+        if hooks is None:
+            generate_later(self._instances, self._trace, compiled, self._use)
         listened = self._instances if listener is not None else ()
         self._keyed = frozenset([s.index for s in listened if any("{" in text for _, text in s.node.ports)])
         self._busy = False
@@ -300,6 +302,13 @@ class Engine:
             self.raised[failure.index] = failure
         if self._on_warning is not None:
             self._on_warning(failure)
+
+    def _use(self, compiled: Compiled) -> None:
+        """Tick and halt by these from now on."""
+        tick, halt = compiled
+        deep = self._frames > _FRAMES_ASSUMED
+        self._tick = allow_depth(self._frames, tick) if deep else tick
+        self._halt = allow_depth(self._frames, halt) if deep else halt
 
     def _wake(self) -> None:
         if self.on_wake is not None:

@@ -11,41 +11,35 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 from btlang.engine.instance import NodeInstance
-from btlang.engine.leaves.callables import fail_with, find_function, status_of
+from btlang.engine.leaves.callables import find_function, find_status
 from btlang.engine.nodes import control
-from btlang.engine.nodes.control import reactive_fallback, reactive_sequence
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
+from btlang.tree.node import Node
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, TypeAlias
 
-    from btlang.engine.functions_trace import FunctionsTrace
     from btlang.engine.instance import Compiled, Halt
 
-    Ticks: TypeAlias = tuple[Callable[[], Any], ...]
+    Call: TypeAlias = Callable[[], Any]
+    Ticks: TypeAlias = tuple[Call, ...]
     Calls: TypeAlias = tuple[Ticks, tuple[Halt, ...], tuple[NodeInstance | None, ...]]
     Compile: TypeAlias = Callable[[NodeInstance, Sequence[Compiled]], Compiled]
-
-
-_MANY = 4
-"""Functions that are traced together: fewer take as long each by itself."""
 
 
 def choose_compiler(usual: Compile, instance: NodeInstance, children: Sequence[Compiled]) -> Compile:
     """Return the function that compiles a node fastest: its `usual` one, or a variant of it."""
     if usual is control.parallel:
-        port = instance.node.port
-        return default_parallel if port("success_count", "-1") == "-1" and port("failure_count", "1") == "1" else usual
+        return default_parallel if has_usual_thresholds(instance.node) else usual
     if usual in _VARIANTS and any(find_function(tick) for tick, _ in children):
         return _VARIANTS[usual]
     return usual
 
 
-def traces_functions(usual: Compile, instance: NodeInstance, children: Sequence[Compiled]) -> bool:
-    """Return whether a node has a variant that also traces the functions below it, and these are enough for that."""
-    functions = sum(find_function(tick) is not None for tick, _ in children)
-    return functions >= _MANY and choose_compiler(usual, instance, children) is not usual
+def has_usual_thresholds(node: Node) -> bool:
+    """Return whether a Parallel has its default thresholds; any other node counts as one that has."""
+    return node.port("success_count", "-1") == "-1" and node.port("failure_count", "1") == "1"
 
 
 def _calls(children: Sequence[Compiled]) -> Calls:
@@ -61,11 +55,6 @@ def _calls(children: Sequence[Compiled]) -> Calls:
     return tuple(ticks), tuple([halt for _, halt in children]), tuple(instances)
 
 
-def _trace_functions(instance: NodeInstance, children: Sequence[Compiled], passes: int) -> FunctionsTrace | None:
-    trace = instance.state.node_trace
-    return None if trace is None else trace.trace_functions([find_function(tick) for tick, _ in children], passes)
-
-
 def normalize_status(instance: NodeInstance | None, answer: object) -> int:
     """Return the status of an answer, or of an exception that was raised instead. A node's answer is its status."""
     if instance is None:
@@ -73,32 +62,19 @@ def normalize_status(instance: NodeInstance | None, answer: object) -> int:
             raise answer
         assert isinstance(answer, int)
         return answer
-    if answer is FAILURE:
-        return instance.refuse()
-    return fail_with(instance, answer) if isinstance(answer, BaseException) else status_of(instance, answer)
+    return find_status(instance, answer)
 
 
 def in_order(instance: NodeInstance, children: Sequence[Compiled], passes: int) -> Compiled:
     """Compile a Sequence or Fallback; see nodes/control.py."""
     ticks, halts, instances = _calls(children)
-    trace = _trace_functions(instance, children, passes)
     nothing = None if passes is SUCCESS else passes  # what functions return is most often nothing
-    nothing_to_say = SUCCESS if passes is SUCCESS else None  # it goes on, and has no reason to be kept
     index = skipped = 0
 
     # what does not change are defaults: a cell for each would be a third of the memory of a tree
-    def tick(
-        ticks: Ticks = ticks,
-        count: int = len(ticks),
-        passes: int = passes,
-        nothing: int | None = nothing,
-        nothing_to_say: int | None = nothing_to_say,
-        trace: FunctionsTrace | None = trace,
-    ) -> int:
+    def tick(ticks: Ticks = ticks, count: int = len(ticks), passes: int = passes, nothing: int | None = nothing) -> int:
         nonlocal index, skipped
         plain = -1  # the latest child that passed, whose answer has not been normalized
-        if trace is not None:
-            trace.marked = index
         while index < count:
             try:
                 status = ticks[index]()
@@ -107,16 +83,12 @@ def in_order(instance: NodeInstance, children: Sequence[Compiled], passes: int) 
                     index += 1
                     continue
                 if status == RUNNING:
-                    if trace is not None:
-                        trace.decide(index, RUNNING)
                     return RUNNING
             except KeyboardInterrupt:
                 raise
             except BaseException as problem:
                 status = problem
             status = SKIPPED if status == SKIPPED else normalize_status(instances[index], status)
-            if trace is not None and status is not nothing_to_say:
-                trace.decide(index, status)
             if status == SKIPPED:
                 halts[index](False)
                 skipped += 1
@@ -126,8 +98,6 @@ def in_order(instance: NodeInstance, children: Sequence[Compiled], passes: int) 
                 index = skipped = 0
                 return status
             index += 1
-        if trace is not None:
-            trace.write(count)
         if skipped:
             passes = SKIPPED if skipped == count else passes
             skipped = 0
@@ -143,48 +113,36 @@ def in_order(instance: NodeInstance, children: Sequence[Compiled], passes: int) 
         if not keep:
             index = skipped = 0
 
-    if trace is not None:
-        trace.follow(lambda: index)
     return tick, halt
 
 
 def default_parallel(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
     """Compile a Parallel with its default thresholds: it ends with the first failure, or when no child is RUNNING."""
     ticks, halts, instances = _calls(children)
-    trace = _trace_functions(instance, children, SUCCESS)
     everyone = tuple(enumerate(ticks))
-    left = everyone  # those that have not completed
+    left = everyone  # those that have not completed; none where they are to be found
     completed = [False] * len(ticks)
     state = instance.state
 
-    def tick(going_on: int = RUNNING, trace: FunctionsTrace | None = trace) -> int:
+    def tick(going_on: int = RUNNING) -> int:
         nonlocal left
         running = fewer = skipped = False
-        whole = left is everyone
-        if trace is not None:
-            trace.marked = 0 if whole else len(everyone)
+        if not left:
+            left = find_left()
         for index, child in left:
-            if trace is not None:
-                trace.asked = index
             try:
                 status = child()
                 if status is going_on or status == RUNNING:  # what nearly all say, compared as fast as can be
                     running = True
-                    if trace is not None:
-                        (trace.decide if whole else trace.write_one)(index, RUNNING)
                     continue
                 if status is SUCCESS or status is None:
                     completed[index] = fewer = True
-                    if trace is not None and not whole:
-                        trace.write_one(index, SUCCESS)
                     continue
             except KeyboardInterrupt:
                 raise
             except BaseException as problem:
                 status = problem
             status = SKIPPED if status == SKIPPED else normalize_status(instances[index], status)
-            if trace is not None:
-                (trace.decide if whole else trace.write_one)(index, status)
             if status == SKIPPED:
                 skipped = True
             elif status is FAILURE:
@@ -194,11 +152,9 @@ def default_parallel(instance: NodeInstance, children: Sequence[Compiled]) -> Co
                 return FAILURE
             else:
                 completed[index] = fewer = True
-        if trace is not None and whole:
-            trace.write(len(everyone))
         if running:
             if fewer:
-                find_left()
+                left = ()
             return RUNNING
         if skipped:
             halt(False)
@@ -207,107 +163,22 @@ def default_parallel(instance: NodeInstance, children: Sequence[Compiled]) -> Co
             left = everyone
         return SUCCESS
 
-    def find_left() -> None:
-        nonlocal left
-        left = tuple([each for each in everyone if not completed[each[0]]])
+    def find_left() -> tuple[tuple[int, Call], ...]:
+        return everyone if not any(completed) else tuple([each for each in everyone if not completed[each[0]]])
 
     def halt(keep: bool) -> None:
+        nonlocal left
         for index, stop in enumerate(halts):
             if not completed[index]:
                 stop(keep)
         if not keep:
             completed[:] = [False] * len(completed)
-        find_left()
+        left = ()
 
-    if trace is not None:
-        trace.follow(lambda: trace.asked)
-    return tick, halt
-
-
-def reactive(instance: NodeInstance, children: Sequence[Compiled], passes: int) -> Compiled:
-    """Compile a ReactiveSequence or ReactiveFallback; see nodes/control.py."""
-    ticks, halts, instances = _calls(children)
-    trace = _trace_functions(instance, children, passes)
-    pairs, count = tuple(enumerate(ticks)), len(ticks)
-    nothing_to_say = SUCCESS if passes is SUCCESS else None
-    interrupts = instance.state.interrupts
-    fails = SUCCESS if passes is FAILURE else FAILURE
-    running = -1  # the child that was RUNNING at the last tick
-    asked = 0  # the child that is being ticked
-
-    def interrupt() -> None:
-        nonlocal running
-        if asked < running:
-            child, running = running, -1
-            halts[child](False)
-
-    # not cells, for what the plain variant doesn't have: cells are saved
-    def tick(
-        trace: FunctionsTrace | None = trace, nothing_to_say: int | None = nothing_to_say, fails: int = fails
-    ) -> int:
-        nonlocal running, asked
-        if running > 0:
-            interrupts.append(interrupt)
-        skipped = 0
-        plain = -1  # the latest child that passed, whose answer has not been normalized
-        status = passes
-        if trace is not None:
-            trace.marked = 0
-        for asked, child in pairs:
-            try:
-                status = child()
-                if status is passes:
-                    plain = asked
-                    continue
-                if status != RUNNING and status != SKIPPED:
-                    status = normalize_status(instances[asked], status)
-            except KeyboardInterrupt:
-                raise
-            except BaseException as problem:
-                status = normalize_status(instances[asked], problem)
-            if trace is not None and status is not nothing_to_say:
-                trace.decide(asked, status)
-            if status is passes:
-                plain = -1
-            elif status == SKIPPED:
-                halts[asked](False)
-                skipped += 1
-            else:
-                break
-        else:
-            if trace is not None:
-                trace.write(count)
-        if interrupts and interrupts[-1] is interrupt:
-            interrupts.pop()
-        if status is fails or status == RUNNING:
-            if asked < running:
-                if status is FAILURE:
-                    instance.pass_on("its guard failed on the way")
-                halts[running](False)
-            running = -1 if status is fails else asked
-            return status
-        running = -1
-        if skipped == count:
-            return SKIPPED
-        if passes is FAILURE and plain >= 0:
-            normalize_status(instances[plain], FAILURE)
-        return passes
-
-    def halt(keep: bool) -> None:
-        nonlocal running
-        for stop in halts:
-            stop(keep)
-        if not keep:
-            running = -1
-
-    if trace is not None:
-        trace.follow(lambda: asked)
     return tick, halt
 
 
 _VARIANTS: dict[Compile, Compile] = {
     control.sequence: partial(in_order, passes=SUCCESS),
     control.fallback: partial(in_order, passes=FAILURE),
-    reactive_sequence: partial(reactive, passes=SUCCESS),
-    reactive_fallback: partial(reactive, passes=FAILURE),
 }

@@ -30,10 +30,12 @@ if TYPE_CHECKING:
     from typing import Any, Protocol, TypeAlias
 
     from btlang.engine.leaves.leaf import LeafSignature
+    from btlang.engine.slot_memory import SlotMemory
 
     Tick: TypeAlias = Callable[[], int]
     Halt: TypeAlias = Callable[[bool], None]
     Compiled: TypeAlias = tuple[Tick, Halt]
+    Memory: TypeAlias = Tick | SlotMemory
 
     class LeafTrace(Protocol):
         """The trace by which a leaf that takes time reports its own status; see NodeTrace in status_trace.py."""
@@ -48,8 +50,6 @@ if TYPE_CHECKING:
         def flush(self) -> None: ...
 
         def wrap_functions(self, children: Sequence[Compiled], keeps: bool) -> list[Compiled]: ...
-
-        def trace_functions(self, leaves: Sequence[Any], passes: int) -> Any: ...
 
     class Hooks(Protocol):
         """Calls before and behind the ticks of nodes; see Breakpoints in btlang/monitor/breakpoints.py."""
@@ -160,7 +160,7 @@ class NodeInstance:
     without a separate reason.
     """
 
-    __slots__ = ("_usual", "above", "index", "memory", "node", "position", "scope", "state")
+    __slots__ = ("_usual", "above", "index", "leaf", "memory", "node", "position", "scope", "state")
 
     reason = REFUSED
     exception = None
@@ -176,7 +176,10 @@ class NodeInstance:
         self.scope = scope
         self.state = state
         self._usual: Fault | None = None
-        self.memory: tuple[Tick, ...] = ()  # the functions whose cells hold what it remembers; see saving.py
+        self.memory: tuple[
+            Memory, ...
+        ] = ()  # what it remembers: functions whose cells hold that, or slots; see saving.py
+        self.leaf: Compiled | None = None  # what a node without children was compiled to, unless it's a mere function
 
     @property
     def parent_keeps_completed(self) -> bool:

@@ -3,23 +3,26 @@
 The memory of a node is what the cells of its `tick` hold: numbers, truths, texts, lists of these, failures, and objects
 with `saved` and `restore`, such as a Stopwatch. (Its `halt` may be that of its child.) Leaves have none: one that was
 running starts again, as after a pause. So nodes need no code for it, and pay nothing for it while they are ticked.
+In a generated region it is in slots, which have the same names (regions.py): either restores what the other has saved.
 """
 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from types import CellType
 
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.instance import Fault, NodeInstance
 from btlang.engine.leaves.leaf import REFUSED, reason_text
+from btlang.engine.slot_memory import Slot, SlotMemory
 from btlang.engine.status import IDLE, RUNNING
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+    from btlang.engine.instance import Memory
     from btlang.engine.status_trace import StatusTrace
 
 FORMAT = 1
@@ -69,12 +72,27 @@ def _scopes(instances: Sequence[NodeInstance]) -> Iterator[Blackboard]:
     return iter(dict.fromkeys(instance.scope for instance in instances))
 
 
-def _cells(tick: Callable[..., Any]) -> dict[str, CellType]:
+def move_memory(old: Sequence[Memory], new: Sequence[Memory]) -> None:
+    """Let a node that was compiled once more remember what it remembered so far, between two ticks."""
+    for before, after in zip(old, new, strict=True):
+        found = _cells(before)
+        for name, cell in _cells(after).items():
+            if name in found and _is_memory(value := found[name].cell_contents):
+                cell.cell_contents = value
+
+
+def _is_memory(value: object) -> bool:
+    return isinstance(value, (*_PLAIN, list, deque, Fault, NodeInstance)) or hasattr(value, "saved")
+
+
+def _cells(tick: Memory) -> Mapping[str, CellType | Slot]:
+    if isinstance(tick, SlotMemory):
+        return tick.cells()
     code = getattr(tick, "__code__", None)  # a partial has none, and remembers nothing
     return {} if code is None else dict(zip(code.co_freevars, tick.__closure__ or (), strict=True))
 
 
-def _read(tick: Callable[..., Any]) -> dict[str, Any]:
+def _read(tick: Memory) -> dict[str, Any]:
     memory: dict[str, Any] = {}
     for name, cell in _cells(tick).items():
         value = cell.cell_contents
@@ -89,9 +107,11 @@ def _read(tick: Callable[..., Any]) -> dict[str, Any]:
     return memory
 
 
-def _write(tick: Callable[..., Any], memory: Mapping[str, Any], instances: Sequence[NodeInstance]) -> None:
+def _write(tick: Memory, memory: Mapping[str, Any], instances: Sequence[NodeInstance]) -> None:
     cells = _cells(tick)
     for name, value in memory.items():
+        if name not in cells and isinstance(tick, SlotMemory):  # a closure has cells of what never changes, too
+            continue
         cell = cells[name]
         if not isinstance(value, dict):
             cell.cell_contents = value

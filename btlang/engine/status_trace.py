@@ -1,8 +1,9 @@
 """Traces of statuses, which report changes. They are compiled in only if somebody listens.
 
-What completes within a tick, as nearly all nodes do, only writes its status into an array, and functions below one node
-write theirs together. `StatusTrace.settle` compares the array with the statuses before, for all nodes at once. So a
-change costs a few dozen nanoseconds; what takes time, is halted or is repeated costs more.
+What completes within a tick, as nearly all nodes do, only writes its status into an array, and in a generated region
+functions in a row write theirs together (row_trace.py). `StatusTrace.settle` compares the array with the statuses
+before, for all nodes at once. So a change costs a few dozen nanoseconds; what takes time, is halted or is repeated
+costs more.
 """
 
 from __future__ import annotations
@@ -11,7 +12,6 @@ from _thread import get_ident  # `threading` takes longer to import
 from collections.abc import Callable, Mapping, Sequence
 
 from btlang.engine.changes import NOTHING, REACHED, Block, Changes, Layout, reports_each_round
-from btlang.engine.functions_trace import FunctionsTrace
 from btlang.engine.instance import Fault
 from btlang.engine.leaves.callables import FunctionLeaf, fail_with, find_function, status_of
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SUCCESS
@@ -54,7 +54,6 @@ class StatusTrace:
         "listener",
         "low",
         "now",
-        "open",
         "pending",
         "state",
         "thread",
@@ -70,7 +69,6 @@ class StatusTrace:
         self.now = self.last[:]  # those now, with REACHED
         self.low, self.high = 0, NOTHING  # the places that have been written since both were compared
         self.faults: dict[int, Fault | NodeInstance | None] = {}  # of these, by number
-        self.open: list[Callable[[], None]] = []  # for nodes with functions that are being ticked: what writes theirs
         self._flushed: list[int | Block] = []  # in this tick, which `recorded` hasn't looked at
         self._recorded: set[int] = set()
 
@@ -85,8 +83,6 @@ class StatusTrace:
     def begin_tick(self) -> None:
         """Note that nothing has been reached in this tick."""
         self.thread = get_ident()
-        if self.open:  # the last tick was cut short
-            self.open.clear()
         self.now[:] = self.last
         if self._flushed or self._recorded:
             self._flushed, self._recorded = [], set()
@@ -100,8 +96,6 @@ class StatusTrace:
 
     def settle(self) -> None:
         """Add what was written to the pending changes."""
-        for write in self.open:
-            write()
         if self.high == NOTHING:
             return
         low, end = self.low, self.high + 1
@@ -114,7 +108,7 @@ class StatusTrace:
 
     def flush(self) -> None:
         """Hand the pending changes to the listener, oldest first."""
-        if self.open or self.high != NOTHING:
+        if self.high != NOTHING:
             self.settle()
         if self.pending.entries:
             changes, self.pending = self.pending, Changes()
@@ -143,7 +137,7 @@ class NodeTrace:
     it from this tick are recorded before its own, and those that this run has not reached are forgotten.
     """
 
-    __slots__ = ("every", "index", "place", "reported_by_leaf", "start", "trace", "write")
+    __slots__ = ("every", "index", "place", "reported_by_leaf", "start", "trace")
 
     def __init__(self, instance: NodeInstance, trace: StatusTrace) -> None:
         self.index = instance.index
@@ -152,7 +146,6 @@ class NodeTrace:
         self.place = trace.layout.places[self.index]
         self.start = trace.layout.starts[self.place]
         self.reported_by_leaf = False  # so that a leaf needs no wrapper while it is RUNNING
-        self.write: Callable[[], None] | None = None  # writes what functions below it have answered so far
 
     def change(self, status: int) -> None:
         """Record the status that the node has now."""
@@ -184,6 +177,26 @@ class NodeTrace:
             self.change(status)
         return status
 
+    def complete(self, status: int) -> None:
+        """Note the status of a tick, or record it at once where it can't be compared later."""
+        trace, place = self.trace, self.place
+        before = trace.last[place]
+        if status == RUNNING or before == RUNNING or self.every:
+            self.change(status)
+            return
+        if place <= trace.high:
+            trace.begin(place)
+            before = trace.last[place]
+        trace.high = place
+        trace.now[place] = status | REACHED
+        if not status and before:
+            trace.faults[self.index] = trace.state.fault
+
+    def halted(self) -> None:
+        """Record that the node was halted, if it was RUNNING."""
+        if self.trace.last[self.place] == RUNNING:
+            self.change(IDLE)
+
     def reach(self, status: int) -> None:
         """Note the status that a function has now, to be compared later with the one before."""
         trace, place = self.trace, self.place
@@ -209,45 +222,26 @@ class NodeTrace:
         return (traced_tick if self.index else root_tick), self._trace_halt(halt)
 
     def _trace_tick(self, tick: Tick) -> Tick:
-        every, start, write = self.every, self.start, self.write
+        every = self.every
 
         # what doesn't change are defaults: there are many of them
         def traced_tick(
             place: int = self.place,
             trace: StatusTrace = self.trace,
-            last: bytearray = self.trace.last,
             now: bytearray = self.trace.now,
-            opened: list[Callable[[], None]] = self.trace.open,
         ) -> int:
-            if write is None:
-                status = tick()
-            else:
-                if start <= trace.high != NOTHING:
-                    trace.begin(start)
-                opened.append(write)
-                status = tick()
-                opened.pop()
+            status = tick()
             if now[place] == status and not every:  # as before, and not reached so far
                 now[place] = status | REACHED
                 return status
-            before = last[place]
-            if status == RUNNING or before == RUNNING or every:
-                self.change(status)
-                return status
-            if place <= trace.high:
-                trace.begin(place)
-                before = last[place]
-            trace.high = place
-            now[place] = status | REACHED
-            if not status and before:
-                trace.faults[self.index] = trace.state.fault
+            self.complete(status)
             return status
 
         return traced_tick
 
     def wrap_functions(self, children: Sequence[Compiled], keeps: bool) -> list[Compiled]:
-        """Return the children of this node, with those traced that are functions; where it `keeps` them as they are,
-        it traces what they answer (`trace_functions`).
+        """Return the children of this node, with those traced that are functions. With `keeps` those of which only the
+        status is reported stay as they are.
         """
         wrapped = []
         for tick, halt in children:
@@ -262,13 +256,6 @@ class NodeTrace:
                 tick = trace._trace_function(leaf, measured)
             wrapped.append((tick, trace.halt_function))
         return wrapped
-
-    def trace_functions(self, leaves: Sequence[FunctionLeaf | None], passes: int) -> FunctionsTrace | None:
-        """Return the trace of the functions among the children of this node, which are None else."""
-        if not any(leaves):
-            return None
-        traces = [None if leaf is None else NodeTrace(leaf.instance, self.trace) for leaf in leaves]
-        return FunctionsTrace(self, traces, passes)
 
     def _trace_function(self, leaf: FunctionLeaf, measured: Callable[[], str] | None) -> Tick:
         """Trace the function itself, and do what FunctionLeaf.tick does: the calls become one."""
@@ -317,8 +304,7 @@ class NodeTrace:
     def _trace_halt(self, halt: Halt) -> Halt:
         def traced_halt(keep: bool) -> None:
             halt(keep)
-            if self.trace.last[self.place] == RUNNING:
-                self.change(IDLE)
+            self.halted()
 
         return traced_halt
 

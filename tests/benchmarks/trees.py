@@ -10,6 +10,8 @@ from btlang.tree.node import Node
 
 CONDITIONS, RUNNERS, ACTIONS = 10, 50, 10_000
 MIX, DEPTH = 1_000, 6
+SETTLED = 200
+"""Ticks after which an engine of these trees has generated what it will, and ticks as it does in a long run."""
 
 
 def run() -> Iterator[None]:

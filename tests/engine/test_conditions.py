@@ -104,6 +104,17 @@ def test_enums_are_numbers_in_all_scripts_and_cases() -> None:
     assert world.log == ["B", "D"]
 
 
+@pytest.mark.parametrize("id", ["Sequence", "ReactiveSequence", "Parallel", "AsyncSequence", "SequenceWithMemory"])
+def test_the_next_child_follows_one_that_was_decided(id: str) -> None:
+    world = World()
+    engine = world.engine(
+        n(id, n("Sequence", _successIf="true").replace(children=(world.fn("A", "f"),)), world.fn("B", "f"))
+    )
+    while (status := engine.tick()) == RUNNING:
+        pass
+    assert (status, world.log) == (FAILURE, ["B"])
+
+
 def test_a_node_that_was_decided_is_told_to_a_listener() -> None:
     world = World()
     engine = world.engine(n("Sequence", world.cls("A", "r").replace(ports=(("_successIf", "true"),))), watched=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
+from copy import copy
 from typing import Any
 
 import pytest
@@ -43,6 +44,7 @@ def test_queues_in_texts(id: str, queue: str, taken: list[Any]) -> None:
     ("held", "left"), [(deque(("1", 2)), deque()), (["1", 2], []), (("1", 2), deque()), ("1;2", deque())]
 )
 def test_queues_on_the_blackboard_are_taken_apart_there(held: Any, left: Any) -> None:
+    held = copy(held)  # the case itself stays
     engine, seen = values(world := World(), "LoopInt", queue="{q}")
     engine.blackboard.set("q", held)
     assert world.ticks(engine, 2) == "rr"

@@ -11,8 +11,10 @@ from contextlib import contextmanager
 from typing import Any
 from unittest.mock import patch
 
-from hypothesis import given
+from hypothesis import example, given
+from hypothesis import strategies as st
 
+from btlang.engine import generation
 from btlang.engine.changes import Changes
 from btlang.engine.engine import Engine
 from btlang.engine.fused import choose_compiler
@@ -27,6 +29,7 @@ from btlang.run.snapshot import RunState, Shape
 from btlang.tree.node import Node, Tree
 from tests.profiles import searches
 
+from .conftest import NEVER, SIZES, USUAL, limited
 from .random_trees import BUSY, TREES, Drawn, letters
 from .scripted import World, n
 
@@ -34,7 +37,8 @@ from .scripted import World, n
 class Watched:
     """An engine, the changes that it has reported, and who follows them."""
 
-    def __init__(self, shape: Node) -> None:
+    def __init__(self, shape: Node, ticks_before: int) -> None:
+        self.ticks_before = ticks_before
         self.world = World()
         self.drawn = Drawn(shape)
         self.drawn.bind(self.world)
@@ -44,13 +48,14 @@ class Watched:
 
     def begin(self) -> None:
         """Begin a run."""
-        self.engine = Engine(
-            self.drawn.tree,
-            self.world.bindings.get,
-            clock=self.world.clock,
-            services={"robot": self.world.robot},
-            listener=self._take,
-        )
+        with patch.object(generation, "TICKS_BEFORE", self.ticks_before):
+            self.engine = Engine(
+                self.drawn.tree,
+                self.world.bindings.get,
+                clock=self.world.clock,
+                services={"robot": self.world.robot},
+                listener=self._take,
+            )
         engine = self.engine
         self.nodes = [node for _, node in engine.nodes]
         self.state = RunState(Shape([engine.parent(index) for index in range(engine.size)]), self.nodes)
@@ -105,7 +110,6 @@ def plain_but_parallel(usual: Any, *others: Any) -> Any:
 def singly() -> Iterator[None]:
     """Have each node record its own changes at once."""
     with (
-        patch("btlang.engine.fused._MANY", 10**9),
         patch("btlang.engine.compile.choose_compiler", plain_but_parallel),
         patch.object(NodeTrace, "_trace_tick", one_by_one),
         patch.object(NodeTrace, "_trace_function", function_by_itself),
@@ -113,18 +117,27 @@ def singly() -> Iterator[None]:
         yield
 
 
+FUNCTIONS = n("ReactiveSequence", Node("F:rs"), Node("F:r"))
+"""The first one halts the second one and nothing else."""
+
+
+@example(FUNCTIONS, "ttt", 0, USUAL)
 @searches(150, 20000)
-@given(TREES | BUSY, letters("tttttthperm", 3, 12))
-def test_changes_together_are_those_one_by_one(shape: Node, orders: str) -> None:
-    together = Watched(shape)
+@given(TREES | BUSY, letters("tttttthperm", 3, 12), st.sampled_from((NEVER, 0, 2)), SIZES)
+def test_changes_together_are_those_one_by_one(
+    shape: Node, orders: str, ticks_before: int, sizes: dict[str, int]
+) -> None:
+    with limited(sizes):
+        together = Watched(shape, ticks_before)
     with singly():
-        alone = Watched(shape)
+        alone = Watched(shape, NEVER)
     for order in orders:
-        together.obey(order)
+        with limited(sizes):
+            together.obey(order)
         with singly():
             alone.obey(order)
         assert together.changes == alone.changes
-        assert together.saved == alone.saved
+        assert together.saved == alone.saved or ticks_before != NEVER  # which saves nothing that never changes
         assert together.follower.codes() in (bytes(alone.state.statuses), b"")
         assert together.history.tried == alone.history.tried
         snapshot = together.follower.snapshot(lambda node: node.id)

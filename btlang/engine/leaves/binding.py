@@ -9,9 +9,9 @@ from weakref import WeakKeyDictionary
 from btlang.engine.instance import NodeInstance, blackboard_key
 from btlang.engine.leaves.callables import (
     KEPT,
+    ClassLeaf,
     GeneratorLeaf,
     answering,
-    class_leaf,
     function_leaf,
     resumable_leaf,
 )
@@ -46,7 +46,7 @@ def bind_leaf(instance: NodeInstance, signature: LeafSignature) -> Compiled:
             signature.given[names] = _fill(instance, leaf.start, names, ())
         constants, stored = _arguments(instance, ports, binding)
         start = partial(leaf.start, **constants) if constants else leaf.start
-        return class_leaf(instance, leaf, start, stored)
+        return _both(ClassLeaf(instance, leaf, start, stored))
     key = instance.node.ports, instance.scope
     if key not in signature.calls:
         signature.calls[key] = _find_call(instance, signature)
@@ -56,15 +56,18 @@ def bind_leaf(instance: NodeInstance, signature: LeafSignature) -> Compiled:
             raise instance.error(f"{instance.node.id} is a condition: it has to return its answer, and can't yield")
         if KEPT in given:
             return resumable_leaf(instance, call, stored)
-        generator = GeneratorLeaf(instance, call, stored)
-        return generator.tick, generator.halt
+        return _both(GeneratorLeaf(instance, call, stored))
     if kind == "function":
         return function_leaf(instance, call, stored)
     from btlang.engine.leaves.background import background_leaf
 
     proxied = {name: instance.service(name) for name in given if name in instance.state.proxies}
     background = background_leaf(instance, call, binding.thread, "halted" in given, proxied)
-    return class_leaf(instance, background, background.start, stored)
+    return _both(ClassLeaf(instance, background, background.start, stored))
+
+
+def _both(leaf: ClassLeaf | GeneratorLeaf) -> Compiled:
+    return leaf.tick, leaf.halt
 
 
 def _ports(instance: NodeInstance, binding: LeafBinding) -> dict[str, str]:

@@ -77,46 +77,59 @@ def function_leaf(instance: NodeInstance, call: Callable[..., Any], stored: Stor
 class GeneratorLeaf:
     """A leaf that runs a generator function; `stored` returns the values that are read at each start.
 
-    A class and not two closures as most nodes are: there are many of them, and each would need six cells.
+    A class and not two closures as most nodes are: there are many of them, and each would need six cells. `send` goes
+    on with what runs, and is None if nothing does; regions (regions.py) call it, and hand on what isn't None.
     """
 
-    __slots__ = ("call", "generator", "instance", "stored", "trace")
+    __slots__ = ("call", "instance", "send", "stored", "trace")
 
     def __init__(self, instance: NodeInstance, call: Callable[..., Any], stored: Stored) -> None:
         self.instance = instance
         self.call = call
         self.stored = stored
         self.trace = _trace_of(instance)
-        self.generator: Any = None
+        self.send: Any = None  # that of the generator that is running; a call of it is quicker than `next`
 
     def tick(self) -> int:
         try:
-            if self.generator is None:
+            if self.send is None:
                 values = None if self.stored is None else self.stored()
                 interrupts = self.instance.state.interrupts
                 if interrupts or self.trace is not None:
                     _begin(interrupts, self.trace)
-                self.generator = self.call() if values is None else self.call(**values)
-            given = next(self.generator)
-            if given is None or given == RUNNING:
-                return RUNNING
-            running, self.generator = self.generator, None
-            running.close()
-            status = self.instance.cannot_know(f"it yielded {given!r}: to end, return that; a yield says that it runs")
-        except StopIteration as stop:
-            self.generator = None
-            status = status_of(self.instance, stop.value)
+                self.send = (self.call() if values is None else self.call(**values)).send
+            given = self.send(None)
         except KeyboardInterrupt:
             raise
         except BaseException as problem:
-            self.generator = None
-            status = fail_with(self.instance, problem)
-        return status if self.trace is None else self.trace.ended(status)
+            return self.ended(problem)
+        return RUNNING if given is None else self.yielded(given)
+
+    def yielded(self, given: object) -> int:
+        """Return the status if the generator has yielded this."""
+        try:
+            if given == RUNNING:
+                return RUNNING
+            running, self.send = self.send, None
+            running.__self__.close()
+        except KeyboardInterrupt:
+            raise
+        except BaseException as problem:
+            return self.ended(problem)
+        reason = f"it yielded {given!r}: to end, return that; a yield says that it runs"
+        return _completed(self.trace, self.instance.cannot_know(reason))
+
+    def ended(self, problem: BaseException) -> int:
+        """Return the status if the generator has raised this, or has returned."""
+        self.send = None
+        if isinstance(problem, StopIteration):
+            return _completed(self.trace, status_of(self.instance, problem.value))
+        return _completed(self.trace, fail_with(self.instance, problem))
 
     def halt(self, keep: bool) -> None:
-        if self.generator is not None:
-            running, self.generator = self.generator, None
-            _stop(self.instance, running.close)
+        if self.send is not None:
+            running, self.send = self.send, None
+            _stop(self.instance, running.__self__.close)
 
 
 class KeptValues(dict[str, "Any"]):
@@ -152,45 +165,68 @@ def resumable_leaf(instance: NodeInstance, call: Callable[..., Any], stored: Sto
     return tick, halt
 
 
-def class_leaf(instance: NodeInstance, leaf: Any, start: Callable[..., Any], stored: Stored) -> Compiled:
-    """Compile an object with `tick` and `halt`, and what starts it; `stored` returns what is read at each start."""
-    go_on = leaf.tick
-    trace = _trace_of(instance)
-    interrupts = instance.state.interrupts if getattr(leaf, "interrupts", True) else []
-    running = False
+class ClassLeaf:
+    """A leaf that runs an object with `tick` and `halt`, which `start` starts; as GeneratorLeaf otherwise."""
 
-    def tick() -> int:
-        nonlocal running
+    __slots__ = ("instance", "interrupts", "leaf", "send", "start", "stored", "trace")
+
+    def __init__(self, instance: NodeInstance, leaf: Any, start: Callable[..., Any], stored: Stored) -> None:
+        self.instance = instance
+        self.leaf = leaf
+        self.start = start
+        self.stored = stored
+        self.trace = _trace_of(instance)
+        self.interrupts = instance.state.interrupts if getattr(leaf, "interrupts", True) else _NO_INTERRUPTS
+        self.send: Any = None  # the `tick` of the object while it runs
+
+    def tick(self) -> int:
         try:
-            if running:
-                result = go_on()
+            if self.send is not None:
+                given = self.send()
             else:
-                values = None if stored is None else stored()
-                if interrupts or trace is not None:
-                    _begin(interrupts, trace)
-                running = True
-                result = start() if values is None else start(**values)
-            if result is None or result == RUNNING:
-                return RUNNING
-            running = False
-            status = SUCCESS if result is True else status_of(instance, result)
-        except ActionFailed as problem:
-            running = False
-            status = fail_with(instance, problem)
+                values = None if self.stored is None else self.stored()
+                if self.interrupts or self.trace is not None:
+                    _begin(self.interrupts, self.trace)
+                self.send = self.leaf.tick
+                given = self.start() if values is None else self.start(**values)
         except KeyboardInterrupt:
             raise
         except BaseException as problem:
-            halt(False)
-            status = fail_with(instance, problem)
-        return status if trace is None else trace.ended(status)
+            return self.ended(problem)
+        return RUNNING if given is None else self.yielded(given)
 
-    def halt(keep: bool) -> None:
-        nonlocal running
-        if running:
-            running = False
-            _stop(instance, leaf.halt)
+    def yielded(self, given: object) -> int:
+        """Return the status if the object has returned this."""
+        try:
+            if given == RUNNING:
+                return RUNNING
+            self.send = None
+            status = SUCCESS if given is True else status_of(self.instance, given)
+        except KeyboardInterrupt:
+            raise
+        except BaseException as problem:
+            return self.ended(problem)
+        return _completed(self.trace, status)
 
-    return tick, halt
+    def ended(self, problem: BaseException) -> int:
+        """Return the status if the object has raised this."""
+        if isinstance(problem, ActionFailed):
+            self.send = None
+        else:
+            self.halt(False)
+        return _completed(self.trace, fail_with(self.instance, problem))
+
+    def halt(self, keep: bool) -> None:
+        if self.send is not None:
+            self.send = None
+            _stop(self.instance, self.leaf.halt)
+
+
+_NO_INTERRUPTS: list[Callable[[], None]] = []
+
+
+def _completed(trace: LeafTrace | None, status: int) -> int:
+    return status if trace is None else trace.ended(status)
 
 
 def _trace_of(instance: NodeInstance) -> LeafTrace | None:
@@ -254,6 +290,11 @@ def answering(call: Callable[..., Any]) -> Callable[..., Any]:
         return answer
 
     return ask
+
+
+def find_status(instance: NodeInstance, answer: object) -> int:
+    """Return the status of what a function returned, or of the exception that it raised instead."""
+    return fail_with(instance, answer) if isinstance(answer, BaseException) else status_of(instance, answer)
 
 
 def status_of(instance: NodeInstance, result: object) -> int:

@@ -29,6 +29,8 @@ _JSON = "json:"
 _FIRST_PAUSE, _LONGEST_PAUSE = 500.0, 8000.0  # milliseconds
 WAS_TRUE = "it is true"
 """The reason of an Inverter: what it denies succeeded."""
+NOT_THIS_TIME = "it turns success into failure"
+"""The reason of a ForceFailure."""
 _IF_EMPTY = {name: status for name, status in STATUSES.items() if status != RUNNING}
 
 
@@ -64,7 +66,7 @@ def force_failure(instance: NodeInstance, children: Sequence[Compiled]) -> Compi
 
     def tick() -> int:
         status = child()
-        return instance.fail("it turns success into failure") if status == SUCCESS else status
+        return instance.fail(NOT_THIS_TIME) if status == SUCCESS else status
 
     return tick, halt
 
