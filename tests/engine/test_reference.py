@@ -33,12 +33,17 @@ LEFT_RUNNING = n("LoopString", n("RateController", Node("F:k"), hz=0.4), queue="
 """The loop ends while its child, which was SKIPPED, counts as RUNNING: its next run finds it so."""
 
 
+PAUSED = n(
+    "PauseResumeController", n("RateController", n("SkipUnlessUpdated", n("Sleep", msec=0), entry="{q}"), hz=1.0)
+)
+"""The controller completes while its child, which was SKIPPED, would go on: it is halted."""
 ENGINES = st.lists(st.sampled_from((NEVER, 0, 1, 2)), min_size=1, max_size=4)
 """After how many ticks the first engine generates its regions, the second, and so on, and again from the first."""
 
 
 @example(LEFT_RUNNING, "ttt", False, True, [NEVER], USUAL)
 @example(LEFT_RUNNING, "ttt", False, True, [0], USUAL)
+@example(PAUSED, "ttt", False, True, [NEVER], USUAL)
 @searches(150, 20000)
 @given(TREES | BUSY, letters("ttttthperm", 3, 12), st.booleans(), st.booleans(), ENGINES, SIZES)
 def test_engine_equals_reference(

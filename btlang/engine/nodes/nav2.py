@@ -226,7 +226,10 @@ def pause_resume_controller(_instance: NodeInstance, children: Sequence[Compiled
 
     def tick() -> int:
         status = child()
-        return SUCCESS if status == SKIPPED else status
+        if status != SKIPPED:
+            return status
+        halt_child(False)
+        return SUCCESS
 
     return tick, halt_child
 
