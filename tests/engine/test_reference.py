@@ -34,7 +34,7 @@ LEFT_RUNNING = n("LoopString", n("RateController", Node("F:k"), hz=0.4), queue="
 
 
 PAUSED = n(
-    "PauseResumeController", n("RateController", n("SkipUnlessUpdated", n("Sleep", msec=0), entry="{q}"), hz=1.0)
+    "PauseResumeController", n("RateController", n("SkipUnlessUpdated", n("Sleep", msec=0), entry="{q}"), hz=0.4)
 )
 """The controller completes while its child, which was SKIPPED, would go on: it is halted."""
 ENGINES = st.lists(st.sampled_from((NEVER, 0, 1, 2)), min_size=1, max_size=4)
