@@ -120,9 +120,10 @@ class Measures:
         return time, end
 
     def _of_day(self, text: Words, at: int, clock: tuple[float, int | None, int]) -> tuple[str, int] | None:
-        """`5:30` as it is written, on a clock of 24 hours; None for a time without figures, or later in the day."""
+        """`5:30` and `9 o'clock` as they are written, on a clock of 24 hours; None for other times."""
         hour, minutes, end = clock
-        if ":" not in text.words[at] or hour >= _MORNING:
+        is_written = hour < _MORNING if ":" in text.words[at] else hour >= _MORNING and end == at + 2
+        if not is_written or hour % 1 or (":" not in text.words[at] and text.words[at + 1] not in self._hour_words):
             return None
         text.assumed[at] = f"{int(hour):02}:{minutes or 0:02}", end, None
         return text.assumed[at][:2]
