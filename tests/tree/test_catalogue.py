@@ -17,6 +17,7 @@ AT_HOME = {
     "engine/compile.py",  # semantics
     "passes/__init__.py",
     "passes/lower.py",
+    "engine/nodes/templates.py",
     "passes/lower_time.py",
     "passes/scope.py",
     "passes/scripts.py",

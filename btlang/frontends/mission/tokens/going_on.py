@@ -287,10 +287,10 @@ class GoingOn(SentenceReader):
                 tokens.insert(at, Token("try", tokens[at].start, tokens[at].start))
                 self._looked = 0, None, 0, frozenset()
 
-    def _settle_command(self, at: int) -> str:
+    def _settle_command(self, at: int, with_branches: bool = False) -> str:
         """See `settle`; the tokens that it makes have to be looked at anew."""
         self._looked = 0, None, 0, frozenset()
-        return settle(self._tokens, at)
+        return settle(self._tokens, at, with_branches)
 
     def _first_about(self, start: int, words: Span) -> int | None:
         """The first command of a statement about the thing that a pronoun among some words stands for."""

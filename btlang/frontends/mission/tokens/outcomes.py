@@ -176,8 +176,9 @@ class Outcomes(Limits):
         """`wait up to 5 min until somebody comes. If she says yes, A. If nobody comes, B`: B if the wait fails."""
         tokens, words = self._tokens, Span(self._text.source, self._tokens[form].start, self._tokens[-1].end)
         behind = run_end(tokens, waited + 1, MEASURES | STATEMENT_ENDS)
-        if tokens[behind].kind != WORKS and settle(tokens[:form], waited):
-            return self._settle(waited, form, words.end, end)
+        is_alone = tokens[waited + 1].kind not in ("and", "or")  # not one of two that are waited for
+        if tokens[behind].kind != WORKS and is_alone and settle(tokens[:form], waited, with_branches=True):
+            return self._settle(waited, form, words.end, end, with_branches=True)
         if tokens[behind].kind != WORKS:
             self._unclear(words)
             return end
@@ -186,14 +187,14 @@ class Outcomes(Limits):
         tokens.append(Token("otherwise", words.start, words.end))
         return end
 
-    def _settle(self, at: int, form: int, stop: int, end: int) -> int:
+    def _settle(self, at: int, form: int, stop: int, end: int, with_branches: bool = False) -> int:
         """Makes words from a form up to a character, and a word, ask whether the command at a place failed."""
         tokens, start = self._tokens, self._tokens[form].start
         del tokens[form:]
         go_on(tokens)
         command = tokens[at]
         self._make_fail(at)
-        role = self._settle_command(at)
+        role = self._settle_command(at, with_branches)
         tries = self._tries_of(tokens.index(command), end)
         if not role:
             self._unclear(Span(self._text.source, start, stop))

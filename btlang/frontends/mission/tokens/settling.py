@@ -75,11 +75,11 @@ def asked_about(tokens: Sequence[Token], end: int, is_it: Callable[[Token], bool
     return None
 
 
-def settle(tokens: list[Token], at: int) -> str:
+def settle(tokens: list[Token], at: int, with_branches: bool = False) -> str:
     """Makes the tokens behind a command, up to the end, what is done if it works; the next token asks if it fails.
 
     Returns the role of that: "otherwise", or "if_fails" where nothing stands between, or "" where it isn't clear
-    whether the rest belongs to the command. A statement before the command ends there.
+    whether the rest belongs to the command, as it isn't with branches there. A statement before the command ends there.
     """
     end = run_start(tokens, len(tokens), STATEMENT_ENDS)
     first, behind = statement_start(tokens, at), run_end(tokens, at + 1, MEASURES)
@@ -89,7 +89,7 @@ def settle(tokens: list[Token], at: int) -> str:
     times, before = before[:timed], before[timed:]  # `at 9 am wait at the door for 5 min. If nobody comes, A`
     is_tried = before[:1] != [] and before[0].kind == "try"
     before = before[is_tried:]
-    allowed = _BRANCHED if tokens[at].kind == "condition" else _BETWEEN
+    allowed = _BRANCHED if with_branches else _BETWEEN
     if any(token.kind not in allowed or token.value == FAILS for token in rest):
         return ""
     if not _sets_of(tokens[start:behind]).isdisjoint(text for token in rest for text in _texts(token)):
