@@ -48,6 +48,8 @@ _DONE = ("command", "name", "close")
 _AMOUNTS = ("every", "until_time", "for")
 _UNTIL = ["until", "condition"]
 _ELSEWHERE = "go to the lab and wave. Do the same in the kitchen"
+_DENYING = ("not", "open")
+_HOW_OFTEN = MEASURES | {"every"}
 _PLAIN = frozenset(("command", "name", "wait", "open", "close", *JOINTS, *MEASURES))
 
 
@@ -198,10 +200,9 @@ def with_times_first(tokens: list[Token]) -> None:
 
 def with_waits_each_time(tokens: list[Token], again: Container[str], source: Source) -> None:
     """Make `wait 5 min and ask her again until she says yes` wait before each question."""
-    for at in reversed(range(2, len(tokens) - 2)):
-        asked, until = tokens[at], tokens[at + 1]
-        wait = run_start(tokens, at, JOINTS) - 1
-        if until.kind != "until" or not is_question(asked) or not 0 <= wait < at - 1 or tokens[wait].kind != "wait":
+    for at in reversed([at for at, token in enumerate(tokens[:-1]) if tokens[at + 1].kind == "until"]):
+        asked, wait = tokens[at], run_start(tokens, at, JOINTS) - 1
+        if not 0 <= wait < at - 1 or tokens[wait].kind != "wait" or not is_question(asked):
             continue
         if source.text[asked.start : asked.end].lower().rsplit(" ", 1)[-1] in again:
             here, there = tokens[wait].start, asked.end
@@ -210,15 +211,10 @@ def with_waits_each_time(tokens: list[Token], again: Container[str], source: Sou
 
 def with_tries_apart(tokens: list[Token]) -> None:
     """Let `go to the lab and try to open it up to 3 times. If it still fails, A` do A for the tries alone."""
-    for at in reversed(range(3, len(tokens))):
+    for at in reversed([at for at, token in enumerate(tokens) if token.value == FAILS and at > 2]):
         last = at - 1
-        done = run_start(tokens, last, MEASURES | {"every"}) - 1
-        if (
-            tokens[at].value != FAILS
-            or tokens[last].kind != "stop"
-            or done == last - 1
-            or tokens[done - 1].kind != "try"
-        ):
+        done = run_start(tokens, last, _HOW_OFTEN) - 1
+        if tokens[last].kind != "stop" or done == last - 1 or tokens[done - 1].kind != "try":
             continue
         joint, first = run_start(tokens, done - 1, JOINTS), statement_start(tokens, done)
         is_defined = first > 0 and tokens[first - 1].kind == "define"
@@ -234,14 +230,13 @@ def with_rest_of_rounds(tokens: list[Token], vocabulary: Lexicon, source: Source
     end = -1
     while end + 1 < len(tokens):
         first, end = end + 1, statement_end(tokens, end + 1)
-        kinds = {token.kind for token in tokens[first:end]}
-        if first == end or tokens[first].kind not in _ENDLESS or not kinds.isdisjoint(_BOUNDS):
+        if tokens[first].kind not in _ENDLESS or not _BOUNDS.isdisjoint(token.kind for token in tokens[first:end]):
             continue
         if any(isinstance(each.value, Called) and each.value.entry.id == DAYTIME for each in tokens[first:end]):
             continue  # `every hour between 8 am and 6 pm, A`
         last, goes_on = end, False
         while last + 2 < len(tokens) and tokens[last].kind == "semi":
-            kind, asked = tokens[last + 1].kind, tokens[run_end(tokens, last + 2, ("not", "open"))]
+            kind, asked = tokens[last + 1].kind, tokens[min(run_end(tokens, last + 2, _DENYING), len(tokens) - 1)]
             is_done, is_event = _is_about_done(asked), vocabulary.says_event(source.text[asked.start : asked.end])
             is_asked = kind in _CONDITIONAL and (is_done or not is_event)
             if not (is_asked or kind in ("delay", "then") or (last > end and kind in (*_DONE, "wait"))):
@@ -265,9 +260,9 @@ def _is_about_done(asked: Token) -> bool:
 
 def with_days_then(tokens: list[Token]) -> None:
     """Make `unless it is Saturday, at 7 am A` ask for the day at that time, and not when the mission begins."""
-    for form in reversed(range(len(tokens))):
+    for form in reversed([at for at, token in enumerate(tokens) if token.kind in _CONDITIONAL]):
         time = run_end(tokens, form + 1, IN_CONDITIONS) + 1
-        if tokens[form].kind not in _CONDITIONAL or tokens[time : time + 1] == [] or tokens[time].kind not in _DAILY:
+        if tokens[time : time + 1] == [] or tokens[time].kind not in _DAILY:
             continue
         asked = [token for token in tokens[form:time] if token.kind == "condition"]
         if any(token.kind == "otherwise" for token in tokens[time : statement_end(tokens, time)]):
