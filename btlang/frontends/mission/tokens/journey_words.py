@@ -323,6 +323,10 @@ class JourneyWords(SentenceReader):
         found = relocated(found, places) if found is not None else None
         if found is None or found.last <= max(behind, match.last):
             return 0
+        if text.words[found.last - 1] in vocabulary.asking["by_then"]:  # `wait for Bob to come by noon`
+            time = self._phrase(found.last - 1)
+            is_time = time is not None and time.meaning.role == "by_time" and time.last > found.last
+            found = found.replace(last=found.last - is_time)
         if (who := _whoever(found)) is not None:
             found = _with_person(found, who.replace(how=_ANY).text)
         wait = self._calls.token(match, at)
