@@ -232,6 +232,11 @@ def with_arguments(said: Called | Listed, rows: Sequence[tuple[tuple[str, str], 
     return changed
 
 
+def with_text(arguments: tuple[tuple[str, str], ...], old: str, new: str) -> tuple[tuple[str, str], ...]:
+    """The same arguments with another text wherever one text is given."""
+    return tuple((name, new if text == old else text) for name, text in arguments)
+
+
 def texts_of(said: Called | Listed) -> tuple[str, ...]:
     """The values of a phrase, or of all that a list stands for."""
     return tuple(text for arguments in arguments_of(said) for _, text in arguments)

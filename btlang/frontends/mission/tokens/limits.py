@@ -17,6 +17,7 @@ from btlang.frontends.mission.token import (
     run_start,
     statement_start,
     texts_of,
+    with_text,
 )
 from btlang.frontends.mission.tokens.going_on import GoingOn
 from btlang.frontends.mission.tokens.journey_words import SEES
@@ -83,7 +84,7 @@ class Limits(GoingOn):
         slot, choice = next(slot.name for slot in entry.slots if slot.type == OBJECT), choice_of(things[0])
         picked = Called(entry, ((slot, things[0]),))
         if choice is not None:  # once it is held, it isn't where it was
-            held = tuple((name, f"{{{choice.key}}}" if text == choice.text else text) for name, text in value.arguments)
+            held = with_text(value.arguments, choice.text, f"{{{choice.key}}}")
             command.value = value.replace(arguments=held)
         start = command.start
         self._tokens[at:at] = [Token("command", start, start, picked), Token("then", start, start)]

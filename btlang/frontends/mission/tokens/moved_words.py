@@ -78,14 +78,11 @@ def drop_where_it_is(text: Words, vocabulary: Lexicon) -> None:
     words, left = text.words, vocabulary.left_there
     if text.distinct.isdisjoint(left):
         return  # as nearly always
+    forms = {*vocabulary.before_conditions, *(word for phrase in vocabulary.roles["after"] for word in phrase.split())}
     for at in reversed([at for at, word in enumerate(words) if word in left]):
         said = find(left, words, at)
         first = max(text.earlier(at)[1], *(i for i in range(at) if words[i] == ","), 0)  # in the same clause
         excepted = next(filter(None, (vocabulary.values.exception(text, i) for i in range(first, at - 2))), 0)
-        forms = {
-            *vocabulary.before_conditions,
-            *(word for phrase in vocabulary.roles["after"] for word in phrase.split()),
-        }
         leaves = excepted and words[excepted] not in forms  # but not `except if`, `but only after`
         if said is not None and words[said[1]][0] in ENDING and leaves:
             text.drop(at, said[1])

@@ -20,6 +20,7 @@ from btlang.frontends.mission.token import (
     statement_start,
     texts_of,
     with_arguments,
+    with_text,
 )
 from btlang.frontends.mission.tokens.repeated_statements import ELSEWHERE
 from btlang.frontends.mission.tokens.searches_there import SearchesThere
@@ -149,7 +150,7 @@ class Places(SearchesThere):
             choice = choice_of(held[0])
             if choice is not None and called is not None:  # once it is held, it isn't where it was
                 held = [f"{{{choice.key}}}"]
-                said.value = with_arguments(called, [_replaced(called.arguments, choice.text, held[0])])
+                said.value = with_arguments(called, [with_text(called.arguments, choice.text, held[0])])
         self._append_tour(journey, at)
         tokens[-1].start = said.start
         met = self._if_met(said, self._handling(_PUT, held, end)) if called is not None else [said]
@@ -335,10 +336,6 @@ class Places(SearchesThere):
         listed = self._context.listed.get(PLACE)
         if journey.values[0].more and not journey.values[0].group and listed:
             self._calls.make_round(self._tokens[-1], listed)
-
-
-def _replaced(arguments: tuple[tuple[str, str], ...], old: str, new: str) -> tuple[tuple[str, str], ...]:
-    return tuple((name, new if text == old else text) for name, text in arguments)
 
 
 def _goal_of(journey: Match) -> str:

@@ -67,6 +67,8 @@ def reworded(text: Words, vocabulary: Lexicon) -> list[Diagnostic]:
 
 def _say_plainly(text: Words, vocabulary: Lexicon) -> None:
     """Put plain words in the place of idioms: `it is past 10 am` as `it is after 10 am`."""
+    if text.distinct.isdisjoint(vocabulary.idioms) and text.distinct.isdisjoint(vocabulary.last_idioms):
+        return
     said = list[tuple[int, int, str]]()
     for at, word in enumerate(text.words):
         found = find(vocabulary.idioms, text.words, at) if word in vocabulary.idioms else None
