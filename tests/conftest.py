@@ -54,6 +54,8 @@ OVER_DDS = ("tests/ros/", "tests/diagnostics/test_pages.py::test_examples[BT107]
 _FOLDERS = ("components", "devices", "lies", "lsp", "monitor", "server", "speech", "task", "terminal", "web")
 IN_REAL_TIME = (*OVER_DDS, *(f"tests/{folder}/" for folder in _FOLDERS))
 """Tests whose processes wait for one another, and for the clock: what only computes gives way to them."""
+_WAITING = {"asyncio", "subprocess", "threading", "time"}
+"""What a module of tests imports whose tests do so, too, in whatever folder it is."""
 _AT_ONCE = 2
 """The tests of OVER_DDS that run at a time: they wait most of the time. Of three on two cores some come too late."""
 _WORKER = int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw"))
@@ -96,11 +98,17 @@ def pytest_configure(config: pytest.Config) -> None:
 def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, object, object]:
     """A test over DDS waits for its turn, and one that only computes gives way to those that can't wait."""
     over_dds = item.nodeid.startswith(OVER_DDS)
-    _be_nice(_FIRST if over_dds else 0 if item.nodeid.startswith(IN_REAL_TIME) else _GIVING_WAY)
+    _be_nice(_FIRST if over_dds else 0 if _in_real_time(item) else _GIVING_WAY)
     if not over_dds:
         return (yield)
     with _turn():
         return (yield)
+
+
+def _in_real_time(item: pytest.Item) -> bool:
+    """Whether a test waits for other processes or the clock."""
+    names = vars(item.module) if isinstance(item, pytest.Function) else {}
+    return item.nodeid.startswith(IN_REAL_TIME) or not _WAITING.isdisjoint(names)
 
 
 def _be_nice(niceness: int) -> None:

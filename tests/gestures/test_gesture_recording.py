@@ -13,6 +13,7 @@ import pytest
 from btlang.cli import main
 from btlang.devices.dynamixel import control_table as table
 from btlang.devices.dynamixel.fake_bus import FakeBus, FakeServo
+from btlang.devices.dynamixel.protocol import PING
 from tests.devices.dynamixel_rig import PATIENCE, degrees
 
 ARM = """name = "arm"
@@ -82,6 +83,14 @@ def seen(hand: Hand) -> None:
         time.sleep(0.01)
 
 
+def given_up(hand: Hand) -> None:
+    """Waits until the robot tries one that is silent again, which it does only after it has given up to wait for it."""
+    count, end = hand.bus.heard[PING], time.monotonic() + PATIENCE
+    while hand.bus.heard[PING] == count:
+        assert time.monotonic() < end
+        time.sleep(0.01)
+
+
 def test_poses_are_where_the_joints_were(hand: Hand) -> None:
     elbow, wrist = hand.servos
     elbow.write(table.TORQUE, b"\1")
@@ -140,7 +149,7 @@ def test_a_servo_that_falls_silent_is_named(hand: Hand) -> None:
         seen(hand)
         yield "\n"
         wrist.silent = True
-        time.sleep(0.5)
+        given_up(hand)
         yield "\n"
         yield "end\n"
 

@@ -40,7 +40,7 @@ def test_the_simulated_robot_is_that_of_the_file(start_sim, client: Client) -> N
 
 
 def test_a_mission_runs_on_it(start_sim, capfd: pytest.CaptureFixture[str]) -> None:
-    start_sim("--robot", "small", "--speed", "5")  # at 20 a pause of 50 ms on a busy machine is a second of standing
+    start_sim("--robot", "small", "--speed", "2")  # at 5 a pause of 200 ms on a busy machine is a second of standing
     assert main(["run", "-c", "look left then raise the arm then move forward 30 cm", *SMALL]) == 0
     assert "The mission succeeded" in capfd.readouterr().out
 
