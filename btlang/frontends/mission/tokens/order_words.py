@@ -239,6 +239,8 @@ class OrderWords(ClockWords, JourneyWords, WayWords):
 
     def _instead(self, match: Match, at: int) -> int:
         """`otherwise wave instead`; elsewhere it is open what isn't done."""
+        if not self._tokens:
+            return match.last
         self._with_rest_of_tried()
         before = self._tokens[statement_start(self._tokens, len(self._tokens)) :]
         settled = next((token for token in before if token.kind == "otherwise" and token.value == FAILS), None)
