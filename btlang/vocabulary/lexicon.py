@@ -477,8 +477,8 @@ class Lexicon:
                 self._add_words(phrase, Meaning(role, between=self.meanings.get(phrase, "")))
         for words, rounds in self.counts.items():
             self._add_words(words, Meaning("count", value=rounds))
-            limits = ((role, phrase) for role in _MOST for phrase in self.roles.get(role, ()) if rounds > 0)
-            for role, phrase in limits:  # `at most twice`
+            numbers = ((role, phrase) for role in (*_MOST, "count") for phrase in self.roles.get(role, ()) if rounds > 0)
+            for role, phrase in numbers:  # `at most twice`, `exactly twice`
                 if _TIMES in phrase:
                     self._add_words(phrase.replace(_TIMES, words), Meaning(role, value=rounds))
         for node_id, words in self.nodes.items():

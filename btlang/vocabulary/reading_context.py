@@ -246,6 +246,10 @@ class ReadingContext:
             else ""
         )
 
+    def may_list_on(self, text: Words, at: int) -> bool:
+        """Whether a list may go on at a word: with a comma, a joiner, or, in a spoken list, an article."""
+        return text.words[at] in self.joiners or at in text.articles
+
     def wider_list(self, text: Words, listed: SlotValue) -> Iterator[SlotValue]:
         """The lists that what stands behind one makes of all its values: `the cup and the bottle from the lab`.
 

@@ -162,7 +162,7 @@ def longest(
                     one = SlotValue(name, kind, value[0], i, value[1])
                     paths.append((child, value[1], (*found, one)))
                     is_second = kind == OBJECT and any(value.type == OBJECT for value in found)
-                    if lists and words[value[1]] in context.joiners and not is_second and _may_go_on(child, text):
+                    if lists and context.may_list_on(text, value[1]) and not is_second and _may_go_on(child, text):
                         listed = _listed(root, text, one, context, names, is_subject=i == at and not found)
                         if listed is not None:
                             wider_lists = (listed, *context.wider_list(text, listed))
@@ -305,13 +305,14 @@ def _listed(
     more: list[str] = []
     is_described = is_related(first.text)
     last, joiner, ones_elsewhere = first.last, "", context.values.role_words.is_one_elsewhere
+    linked, end = 0, first.last  # `the kitchen the lab and the office`: spoken lists have no commas, but a joiner
     while True:
         at = last
         comma = text.words[at] == ","
         at += comma
         joined = _joiner(root, names, text, at, context) if text.words[at] in context.joiners else None
         role = joined.meaning.role if joined is not None and joined.meaning.role in ("and", "or", "nor") else ""
-        if (joiner and role != joiner) or not (role or comma):
+        if (joiner and role != joiner) or not (role or comma or at in text.articles):
             break
         if joined is not None and role:
             at = joined.last
@@ -328,8 +329,11 @@ def _listed(
             *_, value = value, *context.wider(first.type, text, at, value)
         more.append(value[0])
         last, joiner = value[1], role
-    if not more:
+        if role or (comma and linked == len(more) - 1):
+            linked, end = len(more), last
+    if not linked:
         return None
+    more, last = more[:linked], end
     made: SlotValue = first.replace(more=tuple(more), joiner=joiner, last=last)
     if first.name == VIA and joiner == "and":  # one way through all of them
         made = made.replace(text="; ".join((first.text, *more)), more=(), joiner="")

@@ -226,7 +226,7 @@ class _Filling:
                 continue
             one = SlotValue(role.slot, role.type, value[0], at, value[1])
             self._go_on(one.last, {**filled, role.name: one}, has_particle)
-            if text.words[one.last] in context.joiners:
+            if context.may_list_on(text, one.last):
                 listed = self._list_of(one)
                 if listed is not None and not self._is_container(role) and not (role.name == PATH and listed.more):
                     for every in (listed, *context.wider_list(text, listed)):

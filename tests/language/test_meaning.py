@@ -41,6 +41,7 @@ def in_one_line(mission: btlang.Mission) -> str:
         *rows("counts.txt"),
         *rows("carried.txt"),
         *rows("order.txt"),
+        *rows("journeys.txt"),
     ],
     ids=lambda text: text,
 )

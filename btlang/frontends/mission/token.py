@@ -248,9 +248,9 @@ def drives(value: Value) -> TypeGuard[Called | Listed]:
 
 
 def constraint_of(token: Token) -> Constraint | None:
-    """What a command asks of the others in its statement, None for any other token."""
+    """What a command, raw or grouped, asks of the others in its statement; None for any other token."""
     value = token.value
-    if token.kind != "command" or not isinstance(value, Called | Listed) or not value.entry.constrains:
+    if token.kind not in ("command", "COMMAND") or not isinstance(value, Called | Listed) or not value.entry.constrains:
         return None
     return Constraint(value.entry.constrains, texts_of(value))
 

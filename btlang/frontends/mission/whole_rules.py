@@ -1,18 +1,19 @@
 """Constraints that hold over the whole mission: `never enter the hall`, and `avoid the hall` behind all journeys.
 
-Each is a statement of its own at the top of the mission. Any other constraint that stands alone holds from there on.
+Each is a statement of its own at the top of the mission, or several are joined there. Any other constraint that stands alone holds from there on.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence, Set
 
-from btlang.frontends.mission.token import Called, Listed, Token
+from btlang.frontends.mission.token import Called, Listed, Token, constraint_of
 from btlang.text.source import Source
 from btlang.tree.ast import Ast, Chain
 from btlang.vocabulary.capabilities import MOVES
 
 _OPENS = frozenset(("OPEN", "COND_OPEN", "COND_OF", "FORM", "AFTER_FORM", "LOOP", "IF_WORKS", "TEST"))
+_JOINTS = frozenset(("AND", "COMMA"))
 _CLOSES = frozenset(("CLOSE", "COND_CLOSE", "END"))
 
 
@@ -24,7 +25,7 @@ def whole_rules(tokens: Sequence[Token], source: Source, words: Set[str]) -> fro
         if not statement:
             continue
         first, last = statement[0], statement[-1]
-        if len(statement) == 1 and _is_constraint(first):
+        if all(token.kind in _JOINTS or constraint_of(token) is not None for token in statement):
             said = source.text[start : first.end].lower().split()
             before, behind = statements[:number], statements[number + 1 :]
             if not words.isdisjoint(said) or (any(map(_has_journey, before)) and not any(map(_has_journey, behind))):
@@ -54,10 +55,6 @@ def _statements(tokens: Sequence[Token]) -> Iterator[list[Token]]:
         else:
             statement.append(token)
     yield statement
-
-
-def _is_constraint(token: Token) -> bool:
-    return token.kind == "COMMAND" and isinstance(token.value, Called | Listed) and bool(token.value.entry.constrains)
 
 
 def _has_journey(statement: Sequence[Token]) -> bool:

@@ -1,8 +1,8 @@
 """Commands that constrain the others of their statement: `go to the lab without entering the kitchen`, `avoid Z and A`.
 
 Wherever such a command stands in a statement (or bracket), it holds over the whole of it: what joins it to the others
-is left out, and the statement is put into a loop of one round when it ends. Where it stands alone, or behind `then`, it
-is a command like any other and holds from there on.
+is left out, and the statement is put into a loop of one round when it ends. Where it stands alone, among others of its
+kind, or behind `then`, it is a command like any other and holds from there on.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ _UNTIL = frozenset(("until", "before"))
 
 
 def taken(scan: Scan, token: Token) -> bool:
-    """Takes a constraint where an operand must come; False for any other token, and for one that stands alone."""
+    """Takes a constraint where an operand must come; False for any other token, and where there are only constraints."""
     constraint = constraint_of(token)
     if constraint is None:
         return False
     entry, _ = scan.around_statement()
     has_more = entry.statement == "open" or not entry.is_group
-    if has_more and len(scan.out) > entry.begins:
+    if has_more and len(scan.out) > entry.begins and not only_constraints(scan):
         if scan.out[-1].kind in ("OR", "OR_ELSE", "WIDE_OR"):
             words = scan.words(token)
             scan.fail(
@@ -70,9 +70,20 @@ def behind(scan: Scan, token: Token) -> bool:
     constraint = constraint_of(token)
     if constraint is None or scan.stack[-1].is_condition:
         return False
+    if only_constraints(scan):  # `never enter the hall never enter the lab`
+        scan.stack[-1].begin_chain()
+        scan.stack[-1].connective(scan.emit("COMMA", Token("comma", token.start, token.start)))
+        scan.operand_due = True
+        return True
     scan.around_statement()[0].constraints.append(constraint)
     scan.next(token, False)
     return True
+
+
+def only_constraints(scan: Scan) -> bool:
+    """Whether nothing but constraints has been said in the statement (or bracket), which are commands then."""
+    said = scan.out[scan.around_statement()[0].begins :]
+    return bool(said) and all(token.kind in _JOINTS or constraint_of(token) is not None for token in said)
 
 
 def _unjoin(scan: Scan) -> None:

@@ -14,6 +14,7 @@ from btlang.frontends.mission.grouping.bodies import (
     set_pace,
 )
 from btlang.frontends.mission.grouping.conditions import AMOUNTS, CONDITION_FORMS, STARTS_OPERAND, closes_statement
+from btlang.frontends.mission.grouping.constraints import only_constraints
 from btlang.frontends.mission.grouping.problems import both_readings, found_words, is_alone, prohibition, side_by_side
 from btlang.frontends.mission.grouping.readings import otherwise_of_another, repeated, twice_more, waits_first
 from btlang.frontends.mission.grouping.scan import ENDS, Scan, Unit
@@ -97,7 +98,7 @@ def comma(scan: Scan, token: Token) -> None:
         _widening(scan, following)
     elif (
         following.kind == "but"
-        or constraint_of(following) is not None
+        or (constraint_of(following) is not None and not only_constraints(scan))
         or (following.kind == "apart" and scan.raw[scan.at - 1].kind == "count")
     ):
         scan.at += 1

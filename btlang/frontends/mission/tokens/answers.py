@@ -33,7 +33,7 @@ from btlang.tree.answers import (
 )
 from btlang.vocabulary.antecedents import pronouns_for
 from btlang.vocabulary.match import Match
-from btlang.vocabulary.references import choice_of
+from btlang.vocabulary.references import NEAREST, SPEAKING, choice_of
 from btlang.vocabulary.value_type import PERSON, TEXT
 from btlang.vocabulary.word_tree import find
 
@@ -149,7 +149,7 @@ class Answers(AddressedTexts):
             self._tokens.append(Token("and", start, text.ends[at]))
         self._tokens.append(Token("if", start, start))
         self._end_reply(asked)
-        self.note_answerer()
+        self.note_answerer(NEAREST)
         self._tokens.append(asked)
         if has_comma:
             self._tokens.append(Token("comma", text.starts[last - 1], text.ends[last - 1]))
@@ -176,7 +176,7 @@ class Answers(AddressedTexts):
         self._calls.problems += missing_words(token, self._text.source, self._vocabulary)
         self._end_reply(token)
         if isinstance(token.value, Called) and token.value.entry.id in ABOUT_ANSWERS:
-            self.note_answerer()
+            self.note_answerer(NEAREST if token.value.entry.id == UNANSWERED else SPEAKING)
 
     def whole_answer(self, token: Token, match: Match) -> int:
         """`if he says picture book, A`: all words of an answer without quotes. Returns where the condition ends."""
@@ -202,11 +202,12 @@ class Answers(AddressedTexts):
         if is_question(command):
             self._met = self._context.latest.get(PERSON, "")
             if not self._met and self._calls.speaks_of_people:
-                self._calls.note_somebody()  # `ask the visitor "Tea?" and wave at them`
+                self._calls.note_somebody(how=SPEAKING)  # `ask the visitor "Tea?" and wave at them`
 
-    def note_answerer(self) -> None:
-        """Make pronouns stand for who answers, whatever is done for another answer; else for the nearest person.
+    def note_answerer(self, how: str = SPEAKING) -> None:
+        """Make pronouns stand for who answers, whatever is done for another answer: the one asked, else who spoke.
 
+        Where nobody did, that is the nearest person.
         `ask Bob "Tea?". If he says yes, go to Alice. If he says no, wave at him`
         """
         if not self._calls.speaks_of_people:
@@ -220,7 +221,7 @@ class Answers(AddressedTexts):
         if asked:
             self._context.latest[PERSON] = asked if choice is None else f"{{{choice.key}}}"
         else:
-            self._calls.note_somebody()
+            self._calls.note_somebody(how=how)
 
     def _end_reply(self, token: Token, is_denied: bool = False) -> None:
         """`if he says yes, A, and if he says no, B`: the second answer ends what is done for the first."""
