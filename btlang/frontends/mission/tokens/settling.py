@@ -147,8 +147,10 @@ def with_rounds(tokens: list[Token]) -> None:
         behind = run_end(tokens, at + 1, JOINTS)
         if all(each.kind != "and" for each in tokens[at + 1 : behind]):
             continue
-        first, end = statement_of(tokens, at)
-        if first == at or any(each.kind not in _SIMPLE for each in tokens[first:at]):
+        start, end = statement_of(tokens, at)
+        # behind `from 9 to 12,`, `if C,`, `A, then`
+        first = run_end(tokens, max(run_start(tokens, at, _SIMPLE - {"then"}), start), JOINTS)
+        if first >= at:
             continue
         if any(each.kind not in _SIMPLE for each in tokens[behind:end]) and tokens[behind].kind != "if":
             continue
@@ -156,8 +158,8 @@ def with_rounds(tokens: list[Token]) -> None:
             continue
         value = tokens[at - 1].value
         if isinstance(value, Called | Listed) and not value.entry.accompaniment:
-            start = tokens[first].start
-            tokens[first : at + 1] = [token, Token("comma", start, start), *tokens[first:at]]
+            here = tokens[first].start
+            tokens[first : at + 1] = [token, Token("comma", here, here), *tokens[first:at]]
 
 
 def with_either_end(tokens: list[Token]) -> None:
