@@ -105,7 +105,7 @@ class Lexicon:
         }  # fmt: skip
         """Words that questions and shortened journeys leave out, and those that begin questions, by what they are."""
         said = chain(*language["roles"].values(), *language["negations"].values(), *self.asking.values())
-        said = chain(said, language["relatives"], language["relative_denials"])
+        said = chain(said, language["politeness"], language["relatives"], language["relative_denials"])
         contracted = {
             word for phrase in said for word in re.split(r"[ /]", phrase) if re.fullmatch(r"[a-z]+'[a-z]+", word)
         }
