@@ -55,7 +55,7 @@ _JOINING = ("and", "then", "or", "but")
 
 _SHARED = (Entry, Role, SlotSpec, Frame, Beginnings, Span, Source)
 """Classes of what phrases refer to in many places."""
-_MOST, _TIMES = ("at_most", "up_to_times"), "{count} time(s)"
+_NUMBERED, _TIMES = ("at_most", "up_to_times", "count"), "{count} time(s)"
 _AT_END = " ."  # behind an idiom that is one only at the end of a clause
 _REPLIES = (("if_yes", True), ("if_no", False))
 
@@ -477,7 +477,7 @@ class Lexicon:
                 self._add_words(phrase, Meaning(role, between=self.meanings.get(phrase, "")))
         for words, rounds in self.counts.items():
             self._add_words(words, Meaning("count", value=rounds))
-            numbers = ((role, phrase) for role in (*_MOST, "count") for phrase in self.roles.get(role, ()) if rounds > 0)
+            numbers = ((role, phrase) for role in _NUMBERED for phrase in self.roles.get(role, ()) if rounds > 0)
             for role, phrase in numbers:  # `at most twice`, `exactly twice`
                 if _TIMES in phrase:
                     self._add_words(phrase.replace(_TIMES, words), Meaning(role, value=rounds))

@@ -1,6 +1,7 @@
 """Constraints that hold over the whole mission: `never enter the hall`, and `avoid the hall` behind all journeys.
 
-Each is a statement of its own at the top of the mission, or several are joined there. Any other constraint that stands alone holds from there on.
+Each is a statement of its own at the top of the mission, or several of them are joined there. Any other constraint that
+stands alone holds from there on.
 """
 
 from __future__ import annotations

@@ -19,7 +19,7 @@ _UNTIL = frozenset(("until", "before"))
 
 
 def taken(scan: Scan, token: Token) -> bool:
-    """Takes a constraint where an operand must come; False for any other token, and where there are only constraints."""
+    """Takes a constraint where an operand must come; False for any other token, and where it is a command itself."""
     constraint = constraint_of(token)
     if constraint is None:
         return False

@@ -25,6 +25,7 @@ from btlang.text.words import Words
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.reading_context import ReadingContext
+from btlang.vocabulary.references import COUNT, choice_of
 from btlang.vocabulary.trie import TrieNode, longest
 from btlang.vocabulary.value_type import PERSON, PLACE
 
@@ -143,6 +144,26 @@ def is_denied_by_verb(text: Words, match: Match, at: int, vocabulary: Lexicon) -
     said = f" {' '.join(text.words[at : match.last])} "
     denials = (denial for denials in vocabulary.negations.values() for denial in denials)
     return match.meaning.role == "negated" and not any(f" {denial} " in said for denial in denials)
+
+
+def with_each_denied(text: Words, match: Match, at: int, vocabulary: Lexicon) -> Match:
+    """Name all of a set of which something is denied: `nobody is in the rooms`, `the rooms are empty`; so of none."""
+    if all(value.more or not value.group for value in match.values):
+        return match  # as nearly always
+    if not is_denied_by_verb(text, match, at, vocabulary):
+        return match
+
+    def named(value: SlotValue) -> SlotValue:
+        choice = choice_of(value.group) if not value.more else None
+        parts = dict(choice.parts) if choice is not None else {}
+        count = parts.pop(COUNT, "")
+        names = vocabulary.values.likenesses.members(choice.replace(parts=tuple(parts.items()))) if choice else None
+        if not names or count not in ("", str(len(names))):
+            return value
+        made: SlotValue = value.replace(text=names[0], more=names[1:], joiner="and")
+        return made
+
+    return match.replace(values=tuple(map(named, match.values)))  # type: ignore[no-any-return]
 
 
 def check_negation(

@@ -270,8 +270,10 @@ def _names_meant(text: Words, vocabulary: Lexicon, at: int, first: int) -> tuple
     """The type and names of `any of them`, `one of the doors` or `any room` at a word, and where these words end."""
     words, values, of = text.words, vocabulary.values, vocabulary.asking["of_them"]
     noun = at + 1 + (words[at + 1] in of)
-    if noun > at + 1 and PERSON in values.pronouns.get(words[noun], ()):
+    named: dict[str, list[str]] = {}
+    if noun > at + 1:
         named = _named(text, vocabulary, text.earlier(first - 1)[1] if first else first, at)
+    if noun > at + 1 and PERSON in values.pronouns.get(words[noun], ()):
         several = ((kind, names) for kind, names in named.items() if len(names) > 1)
         kind, names = next(several, ("", []))
         return (kind, names, noun + 1) if kind else None
@@ -279,21 +281,24 @@ def _names_meant(text: Words, vocabulary: Lexicon, at: int, first: int) -> tuple
         return None
     for kind in (DOOR, PLACE):
         if values.phrases.is_type(kind, text, noun):
-            return kind, [*values.listed(kind)], noun + 1
+            return kind, named[kind] if len(named.get(kind, ())) > 1 else [*values.listed(kind)], noun + 1
         for meant, end in values.groups(text, noun, kind, is_bare=True):
             names = list(values.likenesses.described(meant.uncounted()))
-            if meant.type == kind and names:
-                return kind, names, end
+            spoken_of = [name for name in named.get(kind, ()) if name in names]
+            if meant.type == kind and names:  # `go to the lab and the hall. If one of the rooms is empty`: these two
+                return kind, spoken_of if len(spoken_of) > 1 else names, end
     return None
 
 
 def _named(text: Words, vocabulary: Lexicon, first: int, last: int) -> dict[str, list[str]]:
-    """The names between two words, by type."""
+    """The names between two words, by type; one that is of several types is under each of them."""
     found: dict[str, list[str]] = {}
     while first < last:
-        end, name, kind = max(_names_at(text, vocabulary, first), default=(first + 1, "", ""))
-        if name and name not in found.setdefault(kind, []):
-            found[kind].append(name)
+        ways = [*_names_at(text, vocabulary, first)]
+        end = max((way[0] for way in ways), default=first + 1)
+        for last_word, name, kind in ways:
+            if last_word == end and name not in found.setdefault(kind, []):
+                found[kind].append(name)
         first = end
     return found
 

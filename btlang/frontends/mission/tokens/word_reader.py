@@ -27,6 +27,7 @@ from btlang.frontends.mission.tokens.condition_words import (
     check_negation,
     is_so_of_none,
     placed_before,
+    with_each_denied,
     with_words_before,
 )
 from btlang.frontends.mission.tokens.journey_words import COMES
@@ -430,6 +431,7 @@ class WordReader:
             tokens.append(Token("not", start, start))
             if not self._shares:
                 self._problems += check_negation(self._text, match, at, self._vocabulary, tokens)
+            match = with_each_denied(self._text, match, at, self._vocabulary)
         token = self._calls.token(match, at)
         if is_so_of_none(token.value, self._text, match, at, self._vocabulary):
             token.value = token.value.replace(joiner="or")
