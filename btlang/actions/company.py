@@ -67,12 +67,15 @@ def follow(
     x: float | None = None,
     y: float | None = None,
     manner: str | None = None,
+    source: str | None = None,
 ) -> Steps:
-    """Follow a person to a place or a point, or without end.
+    """Follow a person to a place or a point, or without end, from a place where it meets them if there is one.
 
     Without a person it follows the last speaker, else the nearest person in view. Fails if the person is out of view
     for five seconds.
     """
+    if source is not None:
+        yield from go_to(robot, source)
     name = _somebody(robot, person)
     goal = None if place is None and x is None else where(robot, place, x, y)
     yield from keep_pace(robot, manner or "quickly", _follow(robot, name, goal, inf))

@@ -132,6 +132,13 @@ def test_follow_to_a_place(bench):
     assert b.robot.pose.x > 7.0
 
 
+def test_follow_goes_to_where_it_meets_somebody_first(bench):
+    b = bench(hall(walker(walks=(), x=1.0)))
+    following = b.begin(company.follow, 8.0, person="Ada", source="east")
+    assert b.robot.pose.x > 6.0
+    following.close()
+
+
 def test_following_goes_on_until_it_is_halted(bench):
     b = bench(hall(walker(walks=(Stop(11.0, 0.0), Stop(6.0, 1.0)), again=True)))
     b.begin(company.follow, 40.0, person="Ada").close()
