@@ -51,6 +51,7 @@ from btlang.frontends.mission.tokens.settling import (
     find_unclear_things,
     turn_branches,
     with_either_end,
+    with_goals_reached,
     with_rounds,
     with_stays,
     with_watched_waits,
@@ -108,6 +109,7 @@ class Lexer:
         with_watches(self.tokens)
         turn_branches(self.tokens)
         with_rounds(self.tokens)
+        with_goals_reached(self.tokens)
         with_either_end(self.tokens)
         with_watched_waits(self.tokens)
         with_stays(self.tokens, source, vocabulary.asking["standing_verbs"])

@@ -162,6 +162,14 @@ def with_rounds(tokens: list[Token]) -> None:
             tokens[first : at + 1] = [token, Token("comma", here, here), *tokens[first:at]]
 
 
+def with_goals_reached(tokens: list[Token]) -> None:
+    """Make `walk through the hall until you reach the lab` go on to the lab: a journey is what ends the other one."""
+    for at, token in enumerate(tokens[1:-1], start=1):
+        said, goal = tokens[at - 1].value, tokens[at + 1].value
+        if token.kind == "until" and drives(said) and drives(goal) and said.entry is goal.entry:
+            token.kind = "then"
+
+
 def with_either_end(tokens: list[Token]) -> None:
     """Make `A for 5 min or until C` the same as `for up to 5 min, A until C`, `wait 5 min [or] until C` likewise."""
     at = 0
