@@ -302,8 +302,7 @@ def _listed(
     """
     if context.types[first.type].kind == "text":
         return None
-    more: list[str] = []
-    is_described = is_related(first.text)
+    more, is_described = list[str](), is_related(first.text)
     last, joiner, ones_elsewhere = first.last, "", context.values.role_words.is_one_elsewhere
     linked, end = 0, first.last  # `the kitchen the lab and the office`: spoken lists have no commas, but a joiner
     while True:
@@ -321,9 +320,8 @@ def _listed(
             _is_longer(trie, text, at, value[1], context, is_subject) for trie in (root, names or {})
         ):
             break
-        if _is_command(root, text, at, value[1], context):
-            break
-        if first.type == PLACE and ones_elsewhere(text.words, value[1], context.values.ones):
+        is_elsewhere = first.type == PLACE and ones_elsewhere(text.words, value[1], context.values.ones)
+        if is_elsewhere or _is_command(root, text, at, value[1], context):
             break
         if is_described:
             *_, value = value, *context.wider(first.type, text, at, value)
@@ -333,10 +331,9 @@ def _listed(
             linked, end = len(more), last
     if not linked:
         return None
-    more, last = more[:linked], end
-    made: SlotValue = first.replace(more=tuple(more), joiner=joiner, last=last)
+    made: SlotValue = first.replace(more=tuple(more[:linked]), joiner=joiner, last=end)
     if first.name == VIA and joiner == "and":  # one way through all of them
-        made = made.replace(text="; ".join((first.text, *more)), more=(), joiner="")
+        made = made.replace(text="; ".join(made.texts), more=(), joiner="")
     return made
 
 

@@ -44,7 +44,7 @@ def with_framed_rules(tokens: list[Token], vocabulary: Lexicon, source: Source) 
             whole, more = Span(source, tokens[first].start, tokens[last - 1].end), statement_of(tokens, behind)[1]
             said = source.text[tokens[behind].start : tokens[more - 1].end]
             rule = source.text[tokens[at].start : tokens[last - 1].end]
-            one, other = f"... {vocabulary.word('then')} {said}", f"{rule}\n{said}"
+            one, other = f"... {vocabulary.word('then')} {said}", f"{rule}. {said}"
             yield diagnostic("BT151", whole, words=whole.text, one=one, other=other)
         tokens[first:last] = framed
 
