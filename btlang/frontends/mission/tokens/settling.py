@@ -148,8 +148,7 @@ def with_rounds(tokens: list[Token]) -> None:
         if all(each.kind != "and" for each in tokens[at + 1 : behind]):
             continue
         start, end = statement_of(tokens, at)
-        # behind `from 9 to 12,`, `if C,`, `A, then`
-        first = run_end(tokens, max(run_start(tokens, at, _SIMPLE - {"then"}), start), JOINTS)
+        first = run_end(tokens, max(run_start(tokens, at, _SIMPLE - {"then"}), start), JOINTS)  # behind `if C,`
         if first >= at:
             continue
         if any(each.kind not in _SIMPLE for each in tokens[behind:end]) and tokens[behind].kind != "if":
