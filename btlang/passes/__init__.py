@@ -15,6 +15,7 @@ from btlang.passes.lint.answers import find_early_answers, find_judged_answers, 
 from btlang.passes.lint.asked_once import find_asked_once
 from btlang.passes.lint.chosen_in_a_branch import find_chosen_in_a_branch
 from btlang.passes.lint.definitions import find_line_ends, find_rules_only, find_unused
+from btlang.passes.lint.known_people import find_known_only
 from btlang.passes.lint.tree_lints import (
     find_busy_loops,
     find_cut_off,
@@ -80,6 +81,7 @@ PASSES = (
     Pass("never runs", find_unreachable),
     Pass("no rounds", find_empty_loops),
     Pass("busy loop", find_busy_loops),
+    Pass("known only", find_known_only, needs_text=True),
     Pass("chosen in a branch", find_chosen_in_a_branch),
     Pass("unchosen", find_unchosen, needs_text=True),
     Pass("cut off", find_cut_off),
