@@ -9,6 +9,7 @@ from btlang.frontends.mission.symbols.definitions import Definitions
 from btlang.frontends.mission.symbols.includes import ROLE as INCLUDE
 from btlang.frontends.mission.symbols.includes import misplaced
 from btlang.frontends.mission.token import BEFORE_CONDITIONS, Token, statement_start
+from btlang.frontends.mission.tokens.each_and_any import ENDING
 from btlang.frontends.mission.tokens.partial_commands import PartialCommands, may_be_doing
 from btlang.frontends.mission.tokens.silent_words import MARKS, begins, begins_item
 from btlang.frontends.mission.tokens.word_matches import with_verb
@@ -25,6 +26,9 @@ from btlang.vocabulary.word_tree import find
 _MOST_TOLD = 5
 """So many statements are explained before a text of which nothing is understood is taken for no mission."""
 _UNDERSTOOD = frozenset(("command", "condition", "name", "wait", "wait_time", "node"))
+
+_UNABLE = "it isn't clear which command is meant"
+_IF_IT_FAILS = "go to the lab. If that fails, wave"
 
 
 class UnknownWords:
@@ -127,6 +131,10 @@ class UnknownWords:
             span = self._text.span(at, match.last)
             drives = f"goes to {match.values[0].text}" if match.values else "drives"
             return diagnostic("BT156", span, words=span.text, drives=drives)
+        if self._tokens and self._tokens[-1].kind == "if" and find(self._vocabulary.unable, self._text.words, at):
+            words = self._text.words
+            span = self._text.span(at, next(i for i in range(end, len(words)) if words[i][0] in ENDING))
+            return diagnostic("BT150", span, words=span.text, reason=_UNABLE, example=_IF_IT_FAILS)
         if match is None or role in NOT_ALONE:
             text, at = self._as_constraint(at)
             if text.words[at] in self._vocabulary.roles["define"] and begins(self._tokens):
