@@ -8,7 +8,7 @@ import struct
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -257,9 +257,26 @@ def test_a_client_beside_others_is_answered() -> None:
         assert counts == [10] * 20
 
 
+class OwnTime:
+    """A clock that stands still while threads of this process wait for a processor, as they do on a busy machine.
+
+    One that waits for another thread sees it go on. Other systems than Linux don't tell, there it always goes on.
+    """
+
+    def __init__(self) -> None:
+        self._waited: dict[Path, int] = {}  # nanoseconds, also of threads that are over
+
+    def __call__(self) -> float:
+        for thread in Path("/proc/self/task").glob("*/schedstat"):
+            with suppress(OSError):  # it has just ended
+                self._waited[thread] = int(thread.read_text(encoding="ascii").split()[1])
+        return time.perf_counter() - sum(self._waited.values()) / 1e9
+
+
 @pytest.mark.long
-def test_thousands_of_nodes_at_20_hz() -> None:
+def test_thousands_of_nodes_at_20_hz(monkeypatch: pytest.MonkeyPatch) -> None:
     """No tick is late because of a client that polls as Groot2 does; in each run few nodes, so that it is quick."""
+    monkeypatch.setattr("btlang.run.pace.perf_counter", OwnTime())
     count = amount(600, 5_000)
     leaves = tuple(Node("Wave") for _ in range(count - 2))
     tree = Tree(Node("Repeat", (Node("Parallel", leaves),), (("num_cycles", "-1"),)))

@@ -17,7 +17,7 @@ MISSION = "go to the kitchen"
 
 def test_a_goal_arrives(robot: Robot) -> None:
     navigator = robot.peer("navigator", "arrive")
-    assert robot.run("go to the kitchen then go to the lobby", WORDS) == ""
+    assert robot.run("go to the kitchen then go to the lobby", WORDS, server=navigator) == ""
     assert navigator.expect("goal") == "goal map 4.000 -1.000 0.707 0.707"
     assert navigator.expect("goal") == "goal map 1.000 2.000 0.000 1.000"
 
@@ -32,8 +32,8 @@ def test_a_goal_arrives(robot: Robot) -> None:
     ],
 )
 def test_a_goal_fails_with_the_reason_of_the_server(robot: Robot, mode: str, reason: str) -> None:
-    robot.peer("navigator", mode)
-    assert robot.run(MISSION, WORDS) == reason
+    navigator = robot.peer("navigator", mode)
+    assert robot.run(MISSION, WORDS, server=navigator) == reason
 
 
 def test_halted_before_the_server_is_there(robot: Robot) -> None:

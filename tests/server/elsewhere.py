@@ -46,6 +46,10 @@ class Elsewhere:
         """The process that dials."""
         return child_of(self.process.pid)
 
+    def tasks(self) -> str:
+        """What its own computer lists."""
+        return doors.btc(self.environment, "task", "list")
+
     def close(self) -> None:
         self.process.terminate()
         self.process.wait(LONG)

@@ -3,7 +3,8 @@
 MODE is `arrive` (after SECONDS), `hang` (until it is cancelled), `slow` (accepts after SECONDS, then hangs), `lost`
 (as `hang`, but its answer that it accepts gets lost, as it may in DDS), `reject`,
 `abort` (for a reason), `blame` (succeeds with an error code), `code` (the same without a word), `meddle` (cancels its
-goals after SECONDS) or `still` (gives feedback and goes nowhere, until it is cancelled).
+goals after SECONDS) or `still` (gives feedback and goes nowhere, until it is cancelled). It tells when it has found a
+client: answers to one that it hasn't found get lost.
 """
 
 from __future__ import annotations
@@ -86,7 +87,19 @@ def _make(node: Node) -> object:
     )  # fmt: skip
     if MODE == "lost":
         server._handle = _Losing(server._handle)
+    _tell_found(node)
     return server
+
+
+def _tell_found(node: Node) -> None:
+    """Tells once that there is a client, with all that it needs to hear its answers."""
+
+    def look() -> None:
+        if all(node.count_clients(f"/navigate_to_pose/_action/{name}") for name in ("send_goal", "get_result")):
+            tell("found")
+            timer.cancel()
+
+    timer = node.create_timer(0.02, look)
 
 
 if __name__ == "__main__":
