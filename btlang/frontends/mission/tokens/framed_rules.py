@@ -18,6 +18,7 @@ from btlang.frontends.mission.token import (
     run_start,
     statement_of,
 )
+from btlang.frontends.mission.tokens.sentence_reader import is_answer, is_question
 from btlang.text.source import Source, Span
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, PLACE, ZONE
@@ -37,6 +38,7 @@ def with_framed_rules(tokens: list[Token], vocabulary: Lexicon, source: Source) 
         if tokens[at].kind not in RULES:
             continue
         first, last = statement_of(tokens, at)
+        last = _with_replies(tokens, at, last)
         framed = _framed(tokens[first:at], tokens[at:last])
         behind = run_end(tokens, last, STATEMENT_ENDS)
         waits = any(token.kind == "following" for token in framed)
@@ -44,9 +46,19 @@ def with_framed_rules(tokens: list[Token], vocabulary: Lexicon, source: Source) 
             whole, more = Span(source, tokens[first].start, tokens[last - 1].end), statement_of(tokens, behind)[1]
             said = source.text[tokens[behind].start : tokens[more - 1].end]
             rule = source.text[tokens[at].start : tokens[last - 1].end]
-            one, other = f"... {vocabulary.word('then')} {said}", f"{rule}. {said}"
+            one, other = f"... {vocabulary.word('then')} {said[:1].lower()}{said[1:]}", f"{rule}. {said}"
             yield diagnostic("BT151", whole, words=whole.text, one=one, other=other)
         tokens[first:last] = framed
+
+
+def _with_replies(tokens: Sequence[Token], rule: int, last: int) -> int:
+    """Where a rule ends that asks something, with what is done for the answers: `whenever C, ask "Tea?". If so, A`."""
+    asks = any(map(is_question, tokens[rule:last]))
+    while asks and len(tokens) > last + 2 and tokens[last].kind == "semi" and tokens[last + 1].kind in ("if", "unless"):
+        if not is_answer(tokens[last + 2 + (tokens[last + 2].kind == "not")]):
+            break
+        last = statement_of(tokens, last + 1)[1]
+    return last
 
 
 def _put_into_time(tokens: list[Token], vocabulary: Lexicon) -> None:
