@@ -247,6 +247,12 @@ def drives(value: Value) -> TypeGuard[Called | Listed]:
     return isinstance(value, Called | Listed) and MOVES in value.entry.resources
 
 
+def in_brackets(tokens: Sequence[Token]) -> list[Token]:
+    """The same tokens with brackets around them."""
+    first, last = tokens[0].start, tokens[-1].end
+    return [Token("open", first, first), *tokens, Token("close", last, last)]
+
+
 def constraint_of(token: Token) -> Constraint | None:
     """What a command, raw or grouped, asks of the others in its statement; None for any other token."""
     value = token.value

@@ -19,6 +19,7 @@ from btlang.frontends.mission.token import (
     Listed,
     Token,
     arguments_of,
+    in_brackets,
     run_end,
     run_start,
     statement_end,
@@ -84,10 +85,8 @@ def with_repeats_apart(tokens: list[Token], source: Source) -> Iterator[Diagnost
         elif is_again and how in _LATER:
             tokens[at - 1 : behind] = [end, *_bracketed(commands, tokens[at])]
         elif waits and how in _AMOUNTS:
-            start, last = commands[0].start, commands[-1].end
-            tokens[first + 1 : behind] = [
-                Token("comma", start, start), Token("open", start, start), *commands, Token("close", last, last),
-            ]  # fmt: skip
+            start = commands[0].start
+            tokens[first + 1 : behind] = [Token("comma", start, start), *in_brackets(commands)]
 
 
 def _joined(tokens: list[Token], at: int) -> int:
@@ -182,10 +181,9 @@ def _at_both(tokens: list[Token], at: int) -> None:
     begin, here = commands[0].start, tokens[at].start
     times = tokens[at - 2], tokens[at + 1]
     said = [*commands, *further]
-    whole = [Token("open", begin, begin), *said, Token("close", said[-1].end, said[-1].end)]
     tokens[first:end] = [
-        times[0], Token("comma", begin, begin), *whole, Token("semi", here, here), times[1], Token("comma", here, here),
-        *_bracketed(said, tokens[at]),
+        times[0], Token("comma", begin, begin), *in_brackets(said), Token("semi", here, here), times[1],
+        Token("comma", here, here), *_bracketed(said, tokens[at]),
     ]  # fmt: skip
 
 
@@ -205,8 +203,7 @@ def with_waits_each_time(tokens: list[Token], again: Container[str], source: Sou
         if not 0 <= wait < at - 1 or tokens[wait].kind != "wait" or not is_question(asked):
             continue
         if source.text[asked.start : asked.end].lower().rsplit(" ", 1)[-1] in again:
-            here, there = tokens[wait].start, asked.end
-            tokens[wait : at + 1] = [Token("open", here, here), *tokens[wait : at + 1], Token("close", there, there)]
+            tokens[wait : at + 1] = in_brackets(tokens[wait : at + 1])
 
 
 def with_tries_apart(tokens: list[Token]) -> None:
@@ -329,5 +326,4 @@ def _moved(token: Token, place: str) -> Token:
 
 def _bracketed(commands: Sequence[Token], said: Token) -> list[Token]:
     """The same commands in brackets, where a word stands that means them."""
-    again = [Token(token.kind, said.start, said.end, token.value, token.role) for token in commands]
-    return [Token("open", said.start, said.start), *again, Token("close", said.end, said.end)]
+    return in_brackets([Token(token.kind, said.start, said.end, token.value, token.role) for token in commands])

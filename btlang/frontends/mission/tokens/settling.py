@@ -19,6 +19,7 @@ from btlang.frontends.mission.token import (
     arguments_of,
     constraint_of,
     drives,
+    in_brackets,
     run_end,
     run_start,
     statement_end,
@@ -324,8 +325,7 @@ def _one_statement(rest: Sequence[Token]) -> list[Token]:
     made: list[Token] = []
     if any(token.kind not in _BETWEEN for token in rest):
         first, end = run_end(rest, 0, JOINTS | STATEMENT_ENDS), run_start(rest, len(rest), JOINTS | STATEMENT_ENDS)
-        here, there = rest[first].start, rest[end - 1].end
-        return [Token("open", here, here), *rest[first:end], Token("close", there, there)]
+        return in_brackets(rest[first:end])
     for token in rest:
         if token.kind not in STATEMENT_ENDS:
             made += [] if token.kind in JOINTS and (not made or made[-1].kind == "then") else [token]

@@ -11,6 +11,7 @@ from btlang.frontends.mission.token import (
     Listed,
     Token,
     constraint_of,
+    in_brackets,
     run_start,
 )
 from btlang.frontends.mission.tokens.rule_words import RuleWords
@@ -82,12 +83,12 @@ class WayWords(RuleWords):
             first -= 1
         if tokens[last].kind != "command" or tokens[first - 1] is not journey:
             return False
-        joint, start, end = self._joint(tokens[last]), tokens[last].start, tokens[-1].end
+        joint, start = self._joint(tokens[last]), tokens[last].start
         done = tokens[last:]
         if lasts and len(done) == 1:  # `wave until you arrive`
             done.insert(0, Token("repeat", start, start, role="doing"))
         if len(done) > 1:
-            done = [Token("open", start, start), *done, Token("close", end, end)]
+            done = in_brackets(done)
         tokens[first:] = [Token("after" if joint == "then" else joint, start, start), *done]
         return True
 
