@@ -30,6 +30,7 @@ from btlang.passes.lint.two_readings import (
     find_rules_at_goals,
     find_two_readings,
 )
+from btlang.passes.lint.unanswered import find_unanswered
 from btlang.passes.lint.unchosen import find_unchosen
 from btlang.passes.lint.unlikely_meanings import (
     find_distant_questions,
@@ -75,6 +76,7 @@ PASSES = (
     Pass("unused answers", find_unused_answers, needs_text=True),
     Pass("early answers", find_early_answers, needs_text=True),
     Pass("judged answers", find_judged_answers, needs_text=True),
+    Pass("nobody answers", find_unanswered, needs_text=True),
     Pass("only rules", find_rules_only, needs_text=True),
     Pass("unused", find_unused, needs_text=True),
     Pass("never runs", find_unreachable),
