@@ -13,6 +13,7 @@ from btlang.passes.compilation import Compilation, Pass
 from btlang.passes.lint.allow import apply_allow, apply_allow_in_xml
 from btlang.passes.lint.answers import find_early_answers, find_judged_answers, find_unused_answers
 from btlang.passes.lint.asked_once import find_asked_once
+from btlang.passes.lint.asked_too_late import find_asked_too_late
 from btlang.passes.lint.chosen_in_a_branch import find_chosen_in_a_branch
 from btlang.passes.lint.definitions import find_line_ends, find_rules_only, find_unused
 from btlang.passes.lint.known_people import find_known_only
@@ -31,6 +32,7 @@ from btlang.passes.lint.two_readings import (
     find_rules_at_goals,
     find_two_readings,
 )
+from btlang.passes.lint.unanswered import find_unanswered
 from btlang.passes.lint.unchosen import find_unchosen
 from btlang.passes.lint.unlikely_meanings import (
     find_distant_questions,
@@ -65,6 +67,7 @@ PASSES = (
     Pass("counts behind lists", find_counts_behind_lists, needs_text=True),
     Pass("lasting reactions", find_lasting_reactions, needs_text=True),
     Pass("asked once", find_asked_once, needs_text=True),
+    Pass("asked too late", find_asked_too_late, needs_text=True),
     Pass("half turns", find_half_turns, needs_text=True),
     Pass("next day", find_next_day, needs_text=True),
     Pass("starts again", find_restarts, needs_text=True),
@@ -76,6 +79,7 @@ PASSES = (
     Pass("unused answers", find_unused_answers, needs_text=True),
     Pass("early answers", find_early_answers, needs_text=True),
     Pass("judged answers", find_judged_answers, needs_text=True),
+    Pass("nobody answers", find_unanswered, needs_text=True),
     Pass("only rules", find_rules_only, needs_text=True),
     Pass("unused", find_unused, needs_text=True),
     Pass("never runs", find_unreachable),

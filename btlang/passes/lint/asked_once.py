@@ -11,6 +11,7 @@ from collections.abc import Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
+from btlang.passes.lint.asked_too_late import leads_through, on_the_way
 from btlang.text.source import Span
 from btlang.tree import ast
 from btlang.tree.answers import ABOUT_ANSWERS
@@ -140,12 +141,12 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
         when = "meanwhile" if is_timed else "on the way"
         advice = f"'{last}' is over by then. To do it {when}, and all through the mission, write: {each}"
         yield _with_reading(node, words, advice, place, each)
-    elif isinstance(asked, ast.Phrase) and (
-        any(_leads_through(journey, asked) for journey in journeys)
-        or (
-            isinstance(node.condition, ast.Not)
-            and any(_find_things(journey) & _find_things(asked) for journey in journeys)
-        )
+    elif not is_timed and leads_through(node, phrases):
+        yield on_the_way(node, before, vocabulary)
+    elif (
+        isinstance(asked, ast.Phrase)
+        and isinstance(node.condition, ast.Not)
+        and any(_find_things(journey) & _find_things(asked) for journey in journeys)
     ):
         advice = f"'{last}' comes first, and fails if it can't be done. What decides about it stands before it."
         yield diagnostic("BT068", node.span, words=words, advice=advice)
@@ -239,15 +240,6 @@ def _is_at_goal(asked: ast.Ast, journey: ast.Phrase) -> bool:
 def _asked(node: ast.If) -> ast.Ast:
     """Return what a form asks, also where it denies it."""
     return node.condition.condition if isinstance(node.condition, ast.Not) else node.condition
-
-
-def _leads_through(journey: ast.Phrase, asked: ast.Phrase) -> bool:
-    """Return whether a condition asks if the door is closed of the place to which a journey leads: `kitchen door`."""
-    if asked.entry.id != _CLOSED:
-        return False
-    doors = [text.lower().split() for text in asked.entry.given(DOOR, asked.arguments)]
-    goals = [text.lower() for text in journey.entry.given(PLACE, journey.arguments)]
-    return any(goal in door for door in doors for goal in goals)
 
 
 def _is_about_driving(asked: ast.Phrase, node: ast.If, journeys: Sequence[ast.Phrase]) -> bool:

@@ -190,7 +190,7 @@ def find_ended_rounds(compilation: Compilation) -> Iterator[Diagnostic]:
     """Report the first endless loop at a pace, or at times of day, that a failure of a round would end."""
     for body in ast.bodies(compilation.mission):
         for node in compilation.syntax(body):
-            if isinstance(node, ast.Every | ast.Repeat | ast.UntilTime) and _goes_on(node) and _may_fail(node.body):
+            if isinstance(node, ast.Every | ast.Repeat | ast.UntilTime) and goes_on(node) and _may_fail(node.body):
                 yield _note_end(node, compilation.vocabulary)
                 return
 
@@ -354,7 +354,7 @@ def _note_end(node: ast.Every | ast.Repeat | ast.UntilTime, vocabulary: Lexicon)
     return note.replace(readings=((node.span, fixed),))  # type: ignore[no-any-return]
 
 
-def _goes_on(node: ast.Every | ast.Repeat | ast.UntilTime) -> bool:
+def goes_on(node: ast.Every | ast.Repeat | ast.UntilTime) -> bool:
     """Whether a loop goes on for long, or at several times of day: `every 10 min, A`, `at 9 am and at 8 pm, A`."""
     if isinstance(node, ast.UntilTime):
         return isinstance(node.body, ast.Chain)
