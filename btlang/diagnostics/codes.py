@@ -309,7 +309,8 @@ _ALL = (
          "early time"),
     Code("BT252", "'{words}' is left out: there's only one way to '{verb}'.", "", "note", "manner"),
     Code("BT253", "If nobody {does}, {ends}.", "{advice}", "note", "nobody answers"),
-    Code("BT254", "'{words}' works from what the robot knows when it begins: it doesn't look in {place} first.", "To look there first, write: {fixed}", "note", "from memory"),
+    Code("BT254", "'{words}' works from what the robot knows when it begins: it doesn't look in {place} first.",
+         "To look there first, write: {fixed}", "note", "from memory"),
     Code("BT250", "'{sign}' isn't a word.", "Write comparisons in words."),
 )  # fmt: skip
 
