@@ -124,8 +124,16 @@ class Adjectives:
 
 
 def _only_person(text: Words, at: int, names: Names) -> str:
-    """The one person whose name is said before a word in its statement, "" where there is none, or are several."""
+    """The one person whose name is said before a word in its statement, else in the one before it; "" for several."""
+    people = _people_before(text, at, names)
+    _, first, _ = text.earlier(at)
+    if not people and first > 0:
+        people = _people_before(text, first - 1, names)
+    return people.pop() if len(people) == 1 else ""
+
+
+def _people_before(text: Words, at: int, names: Names) -> set[str]:
+    """The people whose names are said before a word in its statement."""
     before, first, last = text.earlier(at)
     found = (find(names("person"), before.words, place) for place in range(first, last))
-    people = {each[0] for each in found if each is not None}
-    return people.pop() if len(people) == 1 else ""
+    return {each[0] for each in found if each is not None}

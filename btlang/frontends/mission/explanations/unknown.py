@@ -296,6 +296,8 @@ def _unknown_phrase(
         return unnamed(span, [listed], "", vocabulary)
     inside = [(name, end - at) for name in names if f" {name} " in written]
     near = dict(inside) | dict(nearest_phrases(tuple(text.words[at:end]), vocabulary, tuple(names))) | dict(inside)
+    # what is wrong stands behind a phrase that begins as it is written
+    near = {one: words for one, words in near.items() if not written.startswith(f" {one.partition(' {')[0]} ")}
     if not near:  # a value alone, in a list or where the other words are left out: `if Allice or Bob is near`
         values = [name for kind in WORLD if kind in vocabulary.types for name in vocabulary.values.said_names(kind)]
         word = text.words[at]
