@@ -172,9 +172,13 @@ class ToldWords(SentenceReader):
         asked = [token for token in tokens[form:] if token.kind in _IN_CONDITIONS]
         if len(asked) > 1 and asked[0].kind == "not" and asked[0].start == asked[0].end:
             del asked[0]  # of `isn't`, which the words of the condition have
-        if not tokens or tokens[form].kind not in _ASKED_BY or len(asked) != 1:
+        if not tokens or tokens[form].kind not in _ASKED_BY or not asked or is_other:
             return ""
-        if is_other or not isinstance(asked[0].value, Called):
+        if [token.kind for token in asked] == ["condition", "or", "condition"]:
+            either = [self._condition_said(asked[at], tokens[form:]) for at in (0, 2)]  # `if she says no or isn't there`
+            joint = self._vocabulary.word("or")
+            return f"{either[0]} {joint} {either[1][:1].lower()}{either[1][1:]}" if all(either) else ""
+        if len(asked) != 1 or not isinstance(asked[0].value, Called):
             return ""
         if asked[0].value.entry.id in ABOUT_ANSWERS and self._context.latest.get(PERSON, "{")[:1] == "{":
             return self._replied(form)
