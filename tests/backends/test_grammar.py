@@ -54,6 +54,8 @@ UNKNOWABLE = {
     "BT175": "a round may fail",
     "BT176": "`or stay here` is permitted only",
     "BT172": "of several statements `start over` repeats all",
+    "BT253": "a rule ends where nobody speaks",
+    "BT254": "where somebody is may be known or not",
 }
 """What no grammar knows; few sentences may have it."""
 

@@ -10,7 +10,7 @@ import btlang
 @pytest.mark.parametrize(
     ("text", "codes"),
     [
-        ('ask Alice "Tea?". If so, tell Bob about it', ["BT149", "BT159"]),
+        ('ask Alice "Tea?". If so, tell Bob about her cup', ["BT149", "BT159"]),
         ("When someone is near, wave. Blork.", ["BT068", "BT010"]),
         ("Blork. When someone is near, wave.", ["BT010"]),  # it may depend on what isn't understood
         ('When someone is near, say "Hi. Who is there?". Blork.', ["BT068", "BT010"]),
