@@ -175,7 +175,7 @@ class ToldWords(SentenceReader):
         if not tokens or tokens[form].kind not in _ASKED_BY or not asked or is_other:
             return ""
         if [token.kind for token in asked] == ["condition", "or", "condition"]:
-            either = [self._condition_said(asked[at], tokens[form:]) for at in (0, 2)]  # `if she says no or isn't there`
+            either = [self._condition_said(asked[at], tokens[form:]) for at in (0, 2)]  # `if she says no or is away`
             joint = self._vocabulary.word("or")
             return f"{either[0]} {joint} {either[1][:1].lower()}{either[1][1:]}" if all(either) else ""
         if len(asked) != 1 or not isinstance(asked[0].value, Called):
