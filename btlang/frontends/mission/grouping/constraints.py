@@ -14,6 +14,7 @@ from btlang.vocabulary.capabilities import MOVES
 _JOINTS = frozenset(("AND", "WIDE_AND", "MEANWHILE", "WIDE_MEANWHILE", "COMMA"))
 _FRONTED = frozenset(("and", "comma", "while_doing", "meanwhile"))
 """What may stand between a constraint in front and the commands that it is about."""
+_PLAIN = frozenset(("and", "comma"))
 _UNTIL = frozenset(("until", "before"))
 """The same where the command ends what is forbidden: `avoid the kitchen until going to the lab`."""
 
@@ -81,9 +82,17 @@ def behind(scan: Scan, token: Token) -> bool:
 
 
 def only_constraints(scan: Scan) -> bool:
-    """Whether nothing but constraints has been said in the statement (or bracket), which are commands then."""
+    """Whether nothing but constraints is said in the statement (or bracket), before and behind: they are commands."""
     said = scan.out[scan.around_statement()[0].begins :]
-    return bool(said) and all(token.kind in _JOINTS or constraint_of(token) is not None for token in said)
+    is_plain = bool(said) and all(token.kind in _JOINTS or constraint_of(token) is not None for token in said)
+    return is_plain and _ends_in_constraints(scan, scan.at)
+
+
+def _ends_in_constraints(scan: Scan, at: int) -> bool:
+    """Whether nothing but constraints stands from a place on to the end of the statement."""
+    while scan.raw[at].kind in _PLAIN or constraint_of(scan.raw[at]) is not None:
+        at += 1
+    return scan.raw[at].kind in ENDS
 
 
 def _unjoin(scan: Scan) -> None:
@@ -116,6 +125,8 @@ def _behind_joint(scan: Scan, stays: bool) -> int:
     if not (ends or raw[at].kind in _FRONTED):
         return 0
     at += 1
+    if _ends_in_constraints(scan, at):
+        return 0  # `stay in the lab and avoid the kitchen`
     if stays and raw[at].kind in ("wait", "wait_time", "wait_until"):
         return at  # `stay in the kitchen and wait until Bob comes`
     while constraint_of(raw[at]) is not None and raw[at + 1].kind in _FRONTED:
