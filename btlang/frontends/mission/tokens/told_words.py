@@ -18,7 +18,7 @@ from btlang.frontends.mission.token import (
     statement_start,
 )
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, is_question, searches
-from btlang.frontends.mission.tokens.settling import FAILS, WORKS, is_about
+from btlang.frontends.mission.tokens.settling import FAILS, MEASURES, WORKS, is_about
 from btlang.frontends.mission.tokens.word_matches import words_of
 from btlang.tree.answers import ABOUT_ANSWERS, ANSWERED
 from btlang.vocabulary.match import Match
@@ -29,6 +29,7 @@ from btlang.vocabulary.word_tree import find
 
 _COMES = "WaitForPerson"
 _AWAITING = frozenset(("within", "wait_up_to", "condition", "not", "and"))
+_TRYING = ("try", "retry")
 _ASKED_BY = frozenset(("if", "whenever", "first_time", "as_soon_as", WORKS))
 _IN_CONDITIONS = frozenset(("condition", "not", "either", "neither", "or"))
 _LINE_ENDS = frozenset(("semi", "newline", "otherwise"))
@@ -224,10 +225,11 @@ class ToldWords(SentenceReader):
         """
         tokens, text = self._tokens, self._text
         at = run_start(tokens, form, JOINTS | STATEMENT_ENDS) - 1
-        while at > 0 and tokens[at].kind in _AWAITING:
+        while at > 0 and (tokens[at].kind in _AWAITING or tokens[at].kind in MEASURES):
             at -= 1
         tried = tokens[at] if at >= 0 else None
-        is_first = at == statement_start(tokens, max(at, 0)) or tokens[at - 1].kind == "comma"
+        begin = at - (at > 0 and tokens[at - 1].kind in _TRYING)
+        is_first = begin == statement_start(tokens, max(at, 0)) or tokens[begin - 1].kind == "comma"
         if tried is None or tried.kind != "command" or not is_first or not isinstance(tried.value, Called | Listed):
             return ""
         front, words = self._vocabulary.asking["failing"][0], list(words_of(text, tried))
