@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
-from btlang.passes.lint.asked_too_late import leads_through, on_the_way
+from btlang.passes.lint.asked_too_late import WHERE, asked_by, leads_through, on_the_way
 from btlang.text.source import Span
 from btlang.tree import ast
 from btlang.tree.answers import ABOUT_ANSWERS
@@ -36,8 +36,6 @@ _QUOTED_ENDS = ('."', '!"', '?"')
 ON_THE_WAY = ("SomeoneInTheWay", "SomethingInTheWay")
 _BUMPED = "Bumped"
 _WHILE_DRIVING = (_BUMPED, "WallInFront", "ObstacleWithin")
-_WHERE = ("at", "inside")
-"""The parts of a description that say at which place somebody or something is."""
 _IN_VIEW = ("SeesSomeone", "SeesPerson", "SeesObject", "SomeoneNear", "PersonNear")
 _CLOSED = "DoorClosed"
 _DOOR_STATES = ("DoorOpen", _CLOSED)
@@ -95,7 +93,7 @@ def _sentence_before(items: Sequence[ast.Ast], at: int) -> Sequence[ast.Ast]:
 
 def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> Iterator[Diagnostic]:
     """Report a condition that decides about the journey before it, or watches what happens on it."""
-    asked = _asked(node)
+    asked = asked_by(node)
     is_front = node.body.span.start > node.condition.span.start
     timed = before[-1] if before and is_front else None
     while isinstance(timed, ast.UntilTime | ast.For) and isinstance(timed.body, ast.Every):
@@ -233,13 +231,8 @@ def _only_if_failed(node: ast.If, before: ast.Ast, vocabulary: Lexicon) -> Diagn
 def _is_at_goal(asked: ast.Ast, journey: ast.Phrase) -> bool:
     """Return whether a condition is about somebody or something where a journey ends: `anyone in the hall`."""
     choices = map(choice_of, (text for _, text in asked.arguments)) if isinstance(asked, ast.Phrase) else ()
-    places = {text for choice in choices if choice is not None for part, text in choice.parts if part in _WHERE}
+    places = {text for choice in choices if choice is not None for part, text in choice.parts if part in WHERE}
     return not places.isdisjoint([*journey.entry.given(PLACE, journey.arguments)][-1:])
-
-
-def _asked(node: ast.If) -> ast.Ast:
-    """Return what a form asks, also where it denies it."""
-    return node.condition.condition if isinstance(node.condition, ast.Not) else node.condition
 
 
 def _is_about_driving(asked: ast.Phrase, node: ast.If, journeys: Sequence[ast.Phrase]) -> bool:
@@ -264,7 +257,7 @@ def _too_early(node: ast.If, vocabulary: Lexicon) -> Iterator[Diagnostic]:
     """Report `go to the lab if Alice is there`: a condition behind a journey that is about its end, or what it
     chooses.
     """
-    asked = _asked(node)
+    asked = asked_by(node)
     if not isinstance(asked, ast.Phrase) or asked.span.start < node.body.span.start:
         return
     phrases = [each for each in ast.parents_first(node.body) if isinstance(each, ast.Phrase)]
@@ -385,5 +378,5 @@ def _asked_once(node: ast.If, words: str, other: str, vocabulary: Lexicon, befor
 
 def _is_answered(node: ast.If) -> bool:
     """Whether a condition is about an answer: `when she has answered`. The question is over by then."""
-    asked = _asked(node)
+    asked = asked_by(node)
     return isinstance(asked, ast.Phrase) and asked.entry.id in ABOUT_ANSWERS

@@ -18,7 +18,7 @@ from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import choice_of
 from btlang.vocabulary.value_type import DOOR, PERSON, PLACE
 
-_WHERE = ("at", "inside")
+WHERE = ("at", "inside")
 """The parts of a description that say at which place somebody or something is."""
 _CLOSED, _OPEN = "DoorClosed", "DoorOpen"
 _FIRST = "comes first, and fails if it can't be done."
@@ -41,6 +41,11 @@ def find_asked_too_late(compilation: Compilation) -> Iterator[Diagnostic]:
                         yield _about_partner(item, partner, vocabulary)
 
 
+def asked_by(node: ast.If) -> ast.Ast:
+    """Return what a form asks, also where it denies it."""
+    return node.condition.condition if isinstance(node.condition, ast.Not) else node.condition
+
+
 def _denies_a_place(node: ast.If) -> bool:
     """Whether a form begins with a condition that somebody isn't at a place: `if Alice isn't in the lab, A`."""
     asked = node.condition.condition if isinstance(node.condition, ast.Not) else None
@@ -58,7 +63,7 @@ def _partner(node: ast.If, commands: Sequence[ast.Phrase]) -> ast.Phrase | None:
     """Return the last command about whom a condition denies to be at a place, if it was done there and the robot has
     left since.
     """
-    asked = node.condition.condition if isinstance(node.condition, ast.Not) else node.condition
+    asked = asked_by(node)
     if not isinstance(asked, ast.Phrase):
         return None
     people, places = _people(asked), _places(asked)
@@ -83,7 +88,7 @@ def _people(phrase: ast.Phrase) -> set[str]:
 def _places(phrase: ast.Phrase) -> set[str]:
     """Return the names of the places that a phrase is about, also of those where somebody or something is."""
     choices = (choice_of(text) for _, text in phrase.arguments)
-    described = {text for choice in choices if choice is not None for part, text in choice.parts if part in _WHERE}
+    described = {text for choice in choices if choice is not None for part, text in choice.parts if part in WHERE}
     return described.union(phrase.entry.given(PLACE, phrase.arguments))
 
 
@@ -107,7 +112,7 @@ def leads_through(node: ast.If, before: Sequence[ast.Phrase]) -> bool:
     `kitchen door`.
     """
     is_denied = isinstance(node.condition, ast.Not)
-    asked = node.condition.condition if isinstance(node.condition, ast.Not) else node.condition
+    asked = asked_by(node)
     if not isinstance(asked, ast.Phrase) or asked.entry.id != (_OPEN if is_denied else _CLOSED):
         return False
     doors = {*asked.entry.given(DOOR, asked.arguments)}

@@ -10,13 +10,12 @@ from collections.abc import Iterable, Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
+from btlang.passes.lint.asked_too_late import WHERE
 from btlang.tree import ast
 from btlang.vocabulary.capabilities import MOVES, TRAVELS
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import choice_of
 from btlang.vocabulary.value_type import PERSON
-
-_WHERE = ("at", "inside")
 
 
 def find_known_only(compilation: Compilation) -> Iterator[Diagnostic]:
@@ -41,7 +40,7 @@ def _first_known(nodes: Iterable[ast.Ast], vocabulary: Lexicon) -> Diagnostic | 
         named = phrase.entry.given(PERSON, phrase.arguments)
         choice = choice_of(named[0]) if named and moves else None
         parts = dict(choice.parts) if choice is not None else {}
-        place = next((parts[relation] for relation in _WHERE if relation in parts), "")
+        place = next((parts[relation] for relation in WHERE if relation in parts), "")
         if place and place not in been:
             words = phrase.span.text
             journey = " ".join((*vocabulary.asking["journey"], place, vocabulary.word("then")))

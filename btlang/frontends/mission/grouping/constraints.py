@@ -14,9 +14,9 @@ from btlang.vocabulary.capabilities import MOVES
 _JOINTS = frozenset(("AND", "WIDE_AND", "MEANWHILE", "WIDE_MEANWHILE", "COMMA"))
 _FRONTED = frozenset(("and", "comma", "while_doing", "meanwhile"))
 """What may stand between a constraint in front and the commands that it is about."""
-_PLAIN = frozenset(("and", "comma"))
 _UNTIL = frozenset(("until", "before"))
 """The same where the command ends what is forbidden: `avoid the kitchen until going to the lab`."""
+_PLAIN = frozenset(("and", "comma"))
 
 
 def taken(scan: Scan, token: Token) -> bool:

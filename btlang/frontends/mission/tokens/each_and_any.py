@@ -270,9 +270,7 @@ def _names_meant(text: Words, vocabulary: Lexicon, at: int, first: int) -> tuple
     """The type and names of `any of them`, `one of the doors` or `any room` at a word, and where these words end."""
     words, values, of = text.words, vocabulary.values, vocabulary.asking["of_them"]
     noun = at + 1 + (words[at + 1] in of)
-    named: dict[str, list[str]] = {}
-    if noun > at + 1:
-        named = _named(text, vocabulary, text.earlier(first - 1)[1] if first else first, at)
+    named = _named(text, vocabulary, text.earlier(first - 1)[1] if first else first, at) if noun > at + 1 else {}
     if noun > at + 1 and PERSON in values.pronouns.get(words[noun], ()):
         several = ((kind, names) for kind, names in named.items() if len(names) > 1)
         kind, names = next(several, ("", []))

@@ -164,10 +164,10 @@ def with_rounds(tokens: list[Token]) -> None:
 
 def with_goals_reached(tokens: list[Token]) -> None:
     """Make `walk through the hall until you reach the lab` go on to the lab: a journey is what ends the other one."""
-    for at, token in enumerate(tokens[1:-1], start=1):
+    for at in (at for at in range(1, len(tokens) - 1) if tokens[at].kind == "until"):
         said, goal = tokens[at - 1].value, tokens[at + 1].value
-        if token.kind == "until" and drives(said) and drives(goal) and said.entry is goal.entry:
-            token.kind = "then"
+        if drives(said) and drives(goal) and said.entry is goal.entry:
+            tokens[at].kind = "then"
 
 
 def with_either_end(tokens: list[Token]) -> None:
