@@ -14,7 +14,8 @@ _LOOK = 1.0  # seconds that one look counts at most: a look that comes late says
 
 
 class DriveProgress:
-    """The progress of a drive in metres, or of a turn in degrees if it `turns`.
+    """The progress of a drive in metres, or of a turn in degrees if it `turns`. To pass the goal is progress too:
+    the approach is slower behind it.
 
     `close` is how near is near enough, `now` returns seconds, `why` a reason.
     """
@@ -30,7 +31,7 @@ class DriveProgress:
     ) -> None:
         self._wanted, self._close, self._turns = abs(wanted), close, turns
         self._now, self._patience, self._why = now, patience, why
-        self._nearest = float("inf")
+        self._nearest, self._before = inf, 0.0
         self._looked, self._waited = now(), 0.0
 
     def check(self, left: float, gone: float) -> None:
@@ -41,8 +42,9 @@ class DriveProgress:
         gone = abs(gone)
         if gone > _TOO_FAR * self._wanted + _ROOM[self._turns]:
             raise ActionFailed(f"the robot {'turned' if self._turns else 'went'} too far: {self._of(gone)}")
-        if abs(left) < self._nearest - _STEP * self._close:
-            self._nearest, self._waited = abs(left), 0.0
+        passed, self._before = left * self._before < 0, left
+        if passed or abs(left) < self._nearest - _STEP * self._close:
+            self._nearest, self._waited = min(abs(left), self._nearest), 0.0
         elif self._waited > self._patience:
             reason = self._why()
             raise ActionFailed(f"the robot makes no progress: {self._of(gone)} done{reason and f', {reason}'}")
@@ -56,8 +58,8 @@ class Approach:
     """The speed to approach a goal, in metres or degrees a second, at least `slowest`: `gain` of the rest in each
     second.
 
-    Each overshoot halves the pace: where commands or poses arrive late, the robot would oscillate around the goal
-    forever.
+    Each overshoot halves the pace and the slowest one: where commands or poses arrive late, the robot would oscillate
+    around the goal forever.
     """
 
     def __init__(self, fastest: float, gain: float, slowing: float = inf, slowest: float = 0.0) -> None:
@@ -67,7 +69,7 @@ class Approach:
     def velocity(self, left: float) -> float:
         """Return the velocity, with the sign of what is left."""
         if left * self._before < 0:
-            self._fastest, self._gain = self._fastest / 2, self._gain / 2
+            self._fastest, self._gain, self._slowest = self._fastest / 2, self._gain / 2, self._slowest / 2
         self._before, way = left, abs(left)
         pace = min(self._gain * way, self._fastest, sqrt(2 * self._slowing * way))
         return copysign(max(self._slowest, pace), left)
