@@ -53,6 +53,8 @@ LINES = frozenset(("newline", "semi", "indent", "dedent", "define"))
 """Behind these kinds of tokens a statement begins, out of brackets."""
 JOINTS = frozenset(("and", "comma", "then"))
 """Raw kinds between the commands of a statement."""
+CONSTRAINT_JOINTS = frozenset(("AND", "WIDE_AND", "MEANWHILE", "WIDE_MEANWHILE", "COMMA"))
+"""Grouped kinds that may join a constraint to what it holds over."""
 FORMS = frozenset((*RULES, "if", "unless", "while", "until", "otherwise", "if_doing", "if_works"))
 """Raw kinds with which a statement may leave out its commands, or run them beside others."""
 
@@ -259,6 +261,11 @@ def constraint_of(token: Token) -> Constraint | None:
     if token.kind not in ("command", "COMMAND") or not isinstance(value, Called | Listed) or not value.entry.constrains:
         return None
     return Constraint(value.entry.constrains, texts_of(value))
+
+
+def only_constrains(tokens: Sequence[Token]) -> bool:
+    """Whether grouped tokens are constraints, and what joins them, alone."""
+    return bool(tokens) and all(token.kind in CONSTRAINT_JOINTS or constraint_of(token) is not None for token in tokens)
 
 
 def keeps_out(token: Token) -> bool:

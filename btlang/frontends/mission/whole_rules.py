@@ -8,13 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence, Set
 
-from btlang.frontends.mission.token import Called, Listed, Token, constraint_of
+from btlang.frontends.mission.token import Called, Listed, Token, only_constrains
 from btlang.text.source import Source
 from btlang.tree.ast import Ast, Chain
 from btlang.vocabulary.capabilities import MOVES
 
 _OPENS = frozenset(("OPEN", "COND_OPEN", "COND_OF", "FORM", "AFTER_FORM", "LOOP", "IF_WORKS", "TEST"))
-_JOINTS = frozenset(("AND", "COMMA"))
 _CLOSES = frozenset(("CLOSE", "COND_CLOSE", "END"))
 
 
@@ -26,7 +25,7 @@ def whole_rules(tokens: Sequence[Token], source: Source, words: Set[str]) -> fro
         if not statement:
             continue
         first, last = statement[0], statement[-1]
-        if all(token.kind in _JOINTS or constraint_of(token) is not None for token in statement):
+        if only_constrains(statement):
             said = source.text[start : first.end].lower().split()
             before, behind = statements[:number], statements[number + 1 :]
             if not words.isdisjoint(said) or (any(map(_has_journey, before)) and not any(map(_has_journey, behind))):

@@ -8,15 +8,17 @@ kind, or behind `then`, it is a command like any other and holds from there on.
 from __future__ import annotations
 
 from btlang.frontends.mission.grouping.scan import ENDS, Scan
-from btlang.frontends.mission.token import Called, Listed, Token, constraint_of
+from btlang.frontends.mission.token import CONSTRAINT_JOINTS, Called, Listed, Token, constraint_of, only_constrains
 from btlang.vocabulary.capabilities import MOVES
 
-_JOINTS = frozenset(("AND", "WIDE_AND", "MEANWHILE", "WIDE_MEANWHILE", "COMMA"))
 _FRONTED = frozenset(("and", "comma", "while_doing", "meanwhile"))
 """What may stand between a constraint in front and the commands that it is about."""
 _UNTIL = frozenset(("until", "before"))
 """The same where the command ends what is forbidden: `avoid the kitchen until going to the lab`."""
 _PLAIN = frozenset(("and", "comma"))
+_BEFORE_COMMANDS = frozenset(("DO", "ELSE", "LOOP", "STOP", "THEN"))
+"""Behind these nothing has been said that a constraint could hold over."""
+_GOES_ON = frozenset(("then", "otherwise"))
 
 
 def taken(scan: Scan, token: Token) -> bool:
@@ -25,21 +27,22 @@ def taken(scan: Scan, token: Token) -> bool:
     if constraint is None:
         return False
     entry, _ = scan.around_statement()
-    has_more = entry.statement == "open" or not entry.is_group
-    if has_more and len(scan.out) > entry.begins and not only_constraints(scan):
+    has_more = (entry.statement == "open" or not entry.is_group) and len(scan.out) > entry.begins
+    follows_others = has_more and only_constraints(scan)
+    if has_more and not follows_others:
         if scan.out[-1].kind in ("OR", "OR_ELSE", "WIDE_OR"):
             words = scan.words(token)
             scan.fail(
                 "BT155", scan.span(token), words=words, advice=f"Write for example: {words} {scan.word('and')} ..."
             )
             return True
-        if scan.out[-1].kind not in _JOINTS:
+        if scan.out[-1].kind not in CONSTRAINT_JOINTS:
             return False
         _unjoin(scan)
         entry.constraints.append(constraint)
         scan.next(token, False)
         return True
-    behind = _behind_joint(scan, constraint.kind == "keep in")
+    behind = 0 if follows_others else _behind_joint(scan, constraint.kind == "keep in")
     if not behind and constraint.kind == "keep in" and len(constraint.zones) > 1:
         words, reason = scan.words(token), "alone it takes one zone"
         advice = f"Say what is done there: {words} {scan.word('and')} ..."
@@ -82,17 +85,21 @@ def behind(scan: Scan, token: Token) -> bool:
 
 
 def only_constraints(scan: Scan) -> bool:
-    """Whether nothing but constraints is said in the statement (or bracket), before and behind: they are commands."""
+    """Whether nothing but constraints is said in the statement (or bracket), before and behind: they are commands.
+
+    So also in the body of a form, and behind `then`.
+    """
     said = scan.out[scan.around_statement()[0].begins :]
-    is_plain = bool(said) and all(token.kind in _JOINTS or constraint_of(token) is not None for token in said)
-    return is_plain and _ends_in_constraints(scan, scan.at)
+    first = next((at + 1 for at in reversed(range(len(said))) if said[at].kind in _BEFORE_COMMANDS), 0)
+    return only_constrains(said[first:]) and _ends_in_constraints(scan, scan.at, bool(first))
 
 
-def _ends_in_constraints(scan: Scan, at: int) -> bool:
-    """Whether nothing but constraints stands from a place on to the end of the statement."""
+def _ends_in_constraints(scan: Scan, at: int, may_go_on: bool = False) -> bool:
+    """Whether nothing but constraints stands from a place on to the end of the statement, or what goes on with it."""
     while scan.raw[at].kind in _PLAIN or constraint_of(scan.raw[at]) is not None:
         at += 1
-    return scan.raw[at].kind in ENDS
+    ends = scan.raw[at].kind in ENDS
+    return ends or (may_go_on and (scan.raw[at].kind in _GOES_ON or scan.raw[at - 1].kind in _PLAIN))
 
 
 def _unjoin(scan: Scan) -> None:
