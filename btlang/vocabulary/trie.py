@@ -107,8 +107,8 @@ def longest(
     lists: bool = True,
     found: tuple[SlotValue, ...] = (),
 ) -> Match | None:
-    """The longest phrase at a word; where two are equally long, the one with a kind of the world, then the one with
-    words in place of slots, or with a name in place of a text. A value that can be of any type is one of the type that
+    """The longest phrase at a word; where two are equally long, the closer one, then the one with words in place of
+    slots, or with a name in place of a text. A value that can be of any type is one of the type that
     the vocabulary has first.
 
     `found` are the values that have led to the root. A slot of an entry also takes a list of values, unless `lists`
@@ -129,9 +129,7 @@ def longest(
     while True:
         while node is not None:
             word = words[i]
-            if END in node and (
-                i > best_last or best is None or (i == best_last and _has_kinds(found) > _has_kinds(best_values))
-            ):
+            if END in node and (i > best_last or best is None or (i == best_last and _is_closer(found, best_values))):
                 meaning: Meaning = node[END]
                 if meaning.entry is not None or all(_may_be_listed(value, meaning.role) for value in found):
                     best, best_last, best_values = meaning, i, found
@@ -173,12 +171,12 @@ def longest(
             break
         node, i, found = paths.pop()
     holds_place = any(is_related(value.text) for value in best_values) if verbs else False
-    is_about_zone = any(map(_is_zone, best_values)) if verbs else False
+    is_about_zone = any(value.type == ZONE for value in best_values) if verbs else False  # a place may be meant
     if verbs and (best is None or holds_place or is_about_zone or _may_be_longer(words, best_last, context)):
         for node, i in verbs:
             match = _filled(root, node, text, i, context, names)
             says_more = match is not None and holds_place and len(match.values) > len(best_values)
-            says_more |= match is not None and is_about_zone and not any(map(_is_zone, match.values))
+            says_more |= match is not None and is_about_zone and all(value.type != ZONE for value in match.values)
             if match is not None and (
                 best is None or match.last > best_last or (says_more and match.last == best_last)
             ):
@@ -190,19 +188,18 @@ def longest(
     return Match(best, best_last, best_values) if best is not None else None
 
 
-def _has_kinds(values: Iterable[SlotValue]) -> bool:
-    """Whether values say a kind of the world: where it has guests, `count the guests` counts no others."""
-    return any(value.type == KINDS for value in values)
+def _is_closer(values: Sequence[SlotValue], others: Sequence[SlotValue]) -> bool:
+    """Whether values of as many words are meant: a kind of the world, or a text that begins later: in `ask the person
+    who is in the lab to leave` the words behind `person` say whom.
+    """
+    if values and others and values[-1].type == others[-1].type == TEXT and values[-1].first > others[-1].first:
+        return True
+    return any(value.type == KINDS for value in values) and all(value.type != KINDS for value in others)
 
 
 def _may_be_listed(value: SlotValue, role: str) -> bool:
     """Whether a word of the language takes a value: only some words take lists, `every day at 8 am and 6 pm`."""
     return not value.more or (role in LISTED and value.joiner in ("", LISTED[role]))
-
-
-def _is_zone(value: SlotValue) -> bool:
-    """Whether a value gives way to a place of the same name."""
-    return value.type == ZONE
 
 
 def _may_be_longer(words: Sequence[str], at: int, context: ReadingContext) -> bool:
