@@ -20,7 +20,7 @@ CONNECTIVES = {
 
 GOES_ON = frozenset((
     "otherwise", "or", "if_fails", "if_one_fails", "if_unanswered", "meanwhile", "in_parallel", "if_works",
-    "if_it_works", "in_any_case", "do_that", "repeat_that", "again",
+    "if_it_works", "in_any_case", "do_that", "repeat_that", "again", "stop_that",
 ))  # fmt: skip
 """The roles that don't begin a new statement: what they begin continues the statement before it."""
 
@@ -77,9 +77,9 @@ _NO_SLOT = (
     "if", "unless", "while", "until", "whenever", "first_time", "as_soon_as", "once", "provided", "stop_when", "not",
     "but", "may", "or_stay",
     "either", "both", "neither", "nor", "not_both", "any_of", "all_of", "none_of", "one_of",
-    "do_that", "repeat_that", "again", "start_over", "everything", "here", "ordinal", "following", "keep", "fails",
-    "followed_by", "arrival", "received", "on_way", "on_way_to", "start_at", "wait_at", "back_and_forth", "any_time",
-    "instead", "try_again",
+    "do_that", "repeat_that", "stop_that", "again", "start_over", "everything", "here", "ordinal", "following", "keep",
+    "fails", "followed_by", "arrival", "received", "on_way", "on_way_to", "start_at", "wait_at", "back_and_forth",
+    "any_time", "instead", "try_again",
     "there_are", "mind", *QUESTIONS,
     "repeat", "try", "retry", "if_possible", "wait_until", "wait_for", "wait_forever", "check", "nothing",
     "never", "fail",

@@ -16,7 +16,7 @@ from btlang.frontends.mission.grouping.bodies import (
 from btlang.frontends.mission.grouping.conditions import AMOUNTS, CONDITION_FORMS, STARTS_OPERAND, closes_statement
 from btlang.frontends.mission.grouping.constraints import only_constraints
 from btlang.frontends.mission.grouping.problems import both_readings, found_words, is_alone, prohibition, side_by_side
-from btlang.frontends.mission.grouping.readings import otherwise_of_another, repeated, twice_more, waits_first
+from btlang.frontends.mission.grouping.readings import otherwise_of_another, repeated, stopped, twice_more, waits_first
 from btlang.frontends.mission.grouping.scan import ENDS, Scan, Unit
 from btlang.frontends.mission.grouping.stack import StackEntry
 from btlang.frontends.mission.token import Token, constraint_of
@@ -377,5 +377,6 @@ _GOING_ON: dict[str, Callable[[Scan, Token], None]] = {
     "if_works": if_works,
     "in_any_case": in_any_case,
     "otherwise": otherwise,
+    "stop_when": stopped,
 }
 """What a word does behind a stop."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.grouping.scan import ENDS, Scan
 from btlang.frontends.mission.grouping.stack import StackEntry
@@ -37,6 +39,30 @@ def otherwise_of_another(scan: Scan, otherwise: Token) -> None:
     taken, other = f"({kept}) {word} {rest}", f"{head}({done} {then} {kept}) {word} {rest}"
     problem = diagnostic("BT050", span, taken=taken, other=other, fixed=f"{kept} {word} {rest}")
     scan.problems.append(problem.replace(readings=((span, f"{text[form.start : first]}{taken}"), (span, other))))
+
+
+def _both_stopped(scan: Scan, token: Token) -> None:
+    """BT050 for `A. B. Stop as soon as C`, which stops B though both could be meant."""
+    entry, text = scan.around_statement()[0], scan.source.text
+    if entry.commands is None or not entry.commands < entry.begins < len(scan.out):
+        return
+    first, last = scan.out[entry.commands].start, scan.out[entry.begins].start
+    end = next(before.end for before, each in pairwise(scan.raw[scan.at :]) if each.kind in ENDS)
+    span, stops = Span(scan.source, first, end), f"{scan.word('stop_when')} {text[token.end : end].strip()}"
+    before = text[first : scan.last_end]
+    if "\n" in before and not {"#", ":"}.isdisjoint(before):
+        return
+    before = "; ".join(line.strip() for line in before.splitlines() if line.strip())
+    taken, other = f"({text[last : scan.last_end]}) {stops}", f"({before}) {stops}"
+    problem = diagnostic("BT050", scan.span(token), taken=taken, other=other, fixed=taken)
+    readings = (Span(scan.source, last, end), taken), (span, other)
+    scan.problems.append(problem.replace(readings=readings))
+
+
+def stopped(scan: Scan, token: Token) -> None:
+    """`A then B. Stop as soon as C`: the whole statement before it is stopped."""
+    _both_stopped(scan, token)
+    scan.take_statement()
 
 
 def waits_first(scan: Scan, entry: StackEntry) -> None:

@@ -236,11 +236,20 @@ class ToldWords(SentenceReader):
         if is_question(tried) or tried.value.entry.id == _COMES:
             front, words = "", self._asked_words(form)
         words = [at for at in words if text.words[at][0] not in '",']
-        said = self._with_names(self._sought(words) if searches(tried) else words, _names_in(tried.value))
+        if searches(tried):
+            before = tokens[statement_start(tokens, at) : at]
+            words = self._sought(words, is_alone=any(map(searches, before)) or not self._says_all(tried.value, words))
+        said = self._with_names(words, _names_in(tried.value))
         if not said:
             return ""
         said = f"{self._vocabulary.asking['search'][0]} {said}" if searches(tried) and front else said
         return _sentence(said, front)
+
+    def _says_all(self, said: Called | Listed, words: Sequence[int]) -> bool:
+        """Whether words name all in which the values of a list differ: none for `in the lab, then in the hall`."""
+        first, *others = arguments_of(said)
+        named = " ".join(self._text.words[at] for at in words)
+        return all(text.lower() in named for row in others for text in dict({*row} - {*first}).values())
 
     def _own_words(self, form: int) -> str:
         """`wait until Bob comes, then A. If he hasn't come, tell Alice`: what isn't so, as it is said."""
@@ -288,10 +297,11 @@ class ToldWords(SentenceReader):
         sought = " ".join(map(self._written, self._sought(words)))
         return _sentence(f"{front} {sought}").replace(" ,", ",")
 
-    def _sought(self, words: Sequence[int]) -> Sequence[int]:
-        """The words for what a search is for, and where."""
-        things = (at for at in words for kind in (OBJECT, PERSON) if self._context.read(kind, self._text, at))
-        return words[words.index(next(things, words[0])) :]
+    def _sought(self, words: Sequence[int], is_alone: bool = False) -> list[int]:
+        """The words for what a search is for, and for where unless those `is_alone`: it has looked elsewhere too."""
+        reads = ((at, self._context.read(kind, self._text, at)) for at in words for kind in (OBJECT, PERSON))
+        first, last = next(((at, read[1]) for at, read in reads if read is not None), (words[0], words[-1] + 1))
+        return [at for at in words if at >= first and not (is_alone and at >= last)]
 
     def _replied(self, form: int) -> str:
         """`ask Bob "Tea?". If so, tell Alice`: what somebody says by name to a question, which a form depends on."""

@@ -64,7 +64,11 @@ from btlang.vocabulary.trie import longest
 from btlang.vocabulary.value_type import TEXT
 from btlang.vocabulary.word_tree import SLOTS
 
-_ROLES = {"if_it_works": ("if_possible", "if_works"), "in_parallel": ("in_parallel", "meanwhile")}
+_ROLES = {
+    "if_it_works": ("if_possible", "if_works"),
+    "in_parallel": ("in_parallel", "meanwhile"),
+    "stop_that": ("stop_when", "stop_when"),
+}
 """What a word is inside a statement, and where it goes on with the one before."""
 _NOT_READ = frozenset((*SEPARATORS, INCLUDE, *NOT_ALONE))
 _CONDITIONS = frozenset(("condition", *NEGATED))
