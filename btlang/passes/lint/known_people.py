@@ -1,7 +1,8 @@
-"""The lint on people who are said to be somewhere, where a mission says what to do if they aren't (BT254).
+"""The lint on who or what is said to be somewhere, where a mission asks whether that is so (BT254).
 
 `bring the cup to Tom in the lab. If he isn't there, A`: as everything that is chosen by what it is like, Tom is chosen
-from what the robot knows when the command starts. It drives to the lab only if it knows that he is there.
+from what the robot knows when the command starts. It drives to the lab only if it knows that he is there. So also for
+`check whether there is a cup in the lab`.
 """
 
 from __future__ import annotations
@@ -11,17 +12,26 @@ from collections.abc import Iterable, Iterator
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
 from btlang.passes.lint.asked_too_late import WHERE
+from btlang.text.source import Span
 from btlang.tree import ast
 from btlang.vocabulary.capabilities import MOVES, TRAVELS
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.pattern import ways
 from btlang.vocabulary.references import choice_of
-from btlang.vocabulary.value_type import PERSON
+from btlang.vocabulary.value_type import PERSON, PLACE
+
+_LIES = (*WHERE, "on")
+"""The same of things."""
 
 
 def find_known_only(compilation: Compilation) -> Iterator[Diagnostic]:
     """Report the first such command, unless a journey to the place is right before it."""
     vocabulary = compilation.vocabulary
     for body in ast.bodies(compilation.mission):
+        checked = _first_checked(compilation.syntax(body), vocabulary)
+        if checked is not None:
+            yield checked
+            return
         for node in compilation.syntax(body):
             tried = node.tried if type(node) is ast.IfWorks and node.otherwise is not None else None
             if type(node) is ast.Chain and node.operator == "fallback":
@@ -33,18 +43,49 @@ def find_known_only(compilation: Compilation) -> Iterator[Diagnostic]:
 
 
 def _first_known(nodes: Iterable[ast.Ast], vocabulary: Lexicon) -> Diagnostic | None:
-    phrases = sorted((node for node in nodes if type(node) is ast.Phrase), key=lambda each: each.span.start)
     been = set[str]()
-    for phrase in phrases:
+    for phrase in _phrases(nodes):
         moves = MOVES in phrase.entry.resources or TRAVELS in phrase.entry.needs
         named = phrase.entry.given(PERSON, phrase.arguments)
         choice = choice_of(named[0]) if named and moves else None
         parts = dict(choice.parts) if choice is not None else {}
         place = next((parts[relation] for relation in WHERE if relation in parts), "")
         if place and place not in been:
-            words = phrase.span.text
-            journey = " ".join((*vocabulary.asking["journey"], place, vocabulary.word("then")))
-            fixed = f"{journey} {words[:1].lower()}{words[1:]}"
-            return diagnostic("BT254", phrase.span, words=words, place=place, fixed=fixed)
+            return _from_memory(phrase.span, place, vocabulary)
         been.update(text for _, text in phrase.arguments)
     return None
+
+
+def _first_checked(nodes: Iterable[ast.Ast], vocabulary: Lexicon) -> Diagnostic | None:
+    """`check whether there is a cup in the lab`, unless the lab has been named before."""
+    been = set[str]()
+    for phrase in _phrases(nodes):
+        named = [text for _, text in phrase.arguments]
+        parts = [part for text in named if (choice := choice_of(text)) is not None for part in choice.parts]
+        places = [*phrase.entry.given(PLACE, phrase.arguments), *(text for name, text in parts if name in _LIES)]
+        span = _with_check(phrase.span, vocabulary) if places and been.isdisjoint(places) else phrase.span
+        if span.start < phrase.span.start and phrase.entry.sort == "condition":
+            return _from_memory(span, places[0], vocabulary)
+        been.update(named, places)
+    return None
+
+
+def _with_check(span: Span, vocabulary: Lexicon) -> Span:
+    """Return the span with the word for a test that stands before it: `check whether`."""
+    before = span.source.text[: span.start].rstrip()
+    last = before.split()[-1:]
+    if vocabulary.articles.issuperset(last):
+        before = before.removesuffix("".join(last)).rstrip()
+    said = (words for words in ways(vocabulary.roles["check"]) if before.lower().endswith(words))
+    longest = max(said, key=len, default="")
+    return Span(span.source, len(before) - len(longest), span.end) if longest else span
+
+
+def _phrases(nodes: Iterable[ast.Ast]) -> list[ast.Phrase]:
+    return sorted((node for node in nodes if type(node) is ast.Phrase), key=lambda each: each.span.start)
+
+
+def _from_memory(span: Span, place: str, vocabulary: Lexicon) -> Diagnostic:
+    journey = " ".join((*vocabulary.asking["journey"], place, vocabulary.word("then")))
+    fixed = f"{journey} {span.text[:1].lower()}{span.text[1:]}"
+    return diagnostic("BT254", span, words=span.text, place=place, fixed=fixed)

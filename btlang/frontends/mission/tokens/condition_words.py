@@ -27,7 +27,7 @@ from btlang.vocabulary.match import Match, SlotValue
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.references import COUNT, choice_of
 from btlang.vocabulary.trie import TrieNode, longest
-from btlang.vocabulary.value_type import PERSON, PLACE
+from btlang.vocabulary.value_type import OBJECT, PERSON, PLACE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -39,6 +39,7 @@ if TYPE_CHECKING:
 
 _ASKING = frozenset(("if", "unless", "check"))
 _SEEN_AT = {"SeesPerson": "PersonIsAt", "SeesObject": "ObjectIsAt"}
+_KNOWN = "ObjectKnown"
 
 
 def asked_there(
@@ -46,12 +47,16 @@ def asked_there(
 ) -> Match:
     """`go to the lab. If somebody is there, A`: somebody in the lab, whether the robot has them in view or not.
 
+    `If there is a cup, A` is about a cup in the lab, too.
     Not so where a command behind the journey has settled it: `go to the lab and tell Bob "hi". If he isn't there, A`.
     """
     entry, place = match.meaning.entry, context.latest.get(PLACE, "{")
-    there = vocabulary.entry(THERE.get(entry.id, "")) if entry is not None and place[:1] != "{" else None
-    if entry is None or there is None or PLACE not in vocabulary.values.pronouns.get(text.words[match.last - 1], ()):
+    if entry is None or place[:1] == "{" or not (entry.id in THERE or entry.id == _KNOWN):
         return match  # as nearly always
+    there, is_said = vocabulary.entry(THERE.get(entry.id, "")), text.words[match.last - 1]
+    inside = [context.inside(OBJECT, value.text, place) for value in match.values] if entry.id == _KNOWN else []
+    if not any(inside) and (there is None or PLACE not in vocabulary.values.pronouns.get(is_said, ())):
+        return match
     form = run_start(tokens, len(tokens), IN_CONDITIONS) - 1
     journey = next((at for at in reversed(range(len(tokens))) if drives(tokens[at].value)), -1)
     if form < 0 or tokens[form].kind not in _ASKING or journey < 0 or not leads_to(tokens[journey], place):
@@ -63,6 +68,9 @@ def asked_there(
     settled = asked_about(tokens, form, lambda token: achieves(token, asked) or misses(token, asked))
     if settled is not None and settled > journey:
         return match
+    if there is None:
+        known: Match = match.replace(values=(match.values[0].replace(text=inside[0]),))
+        return known
     slot = next(slot for slot in there.slots if slot.type == PLACE)
     value = SlotValue(slot.name, PLACE, place, match.last - 1, match.last)
     placed: Match = match.replace(meaning=match.meaning.replace(entry=there), values=(*match.values, value))
