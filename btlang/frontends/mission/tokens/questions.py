@@ -25,7 +25,7 @@ from btlang.frontends.mission.tokens.settling import IMPLIED
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
 from btlang.tree.answers import EXAMPLE
 from btlang.tree.sums import COUNTING
-from btlang.vocabulary.entry import COUNT, SAY, Entry, Meaning
+from btlang.vocabulary.entry import COUNT, RECIPIENT, SAY, Entry, Meaning
 from btlang.vocabulary.match import Match
 from btlang.vocabulary.references import free_key, key_of
 from btlang.vocabulary.trie import longest
@@ -61,10 +61,17 @@ class Questions(Answers):
         last = behind.last if behind is not None and behind.meaning.role == "there_are" else measured.last
         if command is not None and self._text.words[last] in self._vocabulary.values.texts.inverting:
             last += 1
+        last = self._behind_speaker(last)
         if not self._ends(last):
             return 0
         self._say(at, measured, command, slot)
         return last  # `how much battery do you have left?`
+
+    def _behind_speaker(self, at: int) -> int:
+        """Where to go on behind words that say that the speaker is told: `report the number to me`."""
+        words, roles = self._text.words, self._vocabulary.values.role_words
+        is_told = (words[at],) in roles.introducing.get(RECIPIENT, ()) and words[at + 1 : at + 2] != []
+        return at + 2 if is_told and words[at + 1] in roles.speaker else at
 
     def _where(self, at: int, end: int, command: Token | None = None, slot: str = "") -> int:
         """`where is the cup?`, `where the cup is`: looks for it and says where it is."""
