@@ -86,3 +86,37 @@ def drop_where_it_is(text: Words, vocabulary: Lexicon) -> None:
         leaves = excepted and words[excepted] not in forms  # but not `except if`, `but only after`
         if said is not None and words[said[1]][0] in ENDING and leaves:
             text.drop(at, said[1])
+
+
+def say_quantifier_first(text: Words, vocabulary: Lexicon) -> None:
+    """Put `both` and `all` in front: `if the doors are all closed` as `if all doors are closed`.
+
+    `if A and B aren't both near` says `if not both A and B are near`; behind `they` both words say nothing more.
+    """
+    words, both = text.words, vocabulary.roles["both"]
+    floating = {*both, *(phrase.split()[0] for phrase in vocabulary.roles["all_names"])} - vocabulary.values.each
+    if text.distinct.isdisjoint(floating) or text.distinct.isdisjoint(vocabulary.before_conditions):
+        return  # as nearly always
+    for at in reversed([at for at in range(2, len(words) - 1) if words[at] in floating]):
+        is_apart = words[at - 1] in vocabulary.roles["not"]
+        be = at - 1 - is_apart
+        denied = vocabulary.forms_of_be.get(words[be])
+        forms = [i for i in range(text.earlier(at)[1], be) if words[i] in vocabulary.before_conditions]
+        if denied is None or not forms or forms[-1] + 1 == be:
+            continue
+        says = [i for i in range(forms[-1], be) if words[i] in vocabulary.forms_of_be]  # `if A is near and B are all`
+        joint = (i + 1 for i in range(max(says, default=be), be) if words[i] in vocabulary.joining)
+        first, quantifier = next(joint, forms[-1] + 1), words[at]
+        subject = words[first:be]
+        is_list = not vocabulary.values.joiners.isdisjoint(subject)
+        if len(subject) == 1 and subject[0] in vocabulary.values.plural_pronouns:
+            text.drop(at, at + 1)
+        elif denied or is_apart:
+            verb = next((verb for verb, forms in vocabulary.negations.items() if words[be] in forms), words[be])
+            text.drop(be + 1, at + 1)
+            text.replace(be, [verb])
+            text.replace(first, [*vocabulary.roles["not"][:1], quantifier, words[first]])
+        else:
+            text.drop(at, at + 1)
+            if not is_list:
+                text.replace(first, [quantifier, words[first]])

@@ -13,6 +13,7 @@ from btlang.frontends.mission.tokens.moved_words import (
     drop_where_it_is,
     say_opinion_first,
     say_pace_first,
+    say_quantifier_first,
     say_time_before_event,
 )
 from btlang.frontends.mission.tokens.parted import part_each
@@ -46,6 +47,7 @@ def reworded(text: Words, vocabulary: Lexicon) -> list[Diagnostic]:
     say_time_before_event(text, vocabulary)
     say_pace_first(text, vocabulary)
     drop_where_it_is(text, vocabulary)
+    say_quantifier_first(text, vocabulary)
     _say_as_soon_as(text, vocabulary)
     _drop_again(text, vocabulary)
     _drop_back(text, vocabulary)
