@@ -311,6 +311,8 @@ _ALL = (
     Code("BT253", "If nobody {does}, {ends}.", "{advice}", "note", "nobody answers"),
     Code("BT254", "'{words}' works from what the robot knows when it begins: it doesn't look in {place} first.",
          "To look there first, write: {fixed}", "note", "from memory"),
+    Code("BT255", "'{words}' may be anybody: this world doesn't say who is a {sort}.",
+         "Give people their kind in the world file, for example: kind = \"{sort}\"", "note", "anybody"),
     Code("BT250", "'{sign}' isn't a word.", "Write comparisons in words."),
 )  # fmt: skip
 

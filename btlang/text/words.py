@@ -193,9 +193,7 @@ class Words:
         return made
 
     def earlier(self, at: int) -> tuple[Words, int, int]:
-        """Return where what stands before a word in its statement is: the text, its first word, and the word behind
-        it.
-        """
+        """Return where what stands before a word in its statement is: its text, its first word, the word behind it."""
         if self.picked is not None and at < len(self.picked[1]):
             text, places = self.picked
             return text.earlier(places[at])
@@ -239,6 +237,10 @@ class Words:
     def begin(self, at: int) -> int:
         """Return the character at which a word begins, or the article before it."""
         return self.articles[at][0] if at in self.articles else self.starts[at]
+
+    def ends_line(self, at: int) -> bool:
+        """Return whether a word is the last one of its line in the source."""
+        return any(line.last == at + 1 for line in self.lines)
 
     def span(self, first: int, last: int) -> Span:
         """Return the characters of words `first` to `last` (exclusive); never empty if there is a word."""

@@ -55,7 +55,7 @@ ASKING = (
     "so", "being", "causing", "asking_for", "plea_for", "helping", "plea_for_help",
     "speaking", "spoken_of", "still", "motionless", "who", "somebody", "answering", "likewise",
     "foremost", "numbers", "in_all", "throughout", "postures", "opinions", "supposing", "rooms", "left_there",
-    "remaining", "entering", "turning_to", "ended", "fewer", "having", "putting", "denied",
+    "sorts_of_people", "remaining", "entering", "turning_to", "ended", "fewer", "having", "putting", "denied",
 )  # fmt: skip
 """What the table `asking` of a language may have; without it there are no questions, and no remarks."""
 

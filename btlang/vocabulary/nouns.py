@@ -9,7 +9,7 @@ from btlang.support.record import Record
 from btlang.text.words import Words
 from btlang.vocabulary.adjectives import UNSLOTTED, Adjectives
 from btlang.vocabulary.pattern import Form, Slot, forms
-from btlang.vocabulary.references import ALL, CHOICES, COUNT, DENIED, PLACED, SIZED, SPEAKING, Parts, ordinal
+from btlang.vocabulary.references import ALL, CHOICES, COUNT, DENIED, PLACED, SEEN, SIZED, SPEAKING, Parts, ordinal
 from btlang.vocabulary.value_type import OBJECT, PERSON, PLACE, WORLD
 from btlang.vocabulary.word_tree import END, SLOTS, WordTree, find, insert
 
@@ -253,6 +253,13 @@ def noun_phrases(
                         *language["ones"],
                     )
                     _add_declared(found, noun, form, ways if takes_more else ())
+        for words in language["asking"].get("sorts_of_people", ()) if kind == PERSON else ():
+            many = plural(words, language["plural_endings"])
+            found.add((words,), {}, kind, SEEN)
+            found.add_plural((many,), {}, kind)
+            for before, how in every:
+                found.add((*before, words), {}, kind, how)
+                found.add((*before, many), {}, kind, how)
     return found
 
 

@@ -135,6 +135,9 @@ def longest(
                     best, best_last, best_values = meaning, i, found
             if VERBS in node:
                 verbs.append((node, i))
+            if has_colon := word == ":" and SLOTS in node and not text.ends_line(i):  # `patrol: the lab, the hall`
+                i += 1
+                word = words[i]
             if SLOTS in node:
                 plain = word.isalpha() or word in _MARKS
                 denies = word in context.denials and words[i + 1] not in context.deniable
@@ -165,8 +168,7 @@ def longest(
                         if listed is not None:
                             wider_lists = (listed, *context.wider_list(text, listed))
                             paths += [(child, every.last, (*found, every)) for every in wider_lists]
-            if word != ":" or SLOTS not in node:  # `patrol: the lab, the hall`
-                node = node.get(word)
+            node = None if has_colon else node.get(word)
             i += 1
         if not paths:
             break

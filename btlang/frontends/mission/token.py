@@ -281,6 +281,11 @@ def begins_condition(tokens: Sequence[Token], at: int) -> bool:
     return at < len(tokens) and (tokens[at].kind in ("condition", "not") or tokens[at].kind in QUANTIFIERS)
 
 
+def asks_once(tokens: Sequence[Token], at: int) -> bool:
+    """Whether a `once` stands where a condition must follow: behind no command that is done once."""
+    return at == 0 or tokens[at - 1].kind not in ("command", "name")
+
+
 def closed_until(tokens: Sequence[Token]) -> str:
     """Return until when a statement closes a zone: 11:00 for `from 10 am to 11 am, avoid the lab`; "" for others.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_left
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.explanations.fragments import explain_fragment
@@ -25,6 +25,7 @@ from btlang.frontends.mission.token import (
     Listed,
     Token,
     arguments_of,
+    asks_once,
     drives,
     run_start,
 )
@@ -82,7 +83,7 @@ def explain_unknown(
     if untaken is not None:
         return untaken
     if misfits:
-        return _misfit(text, start, end, misfits, vocabulary, context, definitions)
+        return _misfit(text, start, end, misfits, vocabulary, context, definitions, before)
     time = explain_time(text, at, bool(before) and before[-1].kind in _BEFORE_TIMES, vocabulary)
     if time is not None:
         return time
@@ -117,6 +118,7 @@ def _misfit(
     vocabulary: Lexicon,
     context: ReadingContext,
     definitions: Definitions,
+    before: Sequence[Token],
 ) -> Diagnostic:
     at = misfits[0].at
     types = [vocabulary.types[misfit.kind] for misfit in misfits]
@@ -174,12 +176,13 @@ def _misfit(
     if named:
         return unnamed(span, named, f"I understood '{head} ...'. " if at > first else "", vocabulary)
     if text.words[at][0] != '"':  # `turn leftt` lacks no angle
-        part = explain_fragment(text, first, end, False, vocabulary, context)
-        return part or _unknown_phrase(text, first, max(end, at + 1), vocabulary, definitions, [])
+        before = [token for token in before if token.start < text.starts[first]]
+        part = explain_fragment(text, first, end, _asks(before), vocabulary, context)
+        return part or _unknown_phrase(text, first, max(end, at + 1), vocabulary, definitions, before)
     return diagnostic("BT011", span, words=span.text, wanted=f"{wanted} is needed", example=example)
 
 
-def _listed(text: Words, at: int, before: list[Token], vocabulary: Lexicon) -> ValueType | None:
+def _listed(text: Words, at: int, before: Sequence[Token], vocabulary: Lexicon) -> ValueType | None:
     """What one more thing of a list is: `visit the lab and the attic`."""
     last = run_start(before, len(before), ("and", "or", "comma"))
     said = before[last - 1].value if 0 < last < len(before) and at in text.articles else None
@@ -244,11 +247,11 @@ def _ends_in_a_bare_text(command: Token) -> bool:
 
 
 def _unknown_phrase(
-    text: Words, at: int, end: int, vocabulary: Lexicon, definitions: Definitions, before: list[Token]
+    text: Words, at: int, end: int, vocabulary: Lexicon, definitions: Definitions, before: Sequence[Token]
 ) -> Diagnostic:
     span = text.span(at, end)
     start = Span(text.source, before[-1].start, before[-1].end) if before else span
-    may_say = before != [] and before[-1].kind in ("command", "condition")  # `until Bob says you can go`
+    may_say = bool(before) and before[-1].kind in ("command", "condition")  # `until Bob says you can go`
     if may_say and _ends_in_a_bare_text(before[-1]) and start.text[-1].isalnum():
         verb, _, word = start.text.rpartition(" ")
         is_thing = at - 1 in text.articles  # `show the visitors around`: no words to say
@@ -318,10 +321,10 @@ _ASKING = frozenset((
 _BEFORE_ANY = frozenset(("not", "open", "and", "or", "nor", *CORRELATIVES))
 
 
-def _asks(before: list[Token]) -> bool:
+def _asks(before: Sequence[Token]) -> bool:
     """Whether a condition belongs after these tokens."""
-    kinds = (token.kind for token in reversed(before))
-    return next((kind for kind in kinds if kind not in _BEFORE_ANY), "") in _ASKING
+    kinds = [token.kind for token in before if token.kind not in _BEFORE_ANY]
+    return kinds[-1:] != [] and (kinds[-1] in _ASKING or (kinds[-1] == "once" and asks_once(before, len(before) - 1)))
 
 
 def _examples(vocabulary: Lexicon, sort: str = "command") -> str:

@@ -59,6 +59,8 @@ class Calls(Mentions):
         text, meaning = self._text, match.meaning
         match = self._with_held(match) if self._held else match
         values = match.values
+        for value in values if self._sorts else ():
+            self._note_sort(value)
         for value in values if self._owners else ():
             self._note_owners(value)
         self.problems += assumed_times(text, values) if text.assumed else ()

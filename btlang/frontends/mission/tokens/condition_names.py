@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator, Sequence
 
-from btlang.frontends.mission.token import CORRELATIVES, QUANTIFIERS, Called, Header, Listed, Token, begins_condition
+from btlang.frontends.mission.token import (
+    CORRELATIVES,
+    QUANTIFIERS,
+    Called,
+    Header,
+    Listed,
+    Token,
+    asks_once,
+    begins_condition,
+)
 from btlang.vocabulary.entry import Entry
 
 
@@ -42,7 +51,8 @@ def settle(tokens: Sequence[Token], conditions: Container[str]) -> None:
         elif token.kind == "followed_by":
             token.kind = "then"
         elif token.kind == "once":
-            if not begins_condition(tokens, at + 1):
+            is_unknown = tokens[at + 1 : at + 2] != [] and tokens[at + 1].kind == "unknown"
+            if not (begins_condition(tokens, at + 1) or (is_unknown and asks_once(tokens, at))):
                 token.value = "1"
             token.kind = "count" if token.value else "as_soon_as"
 

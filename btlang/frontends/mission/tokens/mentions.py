@@ -51,6 +51,8 @@ class Mentions:
         self._otherwise: set[str] = set()  # the types whose latest values are those of `otherwise`, and only in it
         # in most missions nobody is spoken of by a pronoun
         self.speaks_of_people = not text.distinct.isdisjoint(pronouns_for(vocabulary.values.pronouns, PERSON))
+        sorts = vocabulary.values.sorts_of_people if vocabulary.values.listed(PERSON) else {}
+        self._sorts = {} if text.distinct.isdisjoint(sorts) else sorts
         self._owners = not text.distinct.isdisjoint(vocabulary.values.names_tree(OWNER))
 
     def _reference(self, kind: str) -> str:
@@ -254,6 +256,23 @@ class Mentions:
         before = self._themes[1] if self._themes[0] == entry.id and is_plain else []
         self._themes = entry.id, [*before, name] if is_plain else []
         return tuple(dict.fromkeys(self._themes[1]))
+
+    def _note_sort(self, value: SlotValue) -> None:
+        """BT255 for `the patient` where the world has people, but doesn't say which are patients: anybody is meant.
+
+        BT178 for `the patients`, who aren't all the people that the robot knows.
+        """
+        words, choice = self._text.words[value.first : value.last], choice_of(value.group or value.text)
+        sort = next((self._sorts[word] for word in words if word in self._sorts), "")
+        if value.type != PERSON or not sort or choice is None or dict(choice.parts).keys() & {NAME, "kind"}:
+            return
+        span = self._text.span(value.first, value.last)
+        is_met = self._text.words[value.last] in self._vocabulary.asking["who"]  # `greet each visitor who comes in`
+        if value.group and not choice.parts and not is_met:
+            kind = f'kind = "{sort}"'
+            self.problems.append(diagnostic("BT178", span, words=span.text, part="kind", type=PERSON, line=kind))
+        else:
+            self.problems.append(diagnostic("BT255", span, words=span.text, sort=sort))
 
     def _note_owners(self, value: SlotValue) -> None:
         """BT177 for each owner of whom it isn't known what they own: `my cup`, but not the cup called "my cup".
