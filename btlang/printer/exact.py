@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_left
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from btlang.printer.fragments import COLON, LEAF, Fragment, Fragments, mark
 from btlang.printer.printer import WHOLE, Doc, Printer
@@ -105,6 +105,16 @@ def _details(node: ast.Exact | ast.Phrase, ports: dict[str, str], printer: Print
     gives = {key: ports.pop(key) for key in node.outputs if _KEY.fullmatch(ports.get(key, ""))}
     is_command = isinstance(node, ast.Phrase)
     return head + _ports("with", ports, printer, is_command) + _ports("giving", gives, printer) + behind
+
+
+def order_ports(ports: Iterable[tuple[str, str]], vocabulary: Lexicon) -> tuple[tuple[str, str], ...]:
+    """Return ports in the order in which they are said best: those with words of their own last, scripts behind all."""
+
+    def place(port: tuple[str, str]) -> int:
+        said = _detail(*port, vocabulary)
+        return 0 if not said else 2 if said.endswith('"') else 1
+
+    return tuple(sorted(ports, key=place))
 
 
 def _detail(port: str, text: str, vocabulary: Lexicon) -> str:

@@ -178,7 +178,7 @@ def test_what_only_editors_write_is_not_said() -> None:
     ports = '_uid="3" _fullpath="a/b" _collapsed="1" _skipIf="x &gt; 1" _onSuccess="y := 2"'
     assert said(f"<!-- ////// --><OpenBox {ports}/><!-- ---\n===\nlid -->") == [
         "# lid",
-        'do open box with _skipIf "x > 1", _onSuccess "y := 2"',
+        'do open box with _onSuccess "y := 2" unless "x > 1"',
     ]
 
 

@@ -103,6 +103,16 @@ CASES = {
         "<Wave _skipIf='a != 1 &amp;&amp; b'/></Sequence>",
         ["wave if \"mode == 'a b'\"", 'nod if "done"', 'wave unless "a != 1 && b"'],
     ),
+    "a script before other ports": (
+        "<Sequence><PushCart _while=\"mode == 'push'\" speed='0.2' safe_dist='0.5'/><Wave _skipIf='busy' volume='2'/>"
+        '<OpenLid _failureIf="jammed" door="2"/><SubTree ID="Dock" _while="low" _autoremap="true" v="1"/></Sequence>',
+        [
+            "do push cart with speed 0.2, safe dist 0.5 while \"mode == 'push'\"",
+            'wave with volume 2 unless "busy"',
+            'do open lid with door 2 failing if "jammed"',
+            'do subtree "Dock" with v 1 with all values while "low"',
+        ],
+    ),
     "thresholds of a parallel": (
         '<Parallel success_count="1" failure_count="2"><Wave/><Nod/></Parallel>',
         ["at the same time, until 1 succeeded or 2 failed:", "  wave", "  nod"],
