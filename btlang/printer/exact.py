@@ -18,12 +18,13 @@ from btlang.tree.catalogue import SEQUENCE, SUBTREE, takes_one_child
 from btlang.vocabulary.language_tables import CHANGING
 from btlang.vocabulary.lexicon import DEFINING, Lexicon
 from btlang.vocabulary.node_forms import is_negative, node_details, node_forms, opposite_script
-from btlang.vocabulary.node_words import id_of_name, is_port, is_tree_name, said_id, subtree_named
+from btlang.vocabulary.node_words import id_of_name, is_port, is_said_bare, is_tree_name, said_id, subtree_named
 from btlang.vocabulary.trie import longest
 
 _BARE = re.compile(r"-?\d+(\.\d+)?|\{[A-Za-z_][A-Za-z0-9_]*\}")
 _KEY = re.compile(r"\{[A-Za-z_][A-Za-z0-9_]*\}")
 _IDENTIFIER = re.compile(r"(?=\w*_|\w+[A-Z])[A-Za-z_]\w*", re.ASCII)
+_ODD_WORDS = re.compile(r"\d[A-Z](?![a-z])")  # `GetMasks3D` would be `get masks3 d`
 _WORDS = re.compile(r"[a-z][a-z0-9]*(_[a-z][a-z0-9]*)*")
 # A text as pieces: what double quotes can hold, marks that would end it, and what no quotes can hold.
 _PIECE = re.compile(r'(?P<plain>[^"“”„«»\x00-\x1f\x7f\ufeff]+)|(?P<marks>["“”„«»]+)|(?P<odd>.)', re.DOTALL)
@@ -138,10 +139,14 @@ def _head(node: ast.Exact, ports: dict[str, str], printer: Printer) -> str:
     if name and (is_known or words is not None):
         del ports["ID"]
         said = _in_words(id_of_name(name), name, role, printer) if name in subtrees else ""
+        if name in subtrees:
+            said = said or _bare(name, role, printer)
         return f"{word} {said or quote(name, vocabulary)}" if is_known else f"{word} {words} {quote(name, vocabulary)}"
     if words is not None and node.id != SUBTREE:
         return f"{word} {words}"
     said = _in_words(node.id, "", role, printer)
+    if not said and (node.is_condition or node.id not in subtrees):
+        said = _bare(node.id, role, printer)
     if said:
         return f"{word} {said}"
     if not node.is_condition and (node.id in subtrees or is_tree_name(node.id, vocabulary)):
@@ -152,14 +157,27 @@ def _head(node: ast.Exact, ports: dict[str, str], printer: Printer) -> str:
 def _in_words(node_id: str, subtree: str, role: str, printer: Printer) -> str:
     """Return the words of an id, "" if they are read as anything else than it, or than this subtree."""
     said = said_id(node_id, role, printer.vocabulary)
-    if not said or (role == "do" and subtree_named(node_id, printer.subtrees, in_words=True) != subtree):
+    if not said or _ODD_WORDS.search(node_id):
         return ""
+    if role == "do" and subtree_named(node_id, printer.subtrees, in_words=True) != subtree:
+        return ""
+    return "" if _is_claimed(said, role, printer) else said
+
+
+def _bare(node_id: str, role: str, printer: Printer) -> str:
+    """Return an id as it stands, "" if it needs quotes."""
+    is_bare = is_said_bare(node_id, role, printer.vocabulary)
+    return node_id if is_bare and not _is_claimed(node_id, role, printer) else ""
+
+
+def _is_claimed(said: str, role: str, printer: Printer) -> bool:
+    """Whether a defined name begins where an id does, or where the word before it does."""
     names, context = printer.names, printer.vocabulary.context
     if not names:
-        return said
+        return False
     text = split(Source(f"{printer.vocabulary.word(role)} {said}"), printer.vocabulary.orthography)
     places = (0, len(text.words) - 2 - len(said.split()))
-    return said if all(longest(names, text, at, context) is None for at in places) else ""
+    return any(longest(names, text, at, context) is not None for at in places)
 
 
 def _ports(role: str, ports: Mapping[str, str], printer: Printer, is_command: bool = False) -> str:

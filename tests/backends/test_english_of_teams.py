@@ -58,7 +58,7 @@ CASES = {
     ),
     "trees of other files": (
         '<Sequence><SubTree ID="move_to_dock" speed="{v}"/><SubTree ID="Dock"/><move_arm/></Sequence>',
-        ['do "move_to_dock" with speed {v}', 'do subtree "Dock"', 'do node "move_arm"'],
+        ['do "move_to_dock" with speed {v}', 'do subtree "Dock"', "do move_arm"],
     ),
     "a guard of something long": (
         f"<ReactiveSequence><IsLidOpen/><Sequence><DetectTags {LONG}/><Wave/></Sequence></ReactiveSequence>",

@@ -18,7 +18,7 @@ from btlang.tree.catalogue import SEQUENCE, SUBTREE
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.node_forms import NodeForm, node_details, node_forms, node_forms_by_start, opposite_script
-from btlang.vocabulary.node_words import ends_id, is_port, is_tree_name, read_id, role_end, subtree_named
+from btlang.vocabulary.node_words import bare_id, ends_id, is_port, is_tree_name, read_id, role_end, subtree_named
 from btlang.vocabulary.trie import TrieNode
 
 _MOST_WORDS = 12  # of the name of a port
@@ -232,13 +232,16 @@ class _Reader:
         return role_end(self._text, at, (role,), self._vocabulary)
 
     def id(self, at: int) -> tuple[str, int, str] | None:
-        """An id, where it ends, and whether it stands in "words", in quotes, or behind the word "node"."""
+        """An id, where it ends, and whether it stands in "words", in quotes, "bare", or behind the word "node"."""
         behind = self.word("node", at)
         for way, found in (("", self.quoted(at)), ("node", self.quoted(behind) if behind else None)):
             if found is not None:
                 return *found, way
         words = read_id(self._text, at, self._vocabulary)
-        return (*words, "words") if words is not None else None
+        if words is not None:
+            return *words, "words"
+        bare = bare_id(self._text, at)
+        return (bare, at + 1, "bare") if bare else None
 
     def form(self, at: int, form: NodeForm) -> tuple[dict[str, str], int] | None:
         """The ports that a form says, and where it ends; None for other words. Raises Unreadable."""
