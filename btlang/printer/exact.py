@@ -14,7 +14,7 @@ from btlang.printer.printer import WHOLE, Doc, Printer
 from btlang.text.source import Source
 from btlang.text.words import split
 from btlang.tree import ast
-from btlang.tree.catalogue import SEQUENCE, SUBTREE, takes_one_child
+from btlang.tree.catalogue import SEQUENCE, SUBTREE, only_port, takes_one_child
 from btlang.vocabulary.language_tables import CHANGING
 from btlang.vocabulary.lexicon import DEFINING, Lexicon
 from btlang.vocabulary.node_forms import is_negative, node_details, node_forms, opposite_script
@@ -143,7 +143,9 @@ def _head(node: ast.Exact, ports: dict[str, str], printer: Printer) -> str:
             said = said or _bare(name, role, printer)
         return f"{word} {said or quote(name, vocabulary)}" if is_known else f"{word} {words} {quote(name, vocabulary)}"
     if words is not None and node.id != SUBTREE:
-        return f"{word} {words}"
+        port = "" if node.items else only_port(node.id)
+        text = f" {quote(ports.pop(port), vocabulary)}" if not _BARE.fullmatch(ports.get(port, "0")) else ""
+        return f"{word} {words}{text}"
     said = _in_words(node.id, "", role, printer)
     if not said and (node.is_condition or node.id not in subtrees):
         said = _bare(node.id, role, printer)

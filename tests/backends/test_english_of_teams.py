@@ -113,6 +113,28 @@ CASES = {
             'do subtree "Dock" with v 1 with all values while "low"',
         ],
     ),
+    "scripts": (
+        '<Sequence><Script code="x := a || b"/><IfThenElse><ScriptCondition name="far?" code="x || y"/><Wave/><Nod/>'
+        '</IfThenElse><UnsetBlackboard key="{x}"/></Sequence>',
+        [
+            'do script "x := a || b"',
+            'if test script condition "x || y" called "far?", wave otherwise nod',
+            "do unset blackboard with key {x}",
+        ],
+    ),
+    "decorators": (
+        '<ForceSuccess _skipIf="mode != 5"><Precondition if="ready" else="SUCCESS"><RunOnce><DistanceController '
+        'distance="1.5"><GoalUpdatedController name="new goal"><Wave/></GoalUpdatedController></DistanceController>'
+        "</RunOnce></Precondition></ForceSuccess>",
+        [
+            'succeeding in any case if "mode == 5":',
+            '  only if "ready", else succeeding:',
+            "    only once:",
+            "      once every 1.5 m:",
+            '        "new goal", once for each new goal:',
+            "          wave",
+        ],
+    ),
     "thresholds of a parallel": (
         '<Parallel success_count="1" failure_count="2"><Wave/><Nod/></Parallel>',
         ["at the same time, until 1 succeeded or 2 failed:", "  wave", "  nod"],

@@ -14,7 +14,7 @@ from btlang.frontends.mission.token import NodeCall
 from btlang.text.source import Span
 from btlang.text.spelling import respellings
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, statements
-from btlang.tree.catalogue import SEQUENCE, SUBTREE
+from btlang.tree.catalogue import SEQUENCE, SUBTREE, only_port
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.node_forms import NodeForm, node_details, node_forms, node_forms_by_start, opposite_script
@@ -69,11 +69,12 @@ def read_node(
         subtree = subtree_named(node_id, subtrees, in_words=way == "words") if is_named else ""
         if subtree:
             node_id, ports["ID"] = SUBTREE, subtree
-    elif node_id == SUBTREE:
+    elif port := only_port(node_id):
         quoted = reader.quoted(at)
-        if quoted is None:
+        if quoted is None and node_id == SUBTREE:
             raise Unreadable(at, "the name of the subtree in quotes")
-        ports["ID"], at = quoted
+        if quoted is not None:
+            ports[port], at = quoted
     return _details(reader, at, node_id, ports)
 
 
