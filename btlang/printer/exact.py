@@ -191,9 +191,10 @@ def _ports(role: str, ports: Mapping[str, str], printer: Printer, is_command: bo
     for name, text in ports.items():
         key, value = _key(name, vocabulary), _value(text, vocabulary)
         is_short = value == f"{{{name}}}" and (said != "" or not is_command)  # said without its name
-        is_free = said and (is_short or _is_free(key, value, printer))
-        port = value if is_short else f"{key} {value}"
-        said += f", {port}" if is_free else f" {vocabulary.word(role)} {port}"
+        ways = (key, name) if _IDENTIFIER.fullmatch(name) else (key,)  # behind a comma, `stop_dist` is no command
+        free = next((way for way in ways if is_short or _is_free(way, value, printer)), None) if said else None
+        port = value if is_short else f"{free or key} {value}"
+        said += f", {port}" if free else f" {vocabulary.word(role)} {port}"
     return said
 
 

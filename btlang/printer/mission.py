@@ -28,6 +28,7 @@ from btlang.text.words import split
 from btlang.tree import ast
 from btlang.tree.catalogue import SEQUENCE
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.node_forms import node_forms
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -93,7 +94,9 @@ def _wrap(line: str, margin: str, width: float, printer: Printer) -> Iterator[st
         yield line
         return
     words = split(Source(line), printer.vocabulary.orthography)
+    inside = tuple(f", {rest}" for form in node_forms(printer.vocabulary) for rest in form.pattern.split(", ")[1:])
     ends = [end for word, end in zip(words.words, words.ends, strict=True) if word == COMMA]
+    ends = [end for end in ends if not line.startswith(inside, end - 1)]  # `in order, checked at each tick` stays whole
     begin, before, head = 0, 0, ""
     for end in (*ends, len(line)):
         if len(head) + end - begin > width and before > begin:

@@ -135,6 +135,20 @@ CASES = {
             "          wave",
         ],
     ),
+    "ports that begin like commands": (
+        '<DriveArc speed="2" stop_dist="0.5" wave="3" turn_rate="1" label="a"/>',
+        ['do drive arc with speed 2, stop_dist 0.5 with wave 3, turn rate 1, label "a"'],
+    ),
+    "a form that goes on in another line": (
+        '<ReactiveSequence name="stand at the entrance of the hall until the game begins" _while="state == 1"><Wave/><Nod/>'
+        "</ReactiveSequence>",
+        [
+            '"stand at the entrance of the hall until the game begins",',
+            '    in order, checked at each tick while "state == 1":',
+            "  wave",
+            "  nod",
+        ],
+    ),
     "thresholds of a parallel": (
         '<Parallel success_count="1" failure_count="2"><Wave/><Nod/></Parallel>',
         ["at the same time, until 1 succeeded or 2 failed:", "  wave", "  nod"],
