@@ -135,13 +135,22 @@ CASES = {
             "          wave",
         ],
     ),
+    "a goal that changes, and a rate by speed": (
+        '<GoalUpdater input_goal="{goal}" output_goal="{latest}"><SpeedController min_rate="0.1" max_rate="1.0">'
+        "<Wave/></SpeedController></GoalUpdater>",
+        [
+            "with {latest} as the latest {goal}:",
+            "  more often the faster it drives with min rate 0.1, max rate 1.0:",
+            "    wave",
+        ],
+    ),
     "ports that begin like commands": (
         '<DriveArc speed="2" stop_dist="0.5" wave="3" turn_rate="1" label="a"/>',
         ['do drive arc with speed 2, stop_dist 0.5 with wave 3, turn rate 1, label "a"'],
     ),
     "a form that goes on in another line": (
-        '<ReactiveSequence name="stand at the entrance of the hall until the game begins" _while="state == 1"><Wave/><Nod/>'
-        "</ReactiveSequence>",
+        '<ReactiveSequence name="stand at the entrance of the hall until the game begins" _while="state == 1"><Wave/>'
+        "<Nod/></ReactiveSequence>",
         [
             '"stand at the entrance of the hall until the game begins",',
             '    in order, checked at each tick while "state == 1":',
