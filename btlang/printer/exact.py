@@ -64,6 +64,15 @@ def node_head(node: ast.Exact, printer: Printer) -> str:
     return said + _details(node, ports, printer)
 
 
+def with_condition_first(node: ast.Ast, printer: Printer) -> str:
+    """Print a leaf said by its id with its last condition first, `while "x < 3", do push cart`; "" if it has none."""
+    if not isinstance(node, ast.Exact) or node.items or node.is_condition or not node.ports:
+        return ""
+    said = _detail(*node.ports[-1], printer.vocabulary)
+    rest = node_head(node.replace(ports=node.ports[:-1]), printer) if said.endswith('"') else ""
+    return f"{said.strip()}, {rest}" if rest else ""
+
+
 def split_label(node: ast.Ast) -> tuple[str, ast.Ast]:
     """Return the name that stands before a statement, "" if none does, and the statement without it."""
     if isinstance(node, ast.Named):

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator
 
-from btlang.printer.exact import exact_block, quote, split_label
+from btlang.printer.exact import exact_block, quote, split_label, with_condition_first
 from btlang.printer.fragments import COLON, COMMA, is_longer, mark
 from btlang.printer.printer import THEN, Doc, Printer
 from btlang.printer.sentence import (
@@ -84,7 +84,8 @@ def lines_of(
             below += [(depth + 1, part, joint, "") for part, joint in body]
         found += (f"{INDENT * depth}# {text}" for text in printer.comments(item, whole=not below))
         before = f"{name}: " if name else ""
-        stack.extend(reversed(below or [(depth, before + (line or printer.line(item, said, among)), "", "")]))
+        line = (too_long and with_condition_first(item, printer)) or line or printer.line(item, said, among)
+        stack.extend(reversed(below or [(depth, before + line, "", "")]))
     return found
 
 

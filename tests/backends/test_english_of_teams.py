@@ -144,6 +144,14 @@ CASES = {
             "    wave",
         ],
     ),
+    "a script before something long": (
+        f'<Sequence><DetectTags name="look" _while="a &lt; 3" {LONG}/><Wave/></Sequence>',
+        [
+            '"look": while "a < 3", do detect tags with shelf "shelf of the cell", tray "tray of the cell",',
+            '    gripper "gripper of the cell", camera "camera of the cell", approach "approach of the cell"',
+            "wave",
+        ],
+    ),
     "ports that begin like commands": (
         '<DriveArc speed="2" stop_dist="0.5" wave="3" turn_rate="1" label="a"/>',
         ['do drive arc with speed 2, stop_dist 0.5 with wave 3, turn rate 1, label "a"'],

@@ -99,6 +99,30 @@ def test_preconditions_in_words(said: str, ports: dict[str, str], parser: str) -
 
 
 @pytest.mark.parametrize(
+    ("text", "same"),
+    [
+        ('while "x < 3", do push cart with speed 2', 'do push cart with speed 2 while "x < 3"'),
+        ('nod; "a": unless "x", do PushCart; wave', 'nod; "a": do PushCart unless "x"; wave'),
+        ('if "x == 6", do push cart:\n  wave\nnod', 'do push cart if "x == 6":\n  wave\nnod'),
+    ],
+)
+@pytest.mark.parametrize("parser", ["shunting-yard", "lark"])
+def test_a_precondition_before_its_node(text: str, same: str, parser: str) -> None:
+    assert tree_of(text, parser) == tree_of(same)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ['while "x", do push cart then nod', 'nod then while "x", do push cart', 'if "x", do push cart if "y"',
+     'unless "x", nod', 'while "x", do push cart, 3 times'],
+)  # fmt: skip
+def test_a_precondition_before_more_than_its_node_is_refused(text: str) -> None:
+    """It would be that of the first node alone."""
+    with pytest.raises(MissionError):
+        tree_of(text)
+
+
+@pytest.mark.parametrize(
     "text", ['wave if "a and b"', 'wave unless "x" unless "y"', "wave unless x", 'wave while "x" with _while "y"']
 )
 def test_preconditions_that_cannot_be_read(text: str) -> None:

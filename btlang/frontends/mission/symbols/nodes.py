@@ -141,9 +141,9 @@ def read_details(
     return (call.replace(ports=own), at) if at > first else None
 
 
-def is_detail(text: Words, at: int, vocabulary: Lexicon) -> bool:
-    """Whether words of their own begin that say a port which all nodes may have: `unless "x > 1"`."""
-    return _Reader(text, vocabulary).detail(at) is not None
+def read_detail(text: Words, at: int, vocabulary: Lexicon) -> tuple[str, str, int] | None:
+    """A port that all nodes may have and its text, in words of its own, `unless "x > 1"`, and where these end."""
+    return _Reader(text, vocabulary).detail(at)
 
 
 def outputs_at(text: Words, at: int, vocabulary: Lexicon) -> list[str]:
