@@ -29,7 +29,7 @@ from btlang.tree.catalogue import CATALOGUE, SUBTREE
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.correct_words import correct_words
 from btlang.vocabulary.lexicon import Lexicon
-from btlang.vocabulary.node_words import id_of_name, said_id
+from btlang.vocabulary.node_words import bare_id, id_of_name, said_id
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -249,7 +249,7 @@ def find_said_id(node: Node, node_id: str, vocabulary: Lexicon) -> SaidId | None
     text = split(Source(node.span.text), vocabulary.orthography)
     parts = id_words(node_id)
     for at in range(1, len(text.words)):
-        in_quotes = text.words[at] == f'"{node_id}'
+        in_quotes = text.words[at] == f'"{node_id}' or bare_id(text, at) == node_id
         last = at + 1 if in_quotes else at + len(parts)
         if in_quotes or (at == 1 and text.words[at:last] == parts):
             start = node.span.start

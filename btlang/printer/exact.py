@@ -7,23 +7,24 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_left
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from btlang.printer.fragments import COLON, LEAF, Fragment, Fragments, mark
 from btlang.printer.printer import WHOLE, Doc, Printer
 from btlang.text.source import Source
 from btlang.text.words import split
 from btlang.tree import ast
-from btlang.tree.catalogue import SEQUENCE, SUBTREE, takes_one_child
+from btlang.tree.catalogue import SEQUENCE, SUBTREE, only_port, takes_one_child
 from btlang.vocabulary.language_tables import CHANGING
 from btlang.vocabulary.lexicon import DEFINING, Lexicon
 from btlang.vocabulary.node_forms import is_negative, node_details, node_forms, opposite_script
-from btlang.vocabulary.node_words import id_of_name, is_port, is_tree_name, said_id, subtree_named
+from btlang.vocabulary.node_words import id_of_name, is_port, is_said_bare, is_tree_name, said_id, subtree_named
 from btlang.vocabulary.trie import longest
 
 _BARE = re.compile(r"-?\d+(\.\d+)?|\{[A-Za-z_][A-Za-z0-9_]*\}")
 _KEY = re.compile(r"\{[A-Za-z_][A-Za-z0-9_]*\}")
 _IDENTIFIER = re.compile(r"(?=\w*_|\w+[A-Z])[A-Za-z_]\w*", re.ASCII)
+_ODD_WORDS = re.compile(r"\d[A-Z](?![a-z])")  # `GetMasks3D` would be `get masks3 d`
 _WORDS = re.compile(r"[a-z][a-z0-9]*(_[a-z][a-z0-9]*)*")
 # A text as pieces: what double quotes can hold, marks that would end it, and what no quotes can hold.
 _PIECE = re.compile(r'(?P<plain>[^"“”„«»\x00-\x1f\x7f\ufeff]+)|(?P<marks>["“”„«»]+)|(?P<odd>.)', re.DOTALL)
@@ -61,6 +62,15 @@ def node_head(node: ast.Exact, printer: Printer) -> str:
         is_alone = node.id == SEQUENCE and not ports
         return label if is_alone else f"{label}, {said}" + _details(node.replace(name=""), ports, printer)
     return said + _details(node, ports, printer)
+
+
+def with_condition_first(node: ast.Ast, printer: Printer) -> str:
+    """Print a leaf said by its id with its last condition first, `while "x < 3", do push cart`; "" if it has none."""
+    if not isinstance(node, ast.Exact) or node.items or node.is_condition or not node.ports:
+        return ""
+    said = _detail(*node.ports[-1], printer.vocabulary)
+    rest = node_head(node.replace(ports=node.ports[:-1]), printer) if said.endswith('"') else ""
+    return f"{said.strip()}, {rest}" if rest else ""
 
 
 def split_label(node: ast.Ast) -> tuple[str, ast.Ast]:
@@ -107,6 +117,16 @@ def _details(node: ast.Exact | ast.Phrase, ports: dict[str, str], printer: Print
     return head + _ports("with", ports, printer, is_command) + _ports("giving", gives, printer) + behind
 
 
+def order_ports(ports: Iterable[tuple[str, str]], vocabulary: Lexicon) -> tuple[tuple[str, str], ...]:
+    """Return ports in the order in which they are said best: those with words of their own last, scripts behind all."""
+
+    def place(port: tuple[str, str]) -> int:
+        said = _detail(*port, vocabulary)
+        return 0 if not said else 2 if said.endswith('"') else 1
+
+    return tuple(sorted(ports, key=place))
+
+
 def _detail(port: str, text: str, vocabulary: Lexicon) -> str:
     """Print a port that all nodes may have in words of its own, "" if it has none."""
     opposite = opposite_script(text) if is_negative(text) else None
@@ -128,10 +148,16 @@ def _head(node: ast.Exact, ports: dict[str, str], printer: Printer) -> str:
     if name and (is_known or words is not None):
         del ports["ID"]
         said = _in_words(id_of_name(name), name, role, printer) if name in subtrees else ""
+        if name in subtrees:
+            said = said or _bare(name, role, printer)
         return f"{word} {said or quote(name, vocabulary)}" if is_known else f"{word} {words} {quote(name, vocabulary)}"
     if words is not None and node.id != SUBTREE:
-        return f"{word} {words}"
+        port = "" if node.items else only_port(node.id)
+        text = f" {quote(ports.pop(port), vocabulary)}" if not _BARE.fullmatch(ports.get(port, "0")) else ""
+        return f"{word} {words}{text}"
     said = _in_words(node.id, "", role, printer)
+    if not said and (node.is_condition or node.id not in subtrees):
+        said = _bare(node.id, role, printer)
     if said:
         return f"{word} {said}"
     if not node.is_condition and (node.id in subtrees or is_tree_name(node.id, vocabulary)):
@@ -142,14 +168,27 @@ def _head(node: ast.Exact, ports: dict[str, str], printer: Printer) -> str:
 def _in_words(node_id: str, subtree: str, role: str, printer: Printer) -> str:
     """Return the words of an id, "" if they are read as anything else than it, or than this subtree."""
     said = said_id(node_id, role, printer.vocabulary)
-    if not said or (role == "do" and subtree_named(node_id, printer.subtrees, in_words=True) != subtree):
+    if not said or _ODD_WORDS.search(node_id):
         return ""
+    if role == "do" and subtree_named(node_id, printer.subtrees, in_words=True) != subtree:
+        return ""
+    return "" if _is_claimed(said, role, printer) else said
+
+
+def _bare(node_id: str, role: str, printer: Printer) -> str:
+    """Return an id as it stands, "" if it needs quotes."""
+    is_bare = is_said_bare(node_id, role, printer.vocabulary)
+    return node_id if is_bare and not _is_claimed(node_id, role, printer) else ""
+
+
+def _is_claimed(said: str, role: str, printer: Printer) -> bool:
+    """Whether a defined name begins where an id does, or where the word before it does."""
     names, context = printer.names, printer.vocabulary.context
     if not names:
-        return said
+        return False
     text = split(Source(f"{printer.vocabulary.word(role)} {said}"), printer.vocabulary.orthography)
     places = (0, len(text.words) - 2 - len(said.split()))
-    return said if all(longest(names, text, at, context) is None for at in places) else ""
+    return any(longest(names, text, at, context) is not None for at in places)
 
 
 def _ports(role: str, ports: Mapping[str, str], printer: Printer, is_command: bool = False) -> str:
@@ -161,9 +200,10 @@ def _ports(role: str, ports: Mapping[str, str], printer: Printer, is_command: bo
     for name, text in ports.items():
         key, value = _key(name, vocabulary), _value(text, vocabulary)
         is_short = value == f"{{{name}}}" and (said != "" or not is_command)  # said without its name
-        is_free = said and (is_short or _is_free(key, value, printer))
-        port = value if is_short else f"{key} {value}"
-        said += f", {port}" if is_free else f" {vocabulary.word(role)} {port}"
+        ways = (key, name) if _IDENTIFIER.fullmatch(name) else (key,)  # behind a comma, `stop_dist` is no command
+        free = next((way for way in ways if is_short or _is_free(way, value, printer)), None) if said else None
+        port = value if is_short else f"{free or key} {value}"
+        said += f", {port}" if free else f" {vocabulary.word(role)} {port}"
     return said
 
 

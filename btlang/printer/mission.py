@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator
 
-from btlang.printer.exact import exact_block, quote, split_label
+from btlang.printer.exact import exact_block, quote, split_label, with_condition_first
 from btlang.printer.fragments import COLON, COMMA, is_longer, mark
 from btlang.printer.printer import THEN, Doc, Printer
 from btlang.printer.sentence import (
@@ -28,6 +28,7 @@ from btlang.text.words import split
 from btlang.tree import ast
 from btlang.tree.catalogue import SEQUENCE
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.node_forms import node_forms
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -83,7 +84,8 @@ def lines_of(
             below += [(depth + 1, part, joint, "") for part, joint in body]
         found += (f"{INDENT * depth}# {text}" for text in printer.comments(item, whole=not below))
         before = f"{name}: " if name else ""
-        stack.extend(reversed(below or [(depth, before + (line or printer.line(item, said, among)), "", "")]))
+        line = (too_long and with_condition_first(item, printer)) or line or printer.line(item, said, among)
+        stack.extend(reversed(below or [(depth, before + line, "", "")]))
     return found
 
 
@@ -93,7 +95,9 @@ def _wrap(line: str, margin: str, width: float, printer: Printer) -> Iterator[st
         yield line
         return
     words = split(Source(line), printer.vocabulary.orthography)
+    inside = tuple(f", {rest}" for form in node_forms(printer.vocabulary) for rest in form.pattern.split(", ")[1:])
     ends = [end for word, end in zip(words.words, words.ends, strict=True) if word == COMMA]
+    ends = [end for end in ends if not line.startswith(inside, end - 1)]  # `in order, checked at each tick` stays whole
     begin, before, head = 0, 0, ""
     for end in (*ends, len(line)):
         if len(head) + end - begin > width and before > begin:

@@ -317,6 +317,12 @@ def takes_one_child(node_id: str) -> bool:
     return kind is not None and kind.most == 1
 
 
+def only_port(node_id: str) -> str:
+    """Return the port of a leaf that has just one, such as `code` of a script; "" for any other node."""
+    kind = CATALOGUE.get(node_id)
+    return next(iter(kind.ports)) if kind is not None and not kind.most and len(kind.ports) == 1 else ""
+
+
 def port_content(node_id: str, port: str) -> str:
     """Return what the text of a port is: SCRIPT, KEY, or "" for a value or a reference."""
     if port in PRE_CONDITIONS or port in POST_CONDITIONS:

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
     _Phrases: TypeAlias = tuple[frozenset[str], frozenset[str], frozenset[str]]
 
+_BARE_ID = re.compile(r"(?=\w*_|\w+[A-Z])(?=.*[a-z])[A-Za-z]\w*", re.ASCII)  # `change_mode`, `BackUp`
 _ID = re.compile(r"(?:[A-Z][a-z0-9]*)+")
 _PART = re.compile(r"[A-Z]{2,}[0-9]*(?![a-z])|[A-Z][a-z0-9]*")
 _WORD = re.compile(r"[a-z][a-z0-9]*")
@@ -58,6 +59,22 @@ def said_id(node_id: str, role: str, vocabulary: Lexicon) -> str:
     if head is None or head.meaning.role != role or head.meaning.node:
         return ""
     return said if read_id(text, head.last, vocabulary) == (node_id, len(text.words) - 2) else ""
+
+
+def bare_id(text: Words, at: int) -> str:
+    """Return the id that one word is as it stands, such as `BackUp` or `change_mode`; "" for a word of English."""
+    written = text.source.text[text.starts[at] : text.ends[at]]
+    return written if _BARE_ID.fullmatch(written) else ""
+
+
+@lru_cache(maxsize=4096)
+def is_said_bare(node_id: str, role: str, vocabulary: Lexicon) -> bool:
+    """Return whether an id needs no quotes behind `do` or `test`."""
+    text = split(Source(f"{vocabulary.word(role)} {node_id}"), vocabulary.orthography)
+    head = longest(vocabulary.trie, text, 0, vocabulary.context)
+    if head is None or head.meaning.role != role or head.last != len(text.words) - 3:
+        return False
+    return bare_id(text, head.last) == node_id
 
 
 @lru_cache(maxsize=4096)  # each use of a tree asks for those of all trees

@@ -58,7 +58,7 @@ CASES = {
     ),
     "trees of other files": (
         '<Sequence><SubTree ID="move_to_dock" speed="{v}"/><SubTree ID="Dock"/><move_arm/></Sequence>',
-        ['do "move_to_dock" with speed {v}', 'do subtree "Dock"', 'do node "move_arm"'],
+        ['do "move_to_dock" with speed {v}', 'do subtree "Dock"', "do move_arm"],
     ),
     "a guard of something long": (
         f"<ReactiveSequence><IsLidOpen/><Sequence><DetectTags {LONG}/><Wave/></Sequence></ReactiveSequence>",
@@ -102,6 +102,69 @@ CASES = {
         "<Sequence><Wave _skipIf=\"mode != 'a b'\"/><Nod _skipIf='!done'/>"
         "<Wave _skipIf='a != 1 &amp;&amp; b'/></Sequence>",
         ["wave if \"mode == 'a b'\"", 'nod if "done"', 'wave unless "a != 1 && b"'],
+    ),
+    "a script before other ports": (
+        "<Sequence><PushCart _while=\"mode == 'push'\" speed='0.2' safe_dist='0.5'/><Wave _skipIf='busy' volume='2'/>"
+        '<OpenLid _failureIf="jammed" door="2"/><SubTree ID="Dock" _while="low" _autoremap="true" v="1"/></Sequence>',
+        [
+            "do push cart with speed 0.2, safe dist 0.5 while \"mode == 'push'\"",
+            'wave with volume 2 unless "busy"',
+            'do open lid with door 2 failing if "jammed"',
+            'do subtree "Dock" with v 1 with all values while "low"',
+        ],
+    ),
+    "scripts": (
+        '<Sequence><Script code="x := a || b"/><IfThenElse><ScriptCondition name="far?" code="x || y"/><Wave/><Nod/>'
+        '</IfThenElse><UnsetBlackboard key="{x}"/></Sequence>',
+        [
+            'do script "x := a || b"',
+            'if test script condition "x || y" called "far?", wave otherwise nod',
+            "do unset blackboard with key {x}",
+        ],
+    ),
+    "decorators": (
+        '<ForceSuccess _skipIf="mode != 5"><Precondition if="ready" else="SUCCESS"><RunOnce><DistanceController '
+        'distance="1.5"><GoalUpdatedController name="new goal"><Wave/></GoalUpdatedController></DistanceController>'
+        "</RunOnce></Precondition></ForceSuccess>",
+        [
+            'succeeding in any case if "mode == 5":',
+            '  only if "ready", else succeeding:',
+            "    only once:",
+            "      once every 1.5 m:",
+            '        "new goal", once for each new goal:',
+            "          wave",
+        ],
+    ),
+    "a goal that changes, and a rate by speed": (
+        '<GoalUpdater input_goal="{goal}" output_goal="{latest}"><SpeedController min_rate="0.1" max_rate="1.0">'
+        "<Wave/></SpeedController></GoalUpdater>",
+        [
+            "with {latest} as the latest {goal}:",
+            "  more often the faster it drives with min rate 0.1, max rate 1.0:",
+            "    wave",
+        ],
+    ),
+    "a script before something long": (
+        f'<Sequence><DetectTags name="look" _while="a &lt; 3" {LONG}/><Wave/></Sequence>',
+        [
+            '"look": while "a < 3", do detect tags with shelf "shelf of the cell", tray "tray of the cell",',
+            '    gripper "gripper of the cell", camera "camera of the cell", approach "approach of the cell"',
+            "wave",
+        ],
+    ),
+    "ports that begin like commands": (
+        '<DriveArc speed="2" stop_dist="0.5" wave="3" turn_rate="1" label="a"/>',
+        ['do drive arc with speed 2, stop_dist 0.5 with wave 3, turn rate 1, label "a"'],
+    ),
+    "a form that goes on in another line": (
+        '<ReactiveSequence name="stand at the entrance of the hall until the game begins" _while="state == 1"><Wave/>'
+        "<Nod/></ReactiveSequence>",
+        [
+            '"stand at the entrance of the hall until the game begins",',
+            '    in order, checked at each tick while "state == 1":',
+            "  wave",
+            "  nod",
+        ],
     ),
     "thresholds of a parallel": (
         '<Parallel success_count="1" failure_count="2"><Wave/><Nod/></Parallel>',

@@ -21,7 +21,7 @@ from btlang.backends.english.inverse_rules import INVERSE_RULES, propose_held
 from btlang.backends.english.names import SpokenNames
 from btlang.backends.english.type_inference import KnownTypes
 from btlang.passes.scope import Lowered, LoweringScope
-from btlang.printer.exact import is_one_piece
+from btlang.printer.exact import is_one_piece, order_ports
 from btlang.printer.phrase import leaf_words
 from btlang.printer.printer import Printer
 from btlang.printer.sentence import PRINTERS
@@ -157,7 +157,8 @@ class Lifter:
             made: ast.Ast = ast.Check(condition, NOWHERE)
         else:
             items = tuple(child.command for child in children)
-            made = ast.Exact(node.id, node.ports, node.name, items, False, NOWHERE, self._find_given(node, node.ports))
+            ports = order_ports(node.ports, self._vocabulary)
+            made = ast.Exact(node.id, ports, node.name, items, False, NOWHERE, self._find_given(node, ports))
         assert self._checked.says(made, node)
         return made
 
@@ -268,7 +269,8 @@ class Lifter:
         """Return a condition, None for a node that isn't known to be one: read again it would be one everywhere."""
         if self._kind(node.id) != "Condition" and not _asks(node):
             return None
-        made = ast.Exact(node.id, node.ports, node.name, (), True, NOWHERE, self._find_given(node, node.ports))
+        ports = order_ports(node.ports, self._vocabulary)
+        made = ast.Exact(node.id, ports, node.name, (), True, NOWHERE, self._find_given(node, ports))
         assert self._checked.says(made, node)
         return made
 
@@ -306,7 +308,7 @@ class Lifter:
         for entry in self._vocabulary.entries.get(node.id, ()):
             defaults = {slot.name: slot.default for slot in entry.slots}
             spoken = [port for port in node.ports if port[0] in defaults and defaults[port[0]] != port[1]]
-            ports = tuple(port for port in node.ports if port not in spoken)
+            ports = order_ports((port for port in node.ports if port not in spoken), self._vocabulary)
             said = texts_of(spoken, self._checked) if entry.sort == sort else None
             words = self._words(node.id, said) if said is not None else ""
             if len(words) - max((len(text) for _, text in said or ()), default=0) > _MOST_WORDS:

@@ -14,11 +14,11 @@ from btlang.frontends.mission.token import NodeCall
 from btlang.text.source import Span
 from btlang.text.spelling import respellings
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, statements
-from btlang.tree.catalogue import SEQUENCE, SUBTREE
+from btlang.tree.catalogue import SEQUENCE, SUBTREE, only_port
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.node_forms import NodeForm, node_details, node_forms, node_forms_by_start, opposite_script
-from btlang.vocabulary.node_words import ends_id, is_port, is_tree_name, read_id, role_end, subtree_named
+from btlang.vocabulary.node_words import bare_id, ends_id, is_port, is_tree_name, read_id, role_end, subtree_named
 from btlang.vocabulary.trie import TrieNode
 
 _MOST_WORDS = 12  # of the name of a port
@@ -69,11 +69,12 @@ def read_node(
         subtree = subtree_named(node_id, subtrees, in_words=way == "words") if is_named else ""
         if subtree:
             node_id, ports["ID"] = SUBTREE, subtree
-    elif node_id == SUBTREE:
+    elif port := only_port(node_id):
         quoted = reader.quoted(at)
-        if quoted is None:
+        if quoted is None and node_id == SUBTREE:
             raise Unreadable(at, "the name of the subtree in quotes")
-        ports["ID"], at = quoted
+        if quoted is not None:
+            ports[port], at = quoted
     return _details(reader, at, node_id, ports)
 
 
@@ -140,9 +141,9 @@ def read_details(
     return (call.replace(ports=own), at) if at > first else None
 
 
-def is_detail(text: Words, at: int, vocabulary: Lexicon) -> bool:
-    """Whether words of their own begin that say a port which all nodes may have: `unless "x > 1"`."""
-    return _Reader(text, vocabulary).detail(at) is not None
+def read_detail(text: Words, at: int, vocabulary: Lexicon) -> tuple[str, str, int] | None:
+    """A port that all nodes may have and its text, in words of its own, `unless "x > 1"`, and where these end."""
+    return _Reader(text, vocabulary).detail(at)
 
 
 def outputs_at(text: Words, at: int, vocabulary: Lexicon) -> list[str]:
@@ -232,13 +233,16 @@ class _Reader:
         return role_end(self._text, at, (role,), self._vocabulary)
 
     def id(self, at: int) -> tuple[str, int, str] | None:
-        """An id, where it ends, and whether it stands in "words", in quotes, or behind the word "node"."""
+        """An id, where it ends, and whether it stands in "words", in quotes, "bare", or behind the word "node"."""
         behind = self.word("node", at)
         for way, found in (("", self.quoted(at)), ("node", self.quoted(behind) if behind else None)):
             if found is not None:
                 return *found, way
         words = read_id(self._text, at, self._vocabulary)
-        return (*words, "words") if words is not None else None
+        if words is not None:
+            return *words, "words"
+        bare = bare_id(self._text, at)
+        return (bare, at + 1, "bare") if bare else None
 
     def form(self, at: int, form: NodeForm) -> tuple[dict[str, str], int] | None:
         """The ports that a form says, and where it ends; None for other words. Raises Unreadable."""

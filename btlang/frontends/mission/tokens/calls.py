@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.explanations.times import assumed_times
-from btlang.frontends.mission.symbols.nodes import GivenTwice, is_detail, read_details, unreadable
+from btlang.frontends.mission.symbols.nodes import GivenTwice, read_detail, read_details, unreadable
 from btlang.frontends.mission.token import Called, Listed, Token, arguments_of
 from btlang.frontends.mission.tokens.mentions import ODD, Mentions
 from btlang.frontends.mission.tokens.two_goals import two_goals
@@ -101,7 +101,7 @@ class Calls(Mentions):
         said = token.value
         if not isinstance(said, Called) or said.entry.sort not in ("action", "condition"):
             return at
-        is_own = is_detail(self._text, at, self._vocabulary)
+        is_own = read_detail(self._text, at, self._vocabulary) is not None
         if not is_own and longest(self._vocabulary.trie, self._text, at, self._context) is not None:
             return at  # `with 5 s in between`
         try:

@@ -10,12 +10,13 @@ from bisect import bisect_right
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.symbols.includes import ROLE as INCLUDE
 from btlang.frontends.mission.symbols.names import Names
-from btlang.frontends.mission.symbols.nodes import Unreadable, read_form, read_label, read_node, unreadable
+from btlang.frontends.mission.symbols.nodes import Unreadable, read_detail, read_form, read_label, read_node, unreadable
 from btlang.frontends.mission.symbols.prefixes import SEPARATORS, Prefix, span_of
 from btlang.frontends.mission.token import (
     BEFORE_CONDITIONS,
     RULES,
     Called,
+    NodeCall,
     Token,
     constraint_of,
     go_on,
@@ -172,6 +173,8 @@ class WordReader:
         """What begins at a word, known or unknown."""
         if form := self._form(at) or (self._label(at) if self._text.words[at][0] == '"' else 0):
             return form
+        if end := self._detail_before(at):
+            return end
         match = self._requests.with_time(self._requests.with_name(self._match(at), at), at)
         match = self._visitors.with_event(match, at)
         match = self._without_measure(match, at)
@@ -541,6 +544,25 @@ class WordReader:
             return 0
         name, end = label
         self._tokens.append(Token("label", self._text.starts[at], self._text.ends[end - 1], name))
+        return end
+
+    def _detail_before(self, at: int) -> int:
+        """A condition before its node, which is all of a statement: `while "x < 3", do push cart`. Returns where to go
+        on, or 0.
+        """
+        tokens, text = self._tokens, self._text
+        is_first = begins(tokens) or tokens[-1].kind == "label"
+        found = read_detail(text, at, self._vocabulary) if text.words[at] in self._details and is_first else None
+        head = self._match(found[2] + 1) if found is not None and text.words[found[2]] == "," else None
+        if found is None or head is None or head.meaning.role != "do":
+            return 0
+        count, end = len(tokens), self._node(head, found[2] + 1)
+        call = tokens[-1].value if len(tokens) > count else None
+        is_whole = text.words[end] in (END_OF_STATEMENT, END_OF_TEXT, ":")  # else it may be for what follows, too
+        if not isinstance(call, NodeCall) or found[0] in dict(call.ports) or not is_whole:
+            del tokens[count:]
+            return 0
+        tokens[-1].value, tokens[-1].start = call.replace(ports=(*call.ports, found[:2])), text.starts[at]
         return end
 
     def _node(self, head: Match, at: int) -> int:
