@@ -50,7 +50,7 @@ HOLDS_AT_THE_START = {
 def outcome(text: str) -> tuple[int, str]:
     """How a mission ends and why it failed; it compiles without a warning and ends by itself."""
     tree = parse_tree(text)
-    # whom it asks is where it is, and what it compares was counted
+    # whom it asks is where it is, what it compares was counted, and what it checks is known
     assert {warning.code for warning in tree.warnings} <= {"BT146", "BT149", "BT254"}
     ended = tree.run(speed="max", time_limit=120)
     assert not ended.stopped
