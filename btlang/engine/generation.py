@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 
-from btlang.engine.compile import compile_node, waits
+from btlang.engine.compile import compile_node, reads_keys, waits
 from btlang.engine.conditions import add_conditions, has_conditions
 from btlang.engine.fused import has_usual_thresholds
 from btlang.engine.instance import NodeInstance, halt_nothing
@@ -161,7 +161,7 @@ class _Generation:
                 not child.children and child.id in signatures and signatures[child.id].kind == "function"
                 for child in node.children
             ]
-            found = node.id in self._templates and has_usual_thresholds(node)
+            found = node.id in self._templates and not reads_keys(node) and has_usual_thresholds(node)
             found = found and self._regions.find_size(functions) <= self._regions.LARGEST
             self._takes_parts[instance.index] = found
         return found

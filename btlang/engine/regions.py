@@ -59,6 +59,15 @@ class Fragment:
         """The number of its children."""
         return self.items[-1].end
 
+    @property
+    def singles(self) -> list[Item]:
+        """Its children as items of one each, for a node that doesn't tick them in a row."""
+        found = []
+        for item in self.items:
+            children = [[leaf] for leaf in item.child] if isinstance(item.child, list) else [item.child]
+            found += [Item(item.first + number, child) for number, child in enumerate(children)]
+        return found
+
 
 class Item:
     """A child of a fragment, or several functions in a row. `first` is the position of the first, `end` that behind."""

@@ -1,9 +1,9 @@
 """What nodes do, as templates of the functions that are generated for whole regions of a tree (see regions.py).
 
-Each template does the same as the function of its node in control.py or decorators.py, and remembers it by the same
-names. It writes lines that leave the status of the node in `r`; 2 is RUNNING, 3 SKIPPED. What happens seldom is
-written once, as a helper that these lines call. A template returns a layout, by which its node is halted: a function,
-a slot, and the layouts of the children that may run for longer than a tick, by position.
+Each template does the same as the function of its node in another module here, and remembers it by the same names. It
+writes lines that leave the status of the node in `r`; 2 is RUNNING, 3 SKIPPED. What happens seldom is written once, as
+a helper that these lines call. A template returns a layout, by which its node is halted: a function, a slot, and the
+layouts of the children that may run for longer than a tick, by position.
 
 Nothing that lasts is kept in a variable while a child is ticked: an interrupt may end the tick, and halts what runs by
 the slots alone.
@@ -13,9 +13,28 @@ from __future__ import annotations
 
 from functools import partial
 
-from btlang.engine.instance import Fault
 from btlang.engine.leaves.callables import find_status
-from btlang.engine.nodes.decorators import NOT_THIS_TIME, WAS_TRUE
+from btlang.engine.nodes.branch_templates import (
+    end_undecided,
+    if_then_else,
+    leave_branch,
+    skip_branch,
+    while_do_else,
+)
+from btlang.engine.nodes.decorator_templates import (
+    begins_pause,
+    complete_rounds,
+    end_rounds,
+    end_timeout,
+    force_failure,
+    force_success,
+    inverter,
+    is_pausing,
+    keep_running_until_failure,
+    rounds,
+    subtree,
+    timeout,
+)
 from btlang.engine.nodes.rows import (
     AGAIN,
     caught,
@@ -259,75 +278,33 @@ def _halt_parallel(slots: Slots, at: int, children: Layouts, keep: bool) -> None
     slots[at + 1] = None
 
 
-def inverter(region: Region, node: Fragment, depth: int, level: int) -> Layout:
-    """Write an Inverter."""
-    region.remember(node.instance)
-    at = region.slot(Fault(node.instance.index, WAS_TRUE))
-    region.add(depth, f"u{level} = S[0].unknowns")
-    layout = region.child(node.items[0], depth, level + 1)
-    region.add(
-        depth,
-        "if r is True:",
-        f" S[0].fault = S[{at}]",
-        " r = False",
-        "elif r is False:",
-        f" if S[0].unknowns == u{level}: r = True",
-        " else: S[0].fault = S[0].unknown",
-    )
-    return layout
-
-
-def force_success(region: Region, node: Fragment, depth: int, level: int) -> Layout:
-    """Write a ForceSuccess."""
-    region.remember(node.instance)
-    layout = region.child(node.items[0], depth, level + 1)
-    region.add(depth, "if r is False: r = True")
-    return layout
-
-
-def force_failure(region: Region, node: Fragment, depth: int, level: int) -> Layout:
-    """Write a ForceFailure."""
-    region.remember(node.instance)
-    at = region.slot(Fault(node.instance.index, NOT_THIS_TIME))
-    layout = region.child(node.items[0], depth, level + 1)
-    region.add(depth, f"if r is True: S[0].fault, r = S[{at}], False")
-    return layout
-
-
-def keep_running_until_failure(region: Region, node: Fragment, depth: int, level: int) -> Layout:
-    """Write a KeepRunningUntilFailure."""
-    region.remember(node.instance)
-    layout = region.child(node.items[0], depth, level + 1)
-    region.add(depth, "if r is not False: r = 2")
-    return layout
-
-
-def subtree(region: Region, node: Fragment, depth: int, level: int) -> Layout:
-    """Write a SubTree."""
-    return region.child(node.items[0], depth, level)
-
-
 TEMPLATES: dict[str, Emit] = {
     "Sequence": partial(in_order, passes=SUCCESS),
     "Fallback": partial(in_order, passes=FAILURE),
     "ReactiveSequence": partial(reactive, passes=SUCCESS),
     "ReactiveFallback": partial(reactive, passes=FAILURE),
     "Parallel": parallel,
+    "IfThenElse": if_then_else,
+    "WhileDoElse": while_do_else,
     "Inverter": inverter,
     "ForceSuccess": force_success,
     "ForceFailure": force_failure,
+    "Repeat": partial(rounds, again=SUCCESS),
+    "RetryUntilSuccessful": partial(rounds, again=FAILURE),
+    "Timeout": timeout,
     "SubTree": subtree,
     "KeepRunningUntilFailure": keep_running_until_failure,
 }
-"""The template of each node that has one, by its id. None of them reads a port."""
+"""The template of each node that has one, by its id. None of them reads the blackboard."""
 NAMES: dict[str, Any] = {
     "__builtins__": {},
     "AGAIN": AGAIN,
     **{
         each.__name__: each
         for each in (
-            caught, caught_at, caught_in, end_parallel, end_reactive, find_status, halt_part, join_functions,
-            order_functions, react_functions, skip,
+            begins_pause, caught, caught_at, caught_in, complete_rounds, end_parallel, end_reactive, end_rounds,
+            end_timeout, end_undecided, find_status, halt_part, is_pausing, join_functions, leave_branch,
+            order_functions, react_functions, skip, skip_branch,
         )
     },
 }  # fmt: skip
