@@ -45,7 +45,7 @@ def generated(world: World, root: Node, watched: bool = False) -> Engine:
 def all_templates(world: World, id: str = "A") -> Node:
     """A tree that has each template."""
     leaves = [world.fn(id, "s"), world.cls(f"{id}c", "rs"), world.gen(f"{id}g", "rs")]
-    root = n("Sequence", *leaves, *[world.fn(id, "s")] * 40)
+    root = n("Sequence", *leaves, *[world.fn(id, "s")] * 40, n("Parallel", *[leaves[1]] * 16, *[leaves[2]] * 16))
     ports = {"Repeat": {"num_cycles": 2}, "RetryUntilSuccessful": {"num_attempts": 2}, "Timeout": {"msec": 1000}}
     for template in sorted(TEMPLATES):
         if template != "SubTree":

@@ -41,12 +41,15 @@ from btlang.engine.nodes.rows import (
     caught_at,
     caught_in,
     end_at_answer,
+    halt_leaves,
     join_functions,
+    join_leaves,
     order_functions,
     react_functions,
+    write_leaves,
     write_row,
 )
-from btlang.engine.regions import Resumed, halt_part, halt_row
+from btlang.engine.regions import Resumed, group_lasting, halt_part, halt_row
 from btlang.engine.status import FAILURE, RUNNING, SUCCESS
 
 TYPE_CHECKING = False
@@ -216,8 +219,21 @@ def parallel(region: Region, node: Fragment, depth: int, level: int) -> Layout:
         f"{running} = {skipped} = {fewer} = False",
         "while True:",
     )
-    for item in node.items:
+    for item, *others in group_lasting(node.items):
         inside = depth + 1
+        if others:
+            row = write_leaves(region, [each.child for each in (item, *others)], inside)
+            children[item.first] = halt_leaves, row, (at, item.first)
+            region.add(
+                inside,
+                f"if r is None: {running} = True",
+                "else:",
+                f" r, {fewer} = join_leaves(S, {at}, {item.first}, {row}, send, r, x), True",
+                f" if r == 2: {running} = True",
+                " elif r is False: break",
+                f" elif r == 3: {skipped} = True",
+            )
+            continue
         done = f"{completed}[{item.first}] = {fewer} = True"
         if isinstance(item.child, list):
             row = write_row(region, item, inside, SUCCESS, some, str(item.first))
@@ -271,7 +287,7 @@ def end_parallel(slots: Slots, layout: Layout) -> None:
 def _halt_parallel(slots: Slots, at: int, children: Layouts, keep: bool) -> None:
     completed = slots[at]
     for position, child in children.items():
-        if child[0] is halt_row or not completed[position]:
+        if child[0] is halt_row or child[0] is halt_leaves or not completed[position]:
             halt_part(slots, child, keep)
     if not keep:
         slots[at] = [False] * len(completed)
@@ -303,7 +319,7 @@ NAMES: dict[str, Any] = {
         each.__name__: each
         for each in (
             begins_pause, caught, caught_at, caught_in, complete_rounds, end_parallel, end_reactive, end_rounds,
-            end_timeout, end_undecided, find_status, halt_part, is_pausing, join_functions, leave_branch,
+            end_timeout, end_undecided, find_status, halt_part, is_pausing, join_functions, join_leaves, leave_branch,
             order_functions, react_functions, skip, skip_branch,
         )
     },
