@@ -155,7 +155,7 @@ def reactive(region: Region, node: Fragment, depth: int, level: int, passes: int
             children[item.first] = halt_row, row + 1, None
             continue
         region.add(depth + 1, f"S[{at + 1}] = {item.first}")
-        children[item.first] = layout = region.child(item, depth + 1, level + 1)
+        children[item.first] = layout = region.child(item, depth + 1, level + 1, running="r = 2; break")
         region.add(
             depth + 1,
             f"if r is not {passes}:",
@@ -171,7 +171,7 @@ def reactive(region: Region, node: Fragment, depth: int, level: int, passes: int
     region.add(
         depth,
         f"if r is {passes}: S[{at}] = -1",
-        f"elif r is {not passes} or S[{at + 1}] != S[{at}]: end_reactive(S, L[{region.layout(own)}], r)",
+        f"elif r != 2 or S[{at + 1}] != S[{at}]: end_reactive(S, L[{region.layout(own)}], r)",
     )
     return own
 
