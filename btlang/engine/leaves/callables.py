@@ -30,9 +30,9 @@ _TRUTHS = ("bool", "bool_")  # what numpy's comparisons give goes by these names
 
 
 class FunctionLeaf:
-    """A leaf that calls a function as it is: none of its values come from the blackboard.
+    """A leaf that calls a function.
 
-    What ticks many children calls such a function itself (see fused.py) and hands on here what is no plain answer.
+    What ticks many children calls the function itself (see fused.py) and hands on here what is no plain answer.
     """
 
     __slots__ = ("call", "instance")
@@ -52,26 +52,14 @@ class FunctionLeaf:
 
 
 def find_function(tick: Any) -> FunctionLeaf | None:
-    """Return the leaf that a tick belongs to if it is a function that is called as it is."""
+    """Return the leaf that a tick belongs to if it is a function."""
     leaf = getattr(tick, "__self__", None)
     return leaf if leaf.__class__ is FunctionLeaf else None
 
 
 def function_leaf(instance: NodeInstance, call: Callable[..., Any], stored: Stored) -> Compiled:
     """Compile a function; `stored` returns the values that are read at each call."""
-    if stored is None:
-        return FunctionLeaf(instance, call).tick, halt_nothing
-
-    def tick() -> int:
-        try:
-            result = call(**stored())
-        except KeyboardInterrupt:
-            raise
-        except BaseException as problem:
-            return fail_with(instance, problem)
-        return status_of(instance, result)
-
-    return tick, halt_nothing
+    return FunctionLeaf(instance, call if stored is None else lambda: call(**stored())).tick, halt_nothing
 
 
 class GeneratorLeaf:
