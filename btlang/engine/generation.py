@@ -126,7 +126,7 @@ def generate(instances: Sequence[NodeInstance], trace: StatusTrace | None) -> It
             made = generation.close(made)
         if path is None and above is not None and not (isinstance(made, tuple) and made[1] is halt_nothing):
             wider = around[above.index]
-            if wider is not None and wider.top != above.index:
+            if wider is not None and generation.is_shortcut(above, wider.top):
                 made = mark_resumable(wider, generation.close(made))
         waiting.append(made)
         if generation.has_compiled or not looked % NODES_A_TICK:
@@ -165,6 +165,14 @@ class _Generation:
             found = found and self._regions.find_size(functions) <= self._regions.LARGEST
             self._takes_parts[instance.index] = found
         return found
+
+    def is_shortcut(self, instance: NodeInstance, top: int) -> bool:
+        """Return whether a resume path that begins at the node with a number is long above this one."""
+        levels = 0
+        while instance.index != top and instance.above is not None and levels < self._regions.LONG_WAY:
+            instance = instance.above
+            levels += 1
+        return levels == self._regions.LONG_WAY
 
     def combine(self, instance: NodeInstance, children: Sequence[Fragment | Compiled]) -> Fragment | Compiled:
         """Make a node of its children: a part of a region if it has a template, else a closure."""

@@ -36,6 +36,8 @@ LARGEST = 60
 """Children in a region. Long functions are compiled slowly, and a step of generation is one of them."""
 WIDE = 16
 """Leaves in a row from which on a loop calls them: each function by itself would be faster, and is more code."""
+LONG_WAY = 3
+"""Levels of a resume path from which on it is a shortcut: those of a region are gone through nearly as fast."""
 _MOST_SHAPES = 500
 
 
