@@ -4,8 +4,8 @@ To generate and compile a region takes as long as some hundred ticks of it. So t
 `TICKS_BEFORE` times, and goes on a little at each tick; the closures tick the tree until all is ready. What nodes
 remember is then moved, and leaves stay the objects that they are: nothing can be seen of the exchange.
 
-Nodes without a template (nodes/templates.py), and those with scripts as conditions, stay closures between regions. A
-tree whose changes of status somebody listens to, or with hooks, stays as it is.
+Nodes without a template (nodes/templates.py), and those with scripts as conditions or ports from the blackboard, stay
+closures between regions. A tree with hooks stays as it is.
 """
 
 from __future__ import annotations

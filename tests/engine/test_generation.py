@@ -28,6 +28,8 @@ ATTRIBUTES = {
     *("send", "tick", "yielded", "ended", "answered", "passed", "decided", "complete", "reached", "wait", "halt"),
 }
 
+PORTS = {"Repeat": {"num_cycles": 2}, "RetryUntilSuccessful": {"num_attempts": 2}, "Timeout": {"msec": 1000}}
+
 
 @pytest.fixture
 def made() -> Iterator[dict[str, object]]:
@@ -46,11 +48,10 @@ def all_templates(world: World, id: str = "A") -> Node:
     """A tree that has each template."""
     leaves = [world.fn(id, "s"), world.cls(f"{id}c", "rs"), world.gen(f"{id}g", "rs")]
     root = n("Sequence", *leaves, *[world.fn(id, "s")] * 40, n("Parallel", *[leaves[1]] * 16, *[leaves[2]] * 16))
-    ports = {"Repeat": {"num_cycles": 2}, "RetryUntilSuccessful": {"num_attempts": 2}, "Timeout": {"msec": 1000}}
     for template in sorted(TEMPLATES):
         if template != "SubTree":
             most = CATALOGUE[template].most
-            root = n(template, *leaves[: most - 1], root, **ports.get(template, {}))
+            root = n(template, *leaves[: most - 1], root, **PORTS.get(template, {}))
     return root
 
 
@@ -151,14 +152,19 @@ def test_ctrl_c_while_it_is_generated_leaves_one_or_the_other(interrupted: str) 
 @pytest.mark.parametrize("watched", [False, True])
 @pytest.mark.parametrize(
     ("around", "depth"),
-    [("Sequence Inverter Fallback Inverter", 30_000), ("ReactiveFallback Parallel ReactiveSequence Sequence", 1_000)],
+    [
+        ("Sequence Inverter Fallback Inverter", 30_000),
+        ("ReactiveFallback Parallel ReactiveSequence Sequence", 1_000),
+        ("IfThenElse WhileDoElse Repeat Timeout", 1_000),
+    ],
 )
 def test_depth_does_not_matter(around: str, depth: int, watched: bool) -> None:
     world = World()
     root = n("Fallback", world.fn("A", "f"), world.gen("B", "rf"))
     ids = around.split()
     for level in range(depth):
-        root = n(ids[level % len(ids)], root)
+        id = ids[level % len(ids)]
+        root = n(id, *[n("AlwaysSuccess")] * (CATALOGUE[id].least - 1), root, **PORTS.get(id, {}))
     with patch.object(generation, "MOST_NODES", 100_000):
         engine = generated(world, root, watched)
     assert engine.tick() == RUNNING
