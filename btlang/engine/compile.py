@@ -192,10 +192,15 @@ def waits(instance: NodeInstance) -> bool:
     kind = CATALOGUE.get(instance.node.id)
     if kind is None or not kind.waits:
         return False
-    for port, text in instance.node.ports:
-        if (port[:1] == "_" and port != "_autoremap") or ("{" in text and not kind.any_ports):
-            return False  # pre-conditions are asked, and a port is read, at each tick
-    return True
+    if any(port[:1] == "_" and port != "_autoremap" for port, _ in instance.node.ports):
+        return False  # pre-conditions are asked at each tick
+    return not reads_keys(instance.node)
+
+
+def reads_keys(node: Node) -> bool:
+    """Return whether a built-in node reads ports from the blackboard at each tick."""
+    kind = CATALOGUE[node.id]
+    return not kind.any_ports and any("{" in text for port, text in node.ports if port in kind.ports)
 
 
 def compile_node(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
@@ -213,12 +218,8 @@ def compile_node(instance: NodeInstance, children: Sequence[Compiled]) -> Compil
 
 
 def _compile_built_in(instance: NodeInstance, kind: NodeKind, children: Sequence[Compiled]) -> Compiled:
-    ports = kind.ports
-    from_blackboard = False
-    for port, text in instance.node.ports:
-        if port in ports:
-            from_blackboard = from_blackboard or "{" in text
-        elif port[:1] != "_" and not kind.any_ports:
+    for port, _ in instance.node.ports:
+        if port not in kind.ports and port[:1] != "_" and not kind.any_ports:
             raise instance.error(f"{kind.id} takes no port {port}")
     usual = SEMANTICS[kind.id]
     if (trace := instance.state.node_trace) is not None:
@@ -226,7 +227,7 @@ def _compile_built_in(instance: NodeInstance, kind: NodeKind, children: Sequence
     compiled = choose_compiler(usual, instance, children)(instance, children)
     if kind.id != SUBTREE:  # which is its child
         instance.memory = (compiled[0],)
-    return _check_ports(instance, compiled) if from_blackboard and not kind.any_ports else compiled
+    return _check_ports(instance, compiled) if reads_keys(instance.node) else compiled
 
 
 def _compile_leaf(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:

@@ -117,8 +117,10 @@ class Engine:
             self._refuse()
         self._busy = True
         try:
-            self.status = status = self._tick()
-            self._fault = self._state.fault if status is FAILURE else None
+            tick = self._tick  # Python calls what is in a variable faster than what is in an attribute
+            self.status = status = tick()
+            if status is FAILURE:
+                self._fault = self._state.fault
             if self._trace is not None:
                 self._trace.flush()
             return status
@@ -131,7 +133,7 @@ class Engine:
     @property
     def failure(self) -> Failure | None:
         """Why the latest tick failed: the leaf, or the decorator, that made the root fail. None where it did not."""
-        return None if self._fault is None else self._failure(self._fault)
+        return None if self._fault is None or self.status not in (FAILURE, IDLE) else self._failure(self._fault)
 
     @property
     def unknowns(self) -> int:
@@ -344,7 +346,8 @@ class Engine:
                 interrupted = interrupted or exception
                 cut_short = True
         if not keep:
-            self._failed = self.failure
+            if self.status is not FAILURE and self.status != IDLE:
+                self._fault = None
             self.status = IDLE
             self._state.warned.clear()
         if self._trace is not None:

@@ -4,15 +4,15 @@ To generate and compile a region takes as long as some hundred ticks of it. So t
 `TICKS_BEFORE` times, and goes on a little at each tick; the closures tick the tree until all is ready. What nodes
 remember is then moved, and leaves stay the objects that they are: nothing can be seen of the exchange.
 
-Nodes without a template (nodes/templates.py), and those with scripts as conditions, stay closures between regions. A
-tree whose changes of status somebody listens to, or with hooks, stays as it is.
+Nodes without a template (nodes/templates.py), and those with scripts as conditions or ports from the blackboard, stay
+closures between regions. A tree with hooks stays as it is.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 
-from btlang.engine.compile import compile_node, waits
+from btlang.engine.compile import compile_node, reads_keys, waits
 from btlang.engine.conditions import add_conditions, has_conditions
 from btlang.engine.fused import has_usual_thresholds
 from btlang.engine.instance import NodeInstance, halt_nothing
@@ -126,7 +126,7 @@ def generate(instances: Sequence[NodeInstance], trace: StatusTrace | None) -> It
             made = generation.close(made)
         if path is None and above is not None and not (isinstance(made, tuple) and made[1] is halt_nothing):
             wider = around[above.index]
-            if wider is not None and wider.top != above.index:
+            if wider is not None and generation.is_shortcut(above, wider.top):
                 made = mark_resumable(wider, generation.close(made))
         waiting.append(made)
         if generation.has_compiled or not looked % NODES_A_TICK:
@@ -161,10 +161,18 @@ class _Generation:
                 not child.children and child.id in signatures and signatures[child.id].kind == "function"
                 for child in node.children
             ]
-            found = node.id in self._templates and has_usual_thresholds(node)
+            found = node.id in self._templates and not reads_keys(node) and has_usual_thresholds(node)
             found = found and self._regions.find_size(functions) <= self._regions.LARGEST
             self._takes_parts[instance.index] = found
         return found
+
+    def is_shortcut(self, instance: NodeInstance, top: int) -> bool:
+        """Return whether a resume path that begins at the node with a number is long above this one."""
+        levels = 0
+        while instance.index != top and instance.above is not None and levels < self._regions.LONG_WAY:
+            instance = instance.above
+            levels += 1
+        return levels == self._regions.LONG_WAY
 
     def combine(self, instance: NodeInstance, children: Sequence[Fragment | Compiled]) -> Fragment | Compiled:
         """Make a node of its children: a part of a region if it has a template, else a closure."""

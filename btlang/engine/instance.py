@@ -47,6 +47,8 @@ if TYPE_CHECKING:
 
         def ended(self, status: int) -> int: ...
 
+        def halted(self) -> None: ...
+
         def flush(self) -> None: ...
 
         def wrap_functions(self, children: Sequence[Compiled], keeps: bool) -> list[Compiled]: ...
@@ -275,11 +277,11 @@ class NodeInstance:
         EngineError if that fails.
         """
         constants: dict[str, Any] = {}
-        stored: list[tuple[str, str, Callable[[str], Any]]] = []
+        stored: list[tuple[str, str, Callable[[str], Any], Any]] = []
         for port, text in ports.items():
             convert = converters.get(port, str)
             if "{" in text and (key := blackboard_key(port, text)) is not None:
-                stored.append((port, key, convert))
+                stored.append((port, key, convert, _CONVERTED.get(convert, str)))
                 continue
             try:
                 constants[port] = convert(text)
@@ -287,7 +289,19 @@ class NodeInstance:
                 raise self.error(f"{port} cannot be {text!r}: {_NEEDED.get(convert, problem)}") from problem
         if not stored:
             return constants, None
-        return constants, lambda: {port: _convert(self.scope, port, key, convert) for port, key, convert in stored}
+        get = self.scope.get
+
+        def read() -> dict[str, Any]:
+            values = {}
+            for port, key, convert, kinds in stored:
+                try:
+                    value = get(key)
+                except KeyError:
+                    raise _no_value(key) from None
+                values[port] = _convert(value, port, convert) if isinstance(value, kinds) else value
+            return values
+
+        return constants, read
 
 
 def blackboard_key(port: str, text: str) -> str | None:
@@ -307,7 +321,11 @@ def value_of(scope: Blackboard, key: str) -> Any:
     try:
         return scope.get(key)
     except KeyError:
-        raise ActionFailed(f"{{{key}}} has no value") from None
+        raise _no_value(key) from None
+
+
+def _no_value(key: str) -> ActionFailed:
+    return ActionFailed(f"{{{key}}} has no value")
 
 
 def halt_nothing(keep: bool) -> None:
@@ -327,10 +345,11 @@ def _always(value: int) -> Callable[[], int]:
 _NEEDED: dict[Callable[[str], Any], str] = {float: "a number is needed", int: "a whole number is needed"}
 
 
-def _convert(scope: Blackboard, port: str, key: str, convert: Callable[[str], Any]) -> Any:
-    value = value_of(scope, key)
-    if not isinstance(value, str) and convert is not as_text and not (convert is as_whole and isinstance(value, float)):
-        return value
+_CONVERTED: dict[Callable[[str], Any], Any] = {as_text: object, as_whole: (str, float)}
+"""The values on the blackboard that a converter takes; all others take texts, and other values stay as they are."""
+
+
+def _convert(value: Any, port: str, convert: Callable[[str], Any]) -> Any:
     try:
         return convert(value)
     except Exception as problem:

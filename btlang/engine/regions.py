@@ -8,7 +8,7 @@ becomes code: what is generated holds the words of the templates and the numbers
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import groupby
 from types import CodeType, FunctionType
 
@@ -35,7 +35,9 @@ DEEPEST = 8
 LARGEST = 60
 """Children in a region. Long functions are compiled slowly, and a step of generation is one of them."""
 WIDE = 16
-"""Functions in a row from which on a loop calls them: each by itself would be faster, and is more code."""
+"""Leaves in a row from which on a loop calls them: each function by itself would be faster, and is more code."""
+LONG_WAY = 3
+"""Levels of a resume path from which on it is a shortcut: those of a region are gone through nearly as fast."""
 _MOST_SHAPES = 500
 
 
@@ -58,6 +60,15 @@ class Fragment:
     def count(self) -> int:
         """The number of its children."""
         return self.items[-1].end
+
+    @property
+    def singles(self) -> list[Item]:
+        """Its children as items of one each, for a node that doesn't tick them in a row."""
+        found = []
+        for item in self.items:
+            children = [[leaf] for leaf in item.child] if isinstance(item.child, list) else [item.child]
+            found += [Item(item.first + number, child) for number, child in enumerate(children)]
+        return found
 
 
 class Item:
@@ -113,6 +124,16 @@ def find_items(children: list[Fragment | Compiled]) -> list[Item]:
         else:
             items.append(Item(position, [function]))
     return items
+
+
+def group_lasting(items: list[Item]) -> Iterator[list[Item]]:
+    """Yield items one by one, but many leaves of one class that take time together: a loop can resume them."""
+    for kind, group in groupby(items, lambda item: isinstance(item.child, Resumed) and item.child.leaf.__class__):
+        found = list(group)
+        if kind and len(found) >= WIDE:
+            yield found
+        else:
+            yield from ([item] for item in found)
 
 
 class Region:

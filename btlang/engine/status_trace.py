@@ -21,7 +21,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, TypeAlias
 
-    from btlang.engine.instance import Compiled, EngineState, Halt, NodeInstance, Tick
+    from btlang.engine.instance import Compiled, EngineState, NodeInstance, Tick
     from btlang.tree.node import Node
 
     Call: TypeAlias = Callable[[], Any]
@@ -209,17 +209,20 @@ class NodeTrace:
 
     def wrap(self, compiled: Compiled) -> Compiled:
         """Return the same node, traced. The root counts the ticks."""
-        tick, halt = compiled
-        trace = self.trace
         if self.reported_by_leaf:
-            return tick, self._trace_halt(halt)
-        traced_tick = self._trace_tick(tick)
+            return compiled
+        tick, halt = compiled
+        trace, traced_tick = self.trace, self._trace_tick(tick)
 
         def root_tick() -> int:
             trace.begin_tick()
             return traced_tick()
 
-        return (traced_tick if self.index else root_tick), self._trace_halt(halt)
+        def traced_halt(keep: bool) -> None:
+            halt(keep)
+            self.halted()
+
+        return (traced_tick if self.index else root_tick), traced_halt
 
     def _trace_tick(self, tick: Tick) -> Tick:
         every = self.every
@@ -300,13 +303,6 @@ class NodeTrace:
         """Halt a function leaf, which knows nothing of it."""
         if self.trace.now[self.place] & ~REACHED == RUNNING:  # it may have completed since `last`
             self.change(IDLE)
-
-    def _trace_halt(self, halt: Halt) -> Halt:
-        def traced_halt(keep: bool) -> None:
-            halt(keep)
-            self.halted()
-
-        return traced_halt
 
     def _record_below(self) -> None:
         """Record the completions of this tick that aren't recorded, children before parents, and forget others."""

@@ -14,8 +14,10 @@ from btlang.engine import generation, regions
 NEVER = 1 << 60
 """So many ticks before regions are generated."""
 USUAL = {"DEEPEST": regions.DEEPEST}
-SIZES = st.sampled_from((USUAL, {"DEEPEST": 2, "LARGEST": 4, "WIDE": 2}, {"WIDE": 2}, {"LARGEST": 8}))
-"""Limits of regions, so that small trees have several of them and rows of functions in a loop."""
+SIZES = st.sampled_from(
+    (USUAL, {"DEEPEST": 2, "LARGEST": 4, "WIDE": 2, "LONG_WAY": 1}, {"WIDE": 2}, {"LARGEST": 8, "LONG_WAY": 1})
+)
+"""Limits of regions, so that small trees have several of them, rows of leaves in a loop, and resume paths."""
 
 
 def limited(sizes: dict[str, int]) -> Any:

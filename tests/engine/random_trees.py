@@ -144,12 +144,15 @@ TREES = st.recursive(LEAVES, _parents, max_leaves=12)
 
 def _busy_parents(children: st.SearchStrategy[Node]) -> st.SearchStrategy[Node]:
     many = ("ReactiveSequence", "ReactiveFallback", "Sequence", "Fallback", "PipelineSequence")
+    chooses = ("Whenever", "WhileDoElse", "IfThenElse")
     return st.one_of(
         st.tuples(st.sampled_from(many), st.lists(children, min_size=2, max_size=3)).map(lambda d: n(d[0], *d[1])),
-        st.tuples(st.sampled_from(("Whenever", "WhileDoElse")), st.lists(children, min_size=3, max_size=3)).map(
-            lambda d: n(d[0], *d[1])
-        ),
+        st.tuples(st.sampled_from(chooses), st.lists(children, min_size=3, max_size=3)).map(lambda d: n(d[0], *d[1])),
+        st.tuples(st.sampled_from((-1, 2)), children).map(lambda d: n("Repeat", d[1], num_cycles=d[0])),
+        st.tuples(st.sampled_from((-1, 2)), children).map(lambda d: n("RetryUntilSuccessful", d[1], num_attempts=d[0])),
+        children.map(lambda child: n("Timeout", child, msec=2000)),
         st.lists(children, min_size=2, max_size=3).map(lambda c: n("ParallelAll", *c, max_failures=1)),
+        st.lists(children, min_size=2, max_size=4).map(lambda c: n("Parallel", *c, success_count=-1, failure_count=1)),
         st.lists(children, min_size=2, max_size=3).map(lambda c: n("TryCatch", *c, catch_on_halt="true")),
         st.tuples(st.sampled_from(("Inverter", "ForceSuccess", "KeepRunningUntilFailure")), children).map(
             lambda d: n(d[0], d[1])

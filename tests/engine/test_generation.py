@@ -18,14 +18,17 @@ from btlang.engine import generation, regions
 from btlang.engine.engine import Engine
 from btlang.engine.nodes.templates import NAMES, TEMPLATES
 from btlang.engine.status import FAILURE, RUNNING, SUCCESS
+from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.node import Node
 
 from .scripted import World, n
 
 ATTRIBUTES = {
     *("fault", "unknown", "unknowns", "interrupts", "append", "pop"),
-    *("send", "tick", "yielded", "ended", "answered", "passed", "decided", "complete"),
+    *("send", "tick", "yielded", "ended", "answered", "passed", "decided", "complete", "reached", "wait", "halt"),
 }
+
+PORTS = {"Repeat": {"num_cycles": 2}, "RetryUntilSuccessful": {"num_attempts": 2}, "Timeout": {"msec": 1000}}
 
 
 @pytest.fixture
@@ -44,11 +47,11 @@ def generated(world: World, root: Node, watched: bool = False) -> Engine:
 def all_templates(world: World, id: str = "A") -> Node:
     """A tree that has each template."""
     leaves = [world.fn(id, "s"), world.cls(f"{id}c", "rs"), world.gen(f"{id}g", "rs")]
-    root = n("Sequence", *leaves, *[world.fn(id, "s")] * 40)
+    root = n("Sequence", *leaves, *[world.fn(id, "s")] * 40, n("Parallel", *[leaves[1]] * 16, *[leaves[2]] * 16))
     for template in sorted(TEMPLATES):
         if template != "SubTree":
-            single = template in ("Inverter", "ForceSuccess", "ForceFailure", "KeepRunningUntilFailure")
-            root = n(template, root) if single else n(template, *leaves, root)
+            most = CATALOGUE[template].most
+            root = n(template, *leaves[: most - 1], root, **PORTS.get(template, {}))
     return root
 
 
@@ -64,7 +67,7 @@ def test_code_holds_nothing_of_the_tree(made: dict[str, object], watched: bool) 
             assert token.type != tokenize.STRING
             if token.type == tokenize.NAME and not keyword.iskeyword(token.string):
                 known = token.string in NAMES or token.string in ATTRIBUTES
-                assert known or token.string.rstrip("0123456789") in set("SLWfghkprtuwxz"), token.string
+                assert known or token.string.rstrip("0123456789") in set("SLWefghkpqrtuwxz"), token.string
     assert NAMES["__builtins__"] == {}
 
 
@@ -100,7 +103,7 @@ def test_what_runs_goes_on_behind_the_exchange(made: dict[str, object], watched:
 def test_it_is_generated_in_steps_once_it_was_ticked_often(made: dict[str, object]) -> None:
     world = World()
     rounds = [n("ReactiveSequence", *[world.fn("A", "s")] * (2 + number)) for number in range(5)]
-    root = n("IfThenElse", world.fn("B", "s"), n("IfThenElse", *rounds[:3]), n("IfThenElse", *rounds[2:]))
+    root = n("ParallelAll", world.fn("B", "s"), n("ParallelAll", *rounds[:3]), n("ParallelAll", *rounds[2:]))
     with patch.object(generation, "TICKS_BEFORE", 3):
         engine = world.engine(root)
     counts = []
@@ -149,14 +152,19 @@ def test_ctrl_c_while_it_is_generated_leaves_one_or_the_other(interrupted: str) 
 @pytest.mark.parametrize("watched", [False, True])
 @pytest.mark.parametrize(
     ("around", "depth"),
-    [("Sequence Inverter Fallback Inverter", 30_000), ("ReactiveFallback Parallel ReactiveSequence Sequence", 1_000)],
+    [
+        ("Sequence Inverter Fallback Inverter", 30_000),
+        ("ReactiveFallback Parallel ReactiveSequence Sequence", 1_000),
+        ("IfThenElse WhileDoElse Repeat Timeout", 1_000),
+    ],
 )
 def test_depth_does_not_matter(around: str, depth: int, watched: bool) -> None:
     world = World()
     root = n("Fallback", world.fn("A", "f"), world.gen("B", "rf"))
     ids = around.split()
     for level in range(depth):
-        root = n(ids[level % len(ids)], root)
+        id = ids[level % len(ids)]
+        root = n(id, *[n("AlwaysSuccess")] * (CATALOGUE[id].least - 1), root, **PORTS.get(id, {}))
     with patch.object(generation, "MOST_NODES", 100_000):
         engine = generated(world, root, watched)
     assert engine.tick() == RUNNING

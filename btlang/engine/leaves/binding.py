@@ -45,8 +45,7 @@ def bind_leaf(instance: NodeInstance, signature: LeafSignature) -> Compiled:
         if names not in signature.given:
             signature.given[names] = _fill(instance, leaf.start, names, ())
         constants, stored = _arguments(instance, ports, binding)
-        start = partial(leaf.start, **constants) if constants else leaf.start
-        return _both(ClassLeaf(instance, leaf, start, stored))
+        return _both(ClassLeaf(instance, leaf, partial(leaf.start, **constants) if constants else None, stored))
     key = instance.node.ports, instance.scope
     if key not in signature.calls:
         signature.calls[key] = _find_call(instance, signature)
@@ -63,7 +62,7 @@ def bind_leaf(instance: NodeInstance, signature: LeafSignature) -> Compiled:
 
     proxied = {name: instance.service(name) for name in given if name in instance.state.proxies}
     background = background_leaf(instance, call, binding.thread, "halted" in given, proxied)
-    return _both(ClassLeaf(instance, background, background.start, stored))
+    return _both(ClassLeaf(instance, background, None, stored))
 
 
 def _both(leaf: ClassLeaf | GeneratorLeaf) -> Compiled:

@@ -30,9 +30,9 @@ _TRUTHS = ("bool", "bool_")  # what numpy's comparisons give goes by these names
 
 
 class FunctionLeaf:
-    """A leaf that calls a function as it is: none of its values come from the blackboard.
+    """A leaf that calls a function.
 
-    What ticks many children calls such a function itself (see fused.py) and hands on here what is no plain answer.
+    What ticks many children calls the function itself (see fused.py) and hands on here what is no plain answer.
     """
 
     __slots__ = ("call", "instance")
@@ -52,26 +52,14 @@ class FunctionLeaf:
 
 
 def find_function(tick: Any) -> FunctionLeaf | None:
-    """Return the leaf that a tick belongs to if it is a function that is called as it is."""
+    """Return the leaf that a tick belongs to if it is a function."""
     leaf = getattr(tick, "__self__", None)
     return leaf if leaf.__class__ is FunctionLeaf else None
 
 
 def function_leaf(instance: NodeInstance, call: Callable[..., Any], stored: Stored) -> Compiled:
     """Compile a function; `stored` returns the values that are read at each call."""
-    if stored is None:
-        return FunctionLeaf(instance, call).tick, halt_nothing
-
-    def tick() -> int:
-        try:
-            result = call(**stored())
-        except KeyboardInterrupt:
-            raise
-        except BaseException as problem:
-            return fail_with(instance, problem)
-        return status_of(instance, result)
-
-    return tick, halt_nothing
+    return FunctionLeaf(instance, call if stored is None else lambda: call(**stored())).tick, halt_nothing
 
 
 class GeneratorLeaf:
@@ -130,6 +118,7 @@ class GeneratorLeaf:
         if self.send is not None:
             running, self.send = self.send, None
             _stop(self.instance, running.__self__.close)
+        _halted(self.trace)
 
 
 class KeptValues(dict[str, "Any"]):
@@ -166,11 +155,14 @@ def resumable_leaf(instance: NodeInstance, call: Callable[..., Any], stored: Sto
 
 
 class ClassLeaf:
-    """A leaf that runs an object with `tick` and `halt`, which `start` starts; as GeneratorLeaf otherwise."""
+    """A leaf that runs an object with `start`, `tick` and `halt`; as GeneratorLeaf otherwise.
+
+    It has a `start` of its own only if that has constant values: a bound method for each of many leaves takes memory.
+    """
 
     __slots__ = ("instance", "interrupts", "leaf", "send", "start", "stored", "trace")
 
-    def __init__(self, instance: NodeInstance, leaf: Any, start: Callable[..., Any], stored: Stored) -> None:
+    def __init__(self, instance: NodeInstance, leaf: Any, start: Callable[..., Any] | None, stored: Stored) -> None:
         self.instance = instance
         self.leaf = leaf
         self.start = start
@@ -188,7 +180,8 @@ class ClassLeaf:
                 if self.interrupts or self.trace is not None:
                     _begin(self.interrupts, self.trace)
                 self.send = self.leaf.tick
-                given = self.start() if values is None else self.start(**values)
+                start = self.leaf.start if self.start is None else self.start
+                given = start() if values is None else start(**values)
         except KeyboardInterrupt:
             raise
         except BaseException as problem:
@@ -210,16 +203,16 @@ class ClassLeaf:
 
     def ended(self, problem: BaseException) -> int:
         """Return the status if the object has raised this."""
-        if isinstance(problem, ActionFailed):
-            self.send = None
-        else:
-            self.halt(False)
+        running, self.send = self.send, None
+        if running is not None and not isinstance(problem, ActionFailed):
+            _stop(self.instance, self.leaf.halt)
         return _completed(self.trace, fail_with(self.instance, problem))
 
     def halt(self, keep: bool) -> None:
         if self.send is not None:
             self.send = None
             _stop(self.instance, self.leaf.halt)
+        _halted(self.trace)
 
 
 _NO_INTERRUPTS: list[Callable[[], None]] = []
@@ -227,6 +220,11 @@ _NO_INTERRUPTS: list[Callable[[], None]] = []
 
 def _completed(trace: LeafTrace | None, status: int) -> int:
     return status if trace is None else trace.ended(status)
+
+
+def _halted(trace: LeafTrace | None) -> None:
+    if trace is not None and trace.reported_by_leaf:
+        trace.halted()
 
 
 def _trace_of(instance: NodeInstance) -> LeafTrace | None:

@@ -24,8 +24,10 @@ if TYPE_CHECKING:
     from btlang.engine.instance import Compiled
 
 
-_NO_ANSWER = "its condition was skipped"
-_NO_BRANCH = "its condition was false, and it has no other branch"
+NO_ANSWER = "its condition was skipped"
+"""The reason of an IfThenElse or WhileDoElse whose condition decides nothing."""
+NO_BRANCH = "its condition was false, and it has no other branch"
+"""The reason of one that has only two children."""
 _SAME = 2.0**-23  # as in scripts
 
 
@@ -48,9 +50,9 @@ def if_then_else(instance: NodeInstance, children: Sequence[Compiled]) -> Compil
                 position = 2
             elif status == SKIPPED:
                 halts[0](False)
-                return instance.fail(_NO_ANSWER)
+                return instance.fail(NO_ANSWER)
             else:
-                return instance.pass_on(_NO_BRANCH) if status == FAILURE else status
+                return instance.pass_on(NO_BRANCH) if status == FAILURE else status
         status = ticks[position]()
         if status != RUNNING:
             if status == SKIPPED:
@@ -102,9 +104,9 @@ def while_do_else(instance: NodeInstance, children: Sequence[Compiled]) -> Compi
             return FAILURE
         if status == SKIPPED:
             halts[0](False)
-            return instance.fail(_NO_ANSWER)
+            return instance.fail(NO_ANSWER)
         if chosen == len(ticks):
-            return instance.pass_on(_NO_BRANCH)
+            return instance.pass_on(NO_BRANCH)
         status = ticks[chosen]()
         if status == SKIPPED:
             halts[chosen](False)

@@ -115,22 +115,19 @@ def _rounds(instance: NodeInstance, children: Sequence[Compiled], limit: Callabl
                 return SKIPPED
             if status != again:
                 if count and status == FAILURE:
-                    instance.pass_on(f"in round {count + 1}" if most == -1 else f"in round {count + 1} of {most}")
+                    pass_on_round(instance, count, most)
                 count = 0
                 return status
             count += 1
             if again is FAILURE and count < most and instance.is_not_there():
-                msec = min(_FIRST_PAUSE * 2.0 ** (count - 1), _LONGEST_PAUSE)
+                msec = pause_after(count)
                 pause.reached(msec)
                 return pause.wait(msec)
             if not resumed and (count < most or most == -1):
                 return RUNNING
             resumed = False
         if again == FAILURE:
-            if count == 0:
-                instance.fail("it allows no attempt")
-            elif count > 1:
-                instance.pass_on(f"{'both' if count == 2 else f'all {count}'} attempts failed")
+            fail_attempts(instance, count)
         count = 0
         return again
 
@@ -144,6 +141,24 @@ def _rounds(instance: NodeInstance, children: Sequence[Compiled], limit: Callabl
             msec = 0.0
 
     return tick, halt
+
+
+def pass_on_round(instance: NodeInstance, count: int, most: int) -> None:
+    """Record in which round a Repeat failed."""
+    instance.pass_on(f"in round {count + 1}" if most == -1 else f"in round {count + 1} of {most}")
+
+
+def fail_attempts(instance: NodeInstance, count: int) -> None:
+    """Record that all attempts failed, if their number says more than the failure of the last one."""
+    if count == 0:
+        instance.fail("it allows no attempt")
+    elif count > 1:
+        instance.pass_on(f"{'both' if count == 2 else f'all {count}'} attempts failed")
+
+
+def pause_after(attempts: int) -> float:
+    """Return how many milliseconds to wait for what isn't there after so many attempts."""
+    return min(_FIRST_PAUSE * 2.0 ** (attempts - 1), _LONGEST_PAUSE)
 
 
 def loop_int(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:

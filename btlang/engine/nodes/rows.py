@@ -1,8 +1,12 @@
-"""Functions in a row below one node, in a generated region: each is called on a line of its own, many in a loop.
+"""Leaves in a row below one node, in a generated region: each function is called on a line of its own, many in a loop.
 
 As long as their answers are plain ones that pass, nothing else happens. `order_functions`, `react_functions` and
 `join_functions` go on from any other answer. They get the slots, those of the node and of the row, and positions of
 children; the slot of a row holds the instances of its functions, the one behind it their trace.
+
+A Parallel resumes many leaves that take time in a loop, too: while all of them go on, their `send` is all it needs. The
+slots of such a row are these of all that haven't completed (none if one of them isn't RUNNING), the leaves, and what
+halts them.
 """
 
 from __future__ import annotations
@@ -11,11 +15,13 @@ from collections.abc import Callable, Iterator, Sequence
 from sys import exc_info
 
 from btlang.engine.instance import NodeInstance
-from btlang.engine.leaves.callables import find_status
+from btlang.engine.leaves.callables import ClassLeaf, GeneratorLeaf, find_status
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from typing import Any
+
     from btlang.engine.regions import Item, Region, Slots
     from btlang.engine.row_trace import RowTrace
 
@@ -72,6 +78,63 @@ def end_at_answer(region: Region, item: Item, row: int, passes: int, *then: str)
     if region.trace is not None:
         lines.append(f"  S[{row + 1}].decided({at}, r)")
     return [*lines, *[f"  {line}" for line in then], "  break"]
+
+
+def write_leaves(region: Region, leaves: Sequence[Any], depth: int) -> int:
+    """Write what resumes leaves of one class, until one of them doesn't go on; return the slot of the row.
+
+    `r` is then None if all go on; else `send` has given it, or raised it if `x` is true, and AGAIN if none was asked.
+    """
+    row = region.slot(())
+    region.slot(tuple([each.leaf for each in leaves]))
+    region.slot(tuple([each.halt for each in leaves]))
+    argument = "None" if leaves[0].leaf.__class__ is GeneratorLeaf else ""
+    region.add(depth, "r, x, send = AGAIN, False, None", "try:", f" for send in S[{row}]:")
+    region.add(depth + 2, f"if (r := send({argument})) is not None: break")
+    region.add(depth, "except: r, x = caught(), True")
+    return row
+
+
+def join_leaves(slots: Slots, at: int, begin: int, row: int, send: object, answer: object, raised: bool) -> int:
+    """Go on among leaves in a row, from what one gave or raised, or from the first. Returns as join_functions does."""
+    completed = slots[at]
+    slots[row] = ()
+    result = SUCCESS
+    running = []
+    leaves: tuple[ClassLeaf | GeneratorLeaf, ...] = slots[row + 1]
+    for position, leaf in enumerate(leaves, begin):
+        if completed[position]:
+            continue
+        if answer is AGAIN:
+            status = leaf.tick()
+        elif leaf.send is not send:
+            status = RUNNING
+        else:
+            status = leaf.ended(answer) if raised and isinstance(answer, BaseException) else leaf.yielded(answer)
+            answer = AGAIN
+        if status is FAILURE:
+            return FAILURE
+        if status is SUCCESS:
+            completed[position] = True
+            continue
+        if status == RUNNING or result is SUCCESS:
+            result = status
+        running.append(leaf.send)
+    if answer is not AGAIN:  # it wasn't one of theirs: an exception of a signal comes anywhere
+        assert isinstance(answer, BaseException)
+        raise answer
+    if None not in running:
+        slots[row] = tuple(running)
+    return result
+
+
+def halt_leaves(slots: Slots, row: int, place: tuple[int, int], keep: bool) -> None:
+    """Halt the leaves in a row that haven't completed, by the slot of their Parallel and the position of the first."""
+    at, begin = place
+    slots[row] = ()
+    for position, halt in enumerate(slots[row + 2], begin):
+        if not slots[at][position]:
+            halt(keep)
 
 
 def caught() -> BaseException:

@@ -1,9 +1,9 @@
 """What nodes do, as templates of the functions that are generated for whole regions of a tree (see regions.py).
 
-Each template does the same as the function of its node in control.py or decorators.py, and remembers it by the same
-names. It writes lines that leave the status of the node in `r`; 2 is RUNNING, 3 SKIPPED. What happens seldom is
-written once, as a helper that these lines call. A template returns a layout, by which its node is halted: a function,
-a slot, and the layouts of the children that may run for longer than a tick, by position.
+Each template does the same as the function of its node in another module here, and remembers it by the same names. It
+writes lines that leave the status of the node in `r`; 2 is RUNNING, 3 SKIPPED. What happens seldom is written once, as
+a helper that these lines call. A template returns a layout, by which its node is halted: a function, a slot, and the
+layouts of the children that may run for longer than a tick, by position.
 
 Nothing that lasts is kept in a variable while a child is ticked: an interrupt may end the tick, and halts what runs by
 the slots alone.
@@ -13,21 +13,43 @@ from __future__ import annotations
 
 from functools import partial
 
-from btlang.engine.instance import Fault
 from btlang.engine.leaves.callables import find_status
-from btlang.engine.nodes.decorators import NOT_THIS_TIME, WAS_TRUE
+from btlang.engine.nodes.branch_templates import (
+    end_undecided,
+    if_then_else,
+    leave_branch,
+    skip_branch,
+    while_do_else,
+)
+from btlang.engine.nodes.decorator_templates import (
+    begins_pause,
+    complete_rounds,
+    end_rounds,
+    end_timeout,
+    force_failure,
+    force_success,
+    inverter,
+    is_pausing,
+    keep_running_until_failure,
+    rounds,
+    subtree,
+    timeout,
+)
 from btlang.engine.nodes.rows import (
     AGAIN,
     caught,
     caught_at,
     caught_in,
     end_at_answer,
+    halt_leaves,
     join_functions,
+    join_leaves,
     order_functions,
     react_functions,
+    write_leaves,
     write_row,
 )
-from btlang.engine.regions import Resumed, halt_part, halt_row
+from btlang.engine.regions import Resumed, group_lasting, halt_part, halt_row
 from btlang.engine.status import FAILURE, RUNNING, SUCCESS
 
 TYPE_CHECKING = False
@@ -133,7 +155,7 @@ def reactive(region: Region, node: Fragment, depth: int, level: int, passes: int
             children[item.first] = halt_row, row + 1, None
             continue
         region.add(depth + 1, f"S[{at + 1}] = {item.first}")
-        children[item.first] = layout = region.child(item, depth + 1, level + 1)
+        children[item.first] = layout = region.child(item, depth + 1, level + 1, running="r = 2; break")
         region.add(
             depth + 1,
             f"if r is not {passes}:",
@@ -149,7 +171,7 @@ def reactive(region: Region, node: Fragment, depth: int, level: int, passes: int
     region.add(
         depth,
         f"if r is {passes}: S[{at}] = -1",
-        f"elif r is {not passes} or S[{at + 1}] != S[{at}]: end_reactive(S, L[{region.layout(own)}], r)",
+        f"elif r != 2 or S[{at + 1}] != S[{at}]: end_reactive(S, L[{region.layout(own)}], r)",
     )
     return own
 
@@ -197,8 +219,21 @@ def parallel(region: Region, node: Fragment, depth: int, level: int) -> Layout:
         f"{running} = {skipped} = {fewer} = False",
         "while True:",
     )
-    for item in node.items:
+    for item, *others in group_lasting(node.items):
         inside = depth + 1
+        if others:
+            row = write_leaves(region, [each.child for each in (item, *others)], inside)
+            children[item.first] = halt_leaves, row, (at, item.first)
+            region.add(
+                inside,
+                f"if r is None: {running} = True",
+                "else:",
+                f" r, {fewer} = join_leaves(S, {at}, {item.first}, {row}, send, r, x), True",
+                f" if r == 2: {running} = True",
+                " elif r is False: break",
+                f" elif r == 3: {skipped} = True",
+            )
+            continue
         done = f"{completed}[{item.first}] = {fewer} = True"
         if isinstance(item.child, list):
             row = write_row(region, item, inside, SUCCESS, some, str(item.first))
@@ -252,59 +287,11 @@ def end_parallel(slots: Slots, layout: Layout) -> None:
 def _halt_parallel(slots: Slots, at: int, children: Layouts, keep: bool) -> None:
     completed = slots[at]
     for position, child in children.items():
-        if child[0] is halt_row or not completed[position]:
+        if child[0] is halt_row or child[0] is halt_leaves or not completed[position]:
             halt_part(slots, child, keep)
     if not keep:
         slots[at] = [False] * len(completed)
     slots[at + 1] = None
-
-
-def inverter(region: Region, node: Fragment, depth: int, level: int) -> Layout:
-    """Write an Inverter."""
-    region.remember(node.instance)
-    at = region.slot(Fault(node.instance.index, WAS_TRUE))
-    region.add(depth, f"u{level} = S[0].unknowns")
-    layout = region.child(node.items[0], depth, level + 1)
-    region.add(
-        depth,
-        "if r is True:",
-        f" S[0].fault = S[{at}]",
-        " r = False",
-        "elif r is False:",
-        f" if S[0].unknowns == u{level}: r = True",
-        " else: S[0].fault = S[0].unknown",
-    )
-    return layout
-
-
-def force_success(region: Region, node: Fragment, depth: int, level: int) -> Layout:
-    """Write a ForceSuccess."""
-    region.remember(node.instance)
-    layout = region.child(node.items[0], depth, level + 1)
-    region.add(depth, "if r is False: r = True")
-    return layout
-
-
-def force_failure(region: Region, node: Fragment, depth: int, level: int) -> Layout:
-    """Write a ForceFailure."""
-    region.remember(node.instance)
-    at = region.slot(Fault(node.instance.index, NOT_THIS_TIME))
-    layout = region.child(node.items[0], depth, level + 1)
-    region.add(depth, f"if r is True: S[0].fault, r = S[{at}], False")
-    return layout
-
-
-def keep_running_until_failure(region: Region, node: Fragment, depth: int, level: int) -> Layout:
-    """Write a KeepRunningUntilFailure."""
-    region.remember(node.instance)
-    layout = region.child(node.items[0], depth, level + 1)
-    region.add(depth, "if r is not False: r = 2")
-    return layout
-
-
-def subtree(region: Region, node: Fragment, depth: int, level: int) -> Layout:
-    """Write a SubTree."""
-    return region.child(node.items[0], depth, level)
 
 
 TEMPLATES: dict[str, Emit] = {
@@ -313,21 +300,27 @@ TEMPLATES: dict[str, Emit] = {
     "ReactiveSequence": partial(reactive, passes=SUCCESS),
     "ReactiveFallback": partial(reactive, passes=FAILURE),
     "Parallel": parallel,
+    "IfThenElse": if_then_else,
+    "WhileDoElse": while_do_else,
     "Inverter": inverter,
     "ForceSuccess": force_success,
     "ForceFailure": force_failure,
+    "Repeat": partial(rounds, again=SUCCESS),
+    "RetryUntilSuccessful": partial(rounds, again=FAILURE),
+    "Timeout": timeout,
     "SubTree": subtree,
     "KeepRunningUntilFailure": keep_running_until_failure,
 }
-"""The template of each node that has one, by its id. None of them reads a port."""
+"""The template of each node that has one, by its id. None of them reads the blackboard."""
 NAMES: dict[str, Any] = {
     "__builtins__": {},
     "AGAIN": AGAIN,
     **{
         each.__name__: each
         for each in (
-            caught, caught_at, caught_in, end_parallel, end_reactive, find_status, halt_part, join_functions,
-            order_functions, react_functions, skip,
+            begins_pause, caught, caught_at, caught_in, complete_rounds, end_parallel, end_reactive, end_rounds,
+            end_timeout, end_undecided, find_status, halt_part, is_pausing, join_functions, join_leaves, leave_branch,
+            order_functions, react_functions, skip, skip_branch,
         )
     },
 }  # fmt: skip

@@ -150,7 +150,7 @@ def timeout(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
         limit = msec()
         if limit and stopwatch.reached(limit):
             halt(False)
-            return instance.fail(f"took longer than {limit / 1000:g} s")
+            return fail_late(instance, limit)
         status = child()
         if status != RUNNING:
             stopwatch.halt(False)
@@ -163,3 +163,8 @@ def timeout(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
         stopwatch.halt(keep)
 
     return tick, halt
+
+
+def fail_late(instance: NodeInstance, msec: float) -> int:
+    """Record that the time of a Timeout is over; return FAILURE."""
+    return instance.fail(f"took longer than {msec / 1000:g} s")
