@@ -258,7 +258,6 @@ def noun_phrases(
             found.add((words,), {}, kind, SEEN)
             found.add_plural((many,), {}, kind)
             for before, how in every:
-                found.add((*before, words), {}, kind, how)
                 found.add((*before, many), {}, kind, how)
     return found
 

@@ -113,11 +113,12 @@ BEHIND = {
 
 STATEMENTS = {
     "rule": '(<whenever> | <first_time>) " " (condition | part " " (<for> | <held>)) ", " unit',
-    "going-on": "if-that-fails | if-that-works | in-any-case | do-that | meanwhile-next | finally",
+    "going-on": "if-that-fails | if-that-works | in-any-case | do-that | stop-that | meanwhile-next | finally",
     "if-that-fails": 'able ". " (<if_fails> | <otherwise>) ", " unit',
     "if-that-works": 'unit ". " (<if_works> | <if_it_works>) ", " unit (". " <otherwise> ", " unit)?',
     "in-any-case": 'unit ". " <in_any_case> ", " unit',
     "do-that": 'lasting ". " (<do_that> " " (<count> | <again> | <more>) | <repeat_that> " " <count> | <again>)',
+    "stop-that": 'lasting ". " <stop_that> " " part',
     "meanwhile-next": "<together . meanwhile>",
     "finally": '<ordinal> ", " unit',
     "last": "<wait_forever> | forever | retry-forever | every-round | every-day | on-days | start-over | failing",

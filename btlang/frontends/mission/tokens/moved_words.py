@@ -6,6 +6,7 @@ from btlang.frontends.mission.tokens.each_and_any import ENDING
 from btlang.text.words import Words
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.pattern import ways
+from btlang.vocabulary.trie import longest
 from btlang.vocabulary.word_tree import find
 
 _LONGEST_PACE = 6  # words
@@ -94,7 +95,7 @@ def say_quantifier_first(text: Words, vocabulary: Lexicon) -> None:
     `if A and B aren't both near` says `if not both A and B are near`; behind `they` both words say nothing more.
     """
     words, both = text.words, vocabulary.roles["both"]
-    floating = {*both, *(phrase.split()[0] for phrase in vocabulary.roles["all_names"])} - vocabulary.values.each
+    floating = {*both, *(phrase for phrase in vocabulary.roles["all_names"] if " " not in phrase)}
     if text.distinct.isdisjoint(floating) or text.distinct.isdisjoint(vocabulary.before_conditions):
         return  # as nearly always
     for at in reversed([at for at in range(2, len(words) - 1) if words[at] in floating]):
@@ -102,11 +103,12 @@ def say_quantifier_first(text: Words, vocabulary: Lexicon) -> None:
         be = at - 1 - is_apart
         denied = vocabulary.forms_of_be.get(words[be])
         forms = [i for i in range(text.earlier(at)[1], be) if words[i] in vocabulary.before_conditions]
-        if denied is None or not forms or forms[-1] + 1 == be:
+        form = longest(vocabulary.trie, text, forms[-1], vocabulary.context) if forms else None
+        if denied is None or form is None or not forms[-1] < form.last < be:
             continue
-        says = [i for i in range(forms[-1], be) if words[i] in vocabulary.forms_of_be]  # `if A is near and B are all`
+        says = [i for i in range(form.last, be) if words[i] in vocabulary.forms_of_be]  # `if A is near and B are all`
         joint = (i + 1 for i in range(max(says, default=be), be) if words[i] in vocabulary.joining)
-        first, quantifier = next(joint, forms[-1] + 1), words[at]
+        first, quantifier = next(joint, form.last), words[at]
         subject = words[first:be]
         is_list = not vocabulary.values.joiners.isdisjoint(subject)
         if len(subject) == 1 and subject[0] in vocabulary.values.plural_pronouns:
