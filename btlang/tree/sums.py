@@ -92,7 +92,7 @@ class _Sums:
         if isinstance(node, ast.Chain) and node.operator in _IN_TURN:
             kept = (item for item in done if not (isinstance(item, ast.Remember) and item.key in told))
             items = tuple(part for item in kept for part in _splice(item))
-            return ast.Chain(node.operator, items, node.bracketed, node.span)
+            return items[0] if len(items) == 1 else ast.Chain(node.operator, items, node.bracketed, node.span)
         if not _is_count(node):
             return ast.with_parts(node, done)
         number = ast.Remember(_LAST, self._count, (), node.span)

@@ -281,7 +281,7 @@ class Questions(Answers):
         if count is None:
             return 0
         self._tokens.append(self._calls.token(counted, at))
-        self._then(at)
+        self._tokens.append(Token("and", self._text.starts[at], self._text.starts[at]))  # `in each room, say how many`
         self._say(at, counted.replace(meaning=counted.meaning.replace(entry=count), values=()), command, slot)
         return counted.last
 
