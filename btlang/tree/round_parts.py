@@ -41,10 +41,8 @@ def _joined(node: ast.Ast, done: Sequence[ast.Ast], goes_on: Callable[[ast.Chain
     made: list[ast.Ast] = []
     for item in done:
         before = made[-1] if made else None
-        is_and = isinstance(item, ast.Chain) and item.operator == "and" and not item.bracketed
-        more = (
-            item.items if is_and and isinstance(item, ast.Chain) else (item,)
-        )  # `say A and B` says A, then measures B
+        both = item if isinstance(item, ast.Chain) and item.operator == "and" and not item.bracketed else None
+        more = both.items if both is not None else (item,)  # `say A and B` says A, then measures B
         if isinstance(before, ast.Chain) and before.operator == "and" and goes_on(before, more[0]):
             made[-1] = before.replace(items=(*before.items, *more))
         else:
