@@ -8,6 +8,7 @@ by `and` or a comma and neither travels nor names a place.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence, Set
+from itertools import pairwise
 
 from btlang.support.record import Record
 from btlang.text.source import Source
@@ -129,10 +130,12 @@ def _add_loops(root: ast.Ast, vocabulary: Lexicon) -> ast.Ast:
     nodes = ast.parents_first(root)
     sets = [(at, choice) for at, node in enumerate(nodes) if (choice := set_of(node)) is not None]
     parents = {id(part): node for node in nodes for part in ast.parts(node)}
+    every = {words.split()[0] for words in vocabulary.roles.get("all_names", ())}
+    in_each = frozenset((located, word) for located in vocabulary.asking["located"] for word in every)
     of_chain: dict[int, list[_Round]] = {}
     alone: dict[int, Choice] = {}
     for at, choice in sets:
-        found = _round(nodes, at, choice, parents)
+        found = _round(nodes, at, choice, parents, in_each)
         if found.chain is None:
             alone[id(found.whole)] = choice
         else:
@@ -193,8 +196,10 @@ def _in_each(node: ast.Ast, change: Callable[[ast.Ast], ast.Ast]) -> ast.Ast | N
     return ast.with_parts(node, [new or old for new, old in zip(changed, parts, strict=True)])
 
 
-def _round(nodes: Sequence[ast.Ast], at: int, choice: Choice, parents: dict[int, ast.Ast]) -> _Round:
-    """Return how far the round of a set reaches."""
+def _round(
+    nodes: Sequence[ast.Ast], at: int, choice: Choice, parents: dict[int, ast.Ast], in_each: Set[tuple[str, str]]
+) -> _Round:
+    """Return how far the round of a set reaches. The words `in_each` begin where something is done: `in every room`."""
     key, node = choice.key, nodes[at]
     last = at
     for later in range(at + 1, len(nodes)):
@@ -209,13 +214,13 @@ def _round(nodes: Sequence[ast.Ast], at: int, choice: Choice, parents: dict[int,
         common = next((up for up in path if id(up) in others), None)
         if isinstance(common, ast.Chain):
             first, end = (_index(common, _path(one, parents)) for one in (node, nodes[last]))
-            return _Round(choice, node, common, first, _goes_along(common, first, end, choice))
+            return _Round(choice, node, common, first, _goes_along(common, first, end, choice, in_each))
     chain = path[1] if len(path) > 1 else None
     if isinstance(chain, ast.If) and _asks_about(chain, node, key):
         return _Round(choice, chain)
     if isinstance(chain, ast.Chain):
         first = _index(chain, path)
-        end = _goes_along(chain, first, first, choice)
+        end = _goes_along(chain, first, first, choice, in_each)
         if end > first:
             return _Round(choice, node, chain, first, end)
     return _Round(choice, node)
@@ -242,17 +247,29 @@ def _index(chain: ast.Chain, path: Sequence[ast.Ast]) -> int:
     return next(at for at, item in enumerate(chain.items) if id(item) in within)
 
 
-def _goes_along(chain: ast.Chain, first: int, last: int, choice: Choice) -> int:
-    """Return the last part that is in the round of a set of places or people without a word about them."""
+def _goes_along(chain: ast.Chain, first: int, last: int, choice: Choice, in_each: Set[tuple[str, str]]) -> int:
+    """Return the last part that is in the round of a set of places or people without a word about them.
+
+    What is said to be done in each place is in it wherever it leads: `in every room, greet somebody`.
+    """
     node = chain.items[first]
     goes = is_journey(node) or (isinstance(node, ast.Phrase) and _counts_answers(chain, first))
     if choice.type in (PLACE, PERSON) and goes:
         tells = isinstance(node, ast.Phrase) and any(slot.type == TEXT for slot in node.entry.slots)
+        if last == first < len(chain.items) - 1 and _says_where(chain, first, in_each):
+            last += 1
         while last + 1 < len(chain.items) and _is_joined(chain, last) and _goes_with(chain, last):
             if tells and isinstance(chain.items[last + 1], ast.Wait):
                 break  # `tell everyone "Bye", wait 1 min and dock`
             last += 1
     return last
+
+
+def _says_where(chain: ast.Chain, at: int, in_each: Set[tuple[str, str]]) -> bool:
+    """Whether a part, or what is said between it and the next one, says where that is done: `in every room, wave`."""
+    left, right = chain.items[at].span, chain.items[at + 1].span
+    front, gap = left.text.lower().split()[:2], left.source.text[left.end : right.start].lower().split()
+    return not in_each.isdisjoint((*pairwise(front), *pairwise(gap)))
 
 
 def _counts_answers(chain: ast.Chain, at: int) -> bool:
@@ -281,8 +298,10 @@ def _travels(node: ast.Ast) -> bool:
     """Whether it goes somewhere by itself, or says a place."""
     for item in ast.parents_first(node):
         if isinstance(item, ast.Phrase):
-            has_place = any(slot.type == PLACE for slot in item.entry.slots)
-            if item.entry.given(PLACE, item.arguments) or (TRAVELS in item.entry.needs and not has_place):
+            leads = TRAVELS in item.entry.needs and all(slot.type != PLACE for slot in item.entry.slots)
+            chosen = map(choice_of, item.entry.given(PERSON, item.arguments))
+            meets = any(own is not None and own.how != ALL for own in chosen)  # somebody who is there
+            if item.entry.given(PLACE, item.arguments) or (leads and not meets):
                 return True
         elif isinstance(item, ast.Name | ast.Exact):
             return True
