@@ -25,6 +25,7 @@ from itertools import pairwise
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic, two_readings
 from btlang.passes.compilation import Compilation
 from btlang.passes.lint.asked_once import ON_THE_WAY
+from btlang.passes.lint.asked_too_late import WHERE
 from btlang.passes.lint.other_form import find_in_form, find_in_pace, find_in_sentences, find_in_time
 from btlang.passes.lint.other_readings import (
     Attachment,
@@ -40,6 +41,7 @@ from btlang.text.source import Source, Span
 from btlang.tree import ast
 from btlang.tree.sums import COUNTING
 from btlang.vocabulary.capabilities import MOVES
+from btlang.vocabulary.references import ALL, choice_of
 from btlang.vocabulary.value_type import PERSON, PLACE
 
 TYPE_CHECKING = False
@@ -230,12 +232,18 @@ def find_early_rules(compilation: Compilation) -> Iterator[Diagnostic]:
 
 
 def find_counts_behind_lists(compilation: Compilation) -> Iterator[Diagnostic]:
-    """Report `go through the lab and the hall and count the people`: in each, or only in the last."""
+    """Report `go through the lab and the hall and count the people`: in each, or only in the last.
+
+    So also `and remind the guest to drink`: whoever is in each, or in the last.
+    """
     word, joints = compilation.vocabulary.word, compilation.vocabulary.roles["and"]
     for body in ast.bodies(compilation.mission):
         for node in compilation.syntax(body):
             for left, right in pairwise(ast.parts(node)) if isinstance(node, ast.Chain) else ():
-                if not isinstance(right, ast.Phrase) or right.entry.id not in COUNTING or _places_of(right):
+                if not isinstance(right, ast.Phrase) or _places_of(right):
+                    continue
+                counts = right.entry.id in COUNTING
+                if not counts and not _meets_somebody(right):
                     continue
                 goals = [sorted(_places_of(each)) for each in ast.parts(left) if isinstance(each, ast.Phrase)]
                 if not (ast.is_list(left) and all(goals)):
@@ -245,7 +253,15 @@ def find_counts_behind_lists(compilation: Compilation) -> Iterator[Diagnostic]:
                 whole = Span(left.span.source, left.span.start, right.span.end)
                 taken = f"{left.span.text}, {word('then')} {right.span.text}"
                 other = f"{right.span.text} in {joined([goal for goal, *_ in goals], word('and'))}"
+                if not counts:
+                    other = f"{left.span.text}, {word('and')} in each of them {right.span.text}"
                 yield two_readings(whole, taken, other)
+
+
+def _meets_somebody(phrase: ast.Phrase) -> bool:
+    """Whether a command is for somebody whom the robot chooses when it gets there."""
+    choices = map(choice_of, phrase.entry.given(PERSON, phrase.arguments))
+    return any(own is not None and own.how != ALL and not {*WHERE} & dict(own.parts).keys() for own in choices)
 
 
 def _places_of(phrase: ast.Phrase) -> set[str]:
