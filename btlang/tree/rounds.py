@@ -130,12 +130,10 @@ def _add_loops(root: ast.Ast, vocabulary: Lexicon) -> ast.Ast:
     nodes = ast.parents_first(root)
     sets = [(at, choice) for at, node in enumerate(nodes) if (choice := set_of(node)) is not None]
     parents = {id(part): node for node in nodes for part in ast.parts(node)}
-    every = {words.split()[0] for words in vocabulary.roles.get("all_names", ())}
-    in_each = frozenset((located, word) for located in vocabulary.asking["located"] for word in every)
     of_chain: dict[int, list[_Round]] = {}
     alone: dict[int, Choice] = {}
     for at, choice in sets:
-        found = _round(nodes, at, choice, parents, in_each)
+        found = _round(nodes, at, choice, parents, vocabulary)
         if found.chain is None:
             alone[id(found.whole)] = choice
         else:
@@ -197,9 +195,9 @@ def _in_each(node: ast.Ast, change: Callable[[ast.Ast], ast.Ast]) -> ast.Ast | N
 
 
 def _round(
-    nodes: Sequence[ast.Ast], at: int, choice: Choice, parents: dict[int, ast.Ast], in_each: Set[tuple[str, str]]
+    nodes: Sequence[ast.Ast], at: int, choice: Choice, parents: dict[int, ast.Ast], vocabulary: Lexicon
 ) -> _Round:
-    """Return how far the round of a set reaches. The words `in_each` begin where something is done: `in every room`."""
+    """Return how far the round of a set reaches."""
     key, node = choice.key, nodes[at]
     last = at
     for later in range(at + 1, len(nodes)):
@@ -214,13 +212,13 @@ def _round(
         common = next((up for up in path if id(up) in others), None)
         if isinstance(common, ast.Chain):
             first, end = (_index(common, _path(one, parents)) for one in (node, nodes[last]))
-            return _Round(choice, node, common, first, _goes_along(common, first, end, choice, in_each))
+            return _Round(choice, node, common, first, _goes_along(common, first, end, choice, vocabulary))
     chain = path[1] if len(path) > 1 else None
     if isinstance(chain, ast.If) and _asks_about(chain, node, key):
         return _Round(choice, chain)
     if isinstance(chain, ast.Chain):
         first = _index(chain, path)
-        end = _goes_along(chain, first, first, choice, in_each)
+        end = _goes_along(chain, first, first, choice, vocabulary)
         if end > first:
             return _Round(choice, node, chain, first, end)
     return _Round(choice, node)
@@ -247,7 +245,7 @@ def _index(chain: ast.Chain, path: Sequence[ast.Ast]) -> int:
     return next(at for at, item in enumerate(chain.items) if id(item) in within)
 
 
-def _goes_along(chain: ast.Chain, first: int, last: int, choice: Choice, in_each: Set[tuple[str, str]]) -> int:
+def _goes_along(chain: ast.Chain, first: int, last: int, choice: Choice, vocabulary: Lexicon) -> int:
     """Return the last part that is in the round of a set of places or people without a word about them.
 
     What is said to be done in each place is in it wherever it leads: `in every room, greet somebody`.
@@ -256,7 +254,7 @@ def _goes_along(chain: ast.Chain, first: int, last: int, choice: Choice, in_each
     goes = is_journey(node) or (isinstance(node, ast.Phrase) and _counts_answers(chain, first))
     if choice.type in (PLACE, PERSON) and goes:
         tells = isinstance(node, ast.Phrase) and any(slot.type == TEXT for slot in node.entry.slots)
-        if last == first < len(chain.items) - 1 and _says_where(chain, first, in_each):
+        if last == first < len(chain.items) - 1 and _says_where(chain, first, vocabulary):
             last += 1
         while last + 1 < len(chain.items) and _is_joined(chain, last) and _goes_with(chain, last):
             if tells and isinstance(chain.items[last + 1], ast.Wait):
@@ -265,11 +263,16 @@ def _goes_along(chain: ast.Chain, first: int, last: int, choice: Choice, in_each
     return last
 
 
-def _says_where(chain: ast.Chain, at: int, in_each: Set[tuple[str, str]]) -> bool:
+def _says_where(chain: ast.Chain, at: int, vocabulary: Lexicon) -> bool:
     """Whether a part, or what is said between it and the next one, says where that is done: `in every room, wave`."""
     left, right = chain.items[at].span, chain.items[at + 1].span
     front, gap = left.text.lower().split()[:2], left.source.text[left.end : right.start].lower().split()
-    return not in_each.isdisjoint((*pairwise(front), *pairwise(gap)))
+    every = {words.split()[0] for words in vocabulary.roles.get("all_names", ())}
+    if any(one in vocabulary.asking["located"] and two in every for one, two in (*pairwise(front), *pairwise(gap))):
+        return True
+    form = chain.items[at + 1]
+    asked = form.condition.span.text.lower().split() if isinstance(form, ast.If) else []
+    return asked[-1:] != [] and PLACE in vocabulary.values.pronouns.get(asked[-1], ())  # `if somebody is there, A`
 
 
 def _counts_answers(chain: ast.Chain, at: int) -> bool:

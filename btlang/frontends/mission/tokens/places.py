@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import (
+    IN_CONDITIONS,
     JOINTS,
     LINES,
     STATEMENT_ENDS,
@@ -272,6 +273,18 @@ class Places(SearchesThere):
             here = tokens[first].start
             tokens[first:first] = [Token("repeat", here, here), pace, Token("colon", here, here)]
         return True
+
+    def ask_in_each(self, match: Match) -> None:
+        """`visit every room. If somebody is there, A`: that is asked in each of them."""
+        tokens, words = self._tokens, self._text.words
+        form = run_start(tokens, len(tokens), IN_CONDITIONS) - 1
+        if PLACE not in self._context.pronouns.get(words[match.last - 1], ()) or form < 1:
+            return
+        before = run_start(tokens, form, STATEMENT_ENDS)
+        value = tokens[before - 1].value if 0 < before < form else None
+        if tokens[form].kind not in ("if", "unless") or not isinstance(value, Called) or not drives(value):
+            return
+        self._goes_there(next((text for text in texts_of(value) if choice_of(text) is not None), ""), form)
 
     def _goes_round(self, journey: Match, end: int) -> bool:
         """Whether the journey before some token is to the same set some times, with BT151: done each time, or then."""

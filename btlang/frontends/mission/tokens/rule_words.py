@@ -74,7 +74,7 @@ class RuleWords(SentenceReader):
     def _is_in_round(self, first: int, said: Sequence[str]) -> bool:
         """`go to each room. If C, A, then carry on with the next`: each time, so that the statement goes on."""
         tokens = self._tokens
-        before = run_start(tokens, first, STATEMENT_ENDS)
+        before = run_start(tokens, first, JOINTS | STATEMENT_ENDS)
         done = tokens[statement_start(tokens, before) : before]
         choices = [choice_of(text) for each in done if isinstance(each.value, Called) for text in texts_of(each.value)]
         is_round = any(choice is not None and choice.how == ALL for choice in choices)

@@ -395,6 +395,7 @@ class WordReader:
             return end
         match = self._order.for_anybody(self._places.looking_there(match)) if match.values else match
         if role in _CONDITIONS:
+            self._places.ask_in_each(match)
             match = asked_there(match, tokens, self._text, self._context, self._vocabulary)
             if (end := self._condition(match, at)) > match.last:
                 return end
