@@ -62,6 +62,8 @@ class Nouns:
         """Their words."""
         self.plurals: WordTree = {}
         """Those in the plural: `red cups`."""
+        self.sorts_of_people: dict[str, str] = {}
+        """What people may be, in the singular and the plural, each with the singular: `patients`."""
         self._types: WordTree = {}
         self._said: dict[tuple[str, str, tuple[str, ...]], Form] = {}
 
@@ -255,6 +257,7 @@ def noun_phrases(
                     _add_declared(found, noun, form, ways if takes_more else ())
         for words in language["asking"].get("sorts_of_people", ()) if kind == PERSON else ():
             many = plural(words, language["plural_endings"])
+            found.sorts_of_people |= {words: words, many: words}
             found.add((words,), {}, kind, SEEN)
             found.add_plural((many,), {}, kind)
             for before, how in every:

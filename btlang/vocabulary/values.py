@@ -41,9 +41,6 @@ class Values(Measures):
         titles = frozenset(language["titles"])
         self._orthography = Orthography(titles.union(language["articles"]), titles=titles)
         joining = (phrase for role in ("and", "or", "nor") for phrase in language["roles"].get(role, ()))
-        sorts = language["asking"].get("sorts_of_people", ())
-        self.sorts_of_people = {form: one for one in sorts for form in (one, plural(one, language["plural_endings"]))}
-        """What people may be, in the singular and the plural, each with the singular: `patients`."""
         self.joiners = frozenset((",", *(phrase.split()[0] for phrase in joining)))
         """The first words of what stands between the values of a list."""
         self.pronouns: Mapping[str, Sequence[str]] = language["pronouns"]

@@ -51,7 +51,7 @@ class Mentions:
         self._otherwise: set[str] = set()  # the types whose latest values are those of `otherwise`, and only in it
         # in most missions nobody is spoken of by a pronoun
         self.speaks_of_people = not text.distinct.isdisjoint(pronouns_for(vocabulary.values.pronouns, PERSON))
-        sorts = vocabulary.values.sorts_of_people if vocabulary.values.listed(PERSON) else {}
+        sorts = vocabulary.values.phrases.sorts_of_people if vocabulary.values.listed(PERSON) else {}
         self._sorts = {} if text.distinct.isdisjoint(sorts) else sorts
         self._owners = not text.distinct.isdisjoint(vocabulary.values.names_tree(OWNER))
 
