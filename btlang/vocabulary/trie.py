@@ -177,7 +177,7 @@ def longest(
     is_about_zone = any(value.type == ZONE for value in best_values) if verbs else False  # a place may be meant
     if verbs and (best is None or holds_place or is_about_zone or _may_be_longer(words, best_last, context)):
         for node, i in verbs:
-            match = _filled(root, node, text, i + (words[i] == ":"), context, names)
+            match = _filled(root, node, text, i + (words[i] == ":" and not text.ends_line(i)), context, names)
             says_more = match is not None and holds_place and len(match.values) > len(best_values)
             says_more |= match is not None and is_about_zone and all(value.type != ZONE for value in match.values)
             if match is not None and (

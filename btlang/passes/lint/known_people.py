@@ -22,6 +22,7 @@ from btlang.vocabulary.value_type import PERSON, PLACE
 
 _LIES = (*WHERE, "on")
 """The same of things."""
+_MOST_BEFORE = 60  # characters in which the words for a test stand, and an article
 
 
 def find_known_only(compilation: Compilation) -> Iterator[Diagnostic]:
@@ -72,13 +73,14 @@ def _first_checked(nodes: Iterable[ast.Ast], vocabulary: Lexicon) -> Diagnostic 
 
 def _with_check(span: Span, vocabulary: Lexicon) -> Span:
     """Return the span with the word for a test that stands before it: `check whether`."""
-    before = span.source.text[: span.start].rstrip()
+    begin = max(span.start - _MOST_BEFORE, 0)
+    before = span.source.text[begin : span.start].rstrip()
     last = before.split()[-1:]
     if vocabulary.articles.issuperset(last):
         before = before.removesuffix("".join(last)).rstrip()
     said = (words for words in ways(vocabulary.roles["check"]) if before.lower().endswith(words))
     longest = max(said, key=len, default="")
-    return Span(span.source, len(before) - len(longest), span.end) if longest else span
+    return Span(span.source, begin + len(before) - len(longest), span.end) if longest else span
 
 
 def _phrases(nodes: Iterable[ast.Ast]) -> list[ast.Phrase]:
