@@ -20,6 +20,7 @@ from tests.ros.peers.peer import serve, tell
 
 PARTS = set(sys.argv[1:])
 PERIOD = 0.02
+DEPTH = 1000  # a robot on a busy machine still hears every velocity
 
 
 class Robot:
@@ -32,9 +33,9 @@ class Robot:
         self.joint, self.target = 0.0, 0.0
         node.declare_parameter("max_speed", 0.5)
         if PARTS & {"drive", "stuck"}:
-            node.create_subscription(Twist, "/cmd_vel", self.drive, 10)
+            node.create_subscription(Twist, "/cmd_vel", self.drive, DEPTH)
         if "stamped" in PARTS:
-            node.create_subscription(TwistStamped, "/cmd_vel", lambda m: self.drive(m.twist), 10)
+            node.create_subscription(TwistStamped, "/cmd_vel", lambda m: self.drive(m.twist), DEPTH)
         if "speech" in PARTS:
             node.create_subscription(String, "/speech", lambda m: tell("said", m.data), 10)
         if "arm" in PARTS:
