@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 
 from btlang.engine.nodes.branches import NO_ANSWER, NO_BRANCH
@@ -14,14 +15,22 @@ if TYPE_CHECKING:
     from btlang.engine.regions import Fragment, Layout, Region, Slots
 
 
+def _begin(region: Region, instance: NodeInstance, halt: Callable[..., None], **memory: int) -> tuple[Layout, int]:
+    """Give a node the slots of what it remembers and of itself; return its layout, still without children, and the
+    number of that.
+    """
+    at = region.remember(instance, **memory)
+    region.slot(instance)
+    children: list[Layout] = []
+    layout: Layout = halt, at, children
+    return layout, region.layout(layout)
+
+
 def if_then_else(region: Region, node: Fragment, depth: int, level: int) -> Layout:
     """Write an IfThenElse."""
     condition, *branches = node.singles
-    at = region.remember(node.instance, position=0)
-    region.slot(node.instance)
-    children: list[Layout] = []
-    own = _halt_chosen, at, children
-    number = region.layout(own)
+    own, number = _begin(region, node.instance, _halt_chosen, position=0)
+    _, at, children = own
     fault, unknowns = f"e{level}", f"u{level}"
     region.add(depth, f"{fault} = S[0].fault", f"if not S[{at}]:", f" {unknowns} = S[0].unknowns")
     children.append(region.child(condition, depth + 1, level + 1))
@@ -40,11 +49,8 @@ def if_then_else(region: Region, node: Fragment, depth: int, level: int) -> Layo
 def while_do_else(region: Region, node: Fragment, depth: int, level: int) -> Layout:
     """Write a WhileDoElse."""
     condition, *branches = node.singles
-    at = region.remember(node.instance, branch=0)
-    region.slot(node.instance)
-    children: list[Layout] = []
-    own = _halt_while, at, children
-    number = region.layout(own)
+    own, number = _begin(region, node.instance, _halt_while, branch=0)
+    _, at, children = own
     stop = region.slot(None)
     fault, unknowns = f"e{level}", f"u{level}"
     region.add(depth, f"{fault} = S[0].fault", f"{unknowns} = S[0].unknowns")

@@ -31,11 +31,11 @@ def inverter(region: Region, node: Fragment, depth: int, level: int) -> Layout:
     return layout
 
 
-def force_success(region: Region, node: Fragment, depth: int, level: int) -> Layout:
-    """Write a ForceSuccess."""
+def other_status(region: Region, node: Fragment, depth: int, level: int, line: str) -> Layout:
+    """Write a node that only makes another status of its child's, by a line."""
     region.remember(node.instance)
     layout = region.child(node.items[0], depth, level + 1)
-    region.add(depth, "if r is False: r = True")
+    region.add(depth, line)
     return layout
 
 
@@ -45,14 +45,6 @@ def force_failure(region: Region, node: Fragment, depth: int, level: int) -> Lay
     at = region.slot(Fault(node.instance.index, NOT_THIS_TIME))
     layout = region.child(node.items[0], depth, level + 1)
     region.add(depth, f"if r is True: S[0].fault, r = S[{at}], False")
-    return layout
-
-
-def keep_running_until_failure(region: Region, node: Fragment, depth: int, level: int) -> Layout:
-    """Write a KeepRunningUntilFailure."""
-    region.remember(node.instance)
-    layout = region.child(node.items[0], depth, level + 1)
-    region.add(depth, "if r is not False: r = 2")
     return layout
 
 

@@ -27,10 +27,9 @@ from btlang.engine.nodes.decorator_templates import (
     end_rounds,
     end_timeout,
     force_failure,
-    force_success,
     inverter,
     is_pausing,
-    keep_running_until_failure,
+    other_status,
     rounds,
     subtree,
     timeout,
@@ -303,13 +302,13 @@ TEMPLATES: dict[str, Emit] = {
     "IfThenElse": if_then_else,
     "WhileDoElse": while_do_else,
     "Inverter": inverter,
-    "ForceSuccess": force_success,
+    "ForceSuccess": partial(other_status, line="if r is False: r = True"),
     "ForceFailure": force_failure,
     "Repeat": partial(rounds, again=SUCCESS),
     "RetryUntilSuccessful": partial(rounds, again=FAILURE),
     "Timeout": timeout,
     "SubTree": subtree,
-    "KeepRunningUntilFailure": keep_running_until_failure,
+    "KeepRunningUntilFailure": partial(other_status, line="if r is not False: r = 2"),
 }
 """The template of each node that has one, by its id. None of them reads the blackboard."""
 NAMES: dict[str, Any] = {
