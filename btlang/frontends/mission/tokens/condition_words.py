@@ -53,9 +53,9 @@ def asked_there(
     entry, place = match.meaning.entry, context.latest.get(PLACE, "{")
     if entry is None or place[:1] == "{" or not (entry.id in THERE or entry.id == _KNOWN):
         return match  # as nearly always
-    there, is_said = vocabulary.entry(THERE.get(entry.id, "")), text.words[match.last - 1]
+    there, last = vocabulary.entry(THERE.get(entry.id, "")), text.words[match.last - 1]
     inside = [context.inside(OBJECT, value.text, place) for value in match.values] if entry.id == _KNOWN else []
-    if not any(inside) and (there is None or PLACE not in vocabulary.values.pronouns.get(is_said, ())):
+    if not any(inside) and (there is None or PLACE not in vocabulary.values.pronouns.get(last, ())):
         return match
     form = run_start(tokens, len(tokens), IN_CONDITIONS) - 1
     journey = next((at for at in reversed(range(len(tokens))) if drives(tokens[at].value)), -1)

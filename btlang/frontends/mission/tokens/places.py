@@ -276,13 +276,13 @@ class Places(SearchesThere):
 
     def ask_in_each(self, match: Match) -> None:
         """`visit every room. If somebody is there, A`: that is asked in each of them."""
-        tokens, words = self._tokens, self._text.words
+        tokens = self._tokens
+        if PLACE not in self._context.pronouns.get(self._text.words[match.last - 1], ()):
+            return  # as nearly always
         form = run_start(tokens, len(tokens), IN_CONDITIONS) - 1
-        if PLACE not in self._context.pronouns.get(words[match.last - 1], ()) or form < 1:
-            return
         before = run_start(tokens, form, STATEMENT_ENDS)
         value = tokens[before - 1].value if 0 < before < form else None
-        if tokens[form].kind not in ("if", "unless") or not isinstance(value, Called) or not drives(value):
+        if not isinstance(value, Called) or not drives(value) or tokens[form].kind not in ("if", "unless"):
             return
         self._goes_there(next((text for text in texts_of(value) if choice_of(text) is not None), ""), form)
 

@@ -552,8 +552,10 @@ class WordReader:
         on, or 0.
         """
         tokens, text = self._tokens, self._text
+        if text.words[at] not in self._details:
+            return 0  # as nearly always
         is_first = begins(tokens) or tokens[-1].kind == "label"
-        found = read_detail(text, at, self._vocabulary) if text.words[at] in self._details and is_first else None
+        found = read_detail(text, at, self._vocabulary) if is_first else None
         head = self._match(found[2] + 1) if found is not None and text.words[found[2]] == "," else None
         if found is None or head is None or head.meaning.role != "do":
             return 0
