@@ -302,13 +302,17 @@ def _travels(node: ast.Ast) -> bool:
     for item in ast.parents_first(node):
         if isinstance(item, ast.Phrase):
             leads = TRAVELS in item.entry.needs and all(slot.type != PLACE for slot in item.entry.slots)
-            chosen = map(choice_of, item.entry.given(PERSON, item.arguments))
-            meets = any(own is not None and own.how != ALL for own in chosen)  # somebody who is there
-            if item.entry.given(PLACE, item.arguments) or (leads and not meets):
+            if item.entry.given(PLACE, item.arguments) or (leads and not meets_somebody(item)):
                 return True
         elif isinstance(item, ast.Name | ast.Exact):
             return True
     return False
+
+
+def meets_somebody(phrase: ast.Phrase) -> bool:
+    """Whether a command is for somebody whom the robot chooses where it is by then: `greet someone`."""
+    choices = map(choice_of, phrase.entry.given(PERSON, phrase.arguments))
+    return any(choice is not None and choice.how != ALL for choice in choices)
 
 
 def _wrap(chain: ast.Ast, found: _Round, vocabulary: Lexicon) -> ast.Ast:

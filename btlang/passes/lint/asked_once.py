@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
-from btlang.passes.lint.asked_too_late import WHERE, asked_by, leads_through, on_the_way
+from btlang.passes.lint.asked_too_late import asked_by, described_places, leads_through, on_the_way
 from btlang.text.source import Span
 from btlang.tree import ast
 from btlang.tree.answers import ABOUT_ANSWERS
@@ -230,9 +230,8 @@ def _only_if_failed(node: ast.If, before: ast.Ast, vocabulary: Lexicon) -> Diagn
 
 def _is_at_goal(asked: ast.Ast, journey: ast.Phrase) -> bool:
     """Return whether a condition is about somebody or something where a journey ends: `anyone in the hall`."""
-    choices = map(choice_of, (text for _, text in asked.arguments)) if isinstance(asked, ast.Phrase) else ()
-    places = {text for choice in choices if choice is not None for part, text in choice.parts if part in WHERE}
-    return not places.isdisjoint([*journey.entry.given(PLACE, journey.arguments)][-1:])
+    goals = [*journey.entry.given(PLACE, journey.arguments)]
+    return isinstance(asked, ast.Phrase) and not {*goals[-1:]}.isdisjoint(described_places(asked))
 
 
 def _is_about_driving(asked: ast.Phrase, node: ast.If, journeys: Sequence[ast.Phrase]) -> bool:

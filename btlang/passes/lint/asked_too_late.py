@@ -6,7 +6,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
@@ -87,9 +87,13 @@ def _people(phrase: ast.Phrase) -> set[str]:
 
 def _places(phrase: ast.Phrase) -> set[str]:
     """Return the names of the places that a phrase is about, also of those where somebody or something is."""
+    return {*described_places(phrase), *phrase.entry.given(PLACE, phrase.arguments)}
+
+
+def described_places(phrase: ast.Phrase, relations: Collection[str] = WHERE) -> list[str]:
+    """Return the names of the places where somebody or something is that a phrase describes: `anyone in the hall`."""
     choices = (choice_of(text) for _, text in phrase.arguments)
-    described = {text for choice in choices if choice is not None for part, text in choice.parts if part in WHERE}
-    return described.union(phrase.entry.given(PLACE, phrase.arguments))
+    return [text for choice in choices if choice is not None for part, text in choice.parts if part in relations]
 
 
 def _about_partner(node: ast.If, partner: ast.Phrase, vocabulary: Lexicon) -> Diagnostic:

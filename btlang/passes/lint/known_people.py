@@ -11,10 +11,11 @@ from collections.abc import Iterable, Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
-from btlang.passes.lint.asked_too_late import WHERE
+from btlang.passes.lint.asked_too_late import WHERE, described_places
 from btlang.text.source import Span
 from btlang.tree import ast
 from btlang.vocabulary.capabilities import MOVES, TRAVELS
+from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.pattern import ways
 from btlang.vocabulary.references import choice_of
@@ -29,11 +30,12 @@ def find_known_only(compilation: Compilation) -> Iterator[Diagnostic]:
     """Report the first such command, unless a journey to the place is right before it."""
     vocabulary = compilation.vocabulary
     for body in ast.bodies(compilation.mission):
-        checked = _first_checked(compilation.syntax(body), vocabulary)
+        nodes = compilation.syntax(body)
+        checked = _first_checked(nodes, vocabulary)
         if checked is not None:
             yield checked
             return
-        for node in compilation.syntax(body):
+        for node in nodes:
             tried = node.tried if type(node) is ast.IfWorks and node.otherwise is not None else None
             if type(node) is ast.Chain and node.operator == "fallback":
                 tried = node.items[0]
@@ -46,9 +48,8 @@ def find_known_only(compilation: Compilation) -> Iterator[Diagnostic]:
 def _first_known(nodes: Iterable[ast.Ast], vocabulary: Lexicon) -> Diagnostic | None:
     been = set[str]()
     for phrase in _phrases(nodes):
-        moves = MOVES in phrase.entry.resources or TRAVELS in phrase.entry.needs
         named = phrase.entry.given(PERSON, phrase.arguments)
-        choice = choice_of(named[0]) if named and moves else None
+        choice = choice_of(named[0]) if named and drives_robot(phrase.entry) else None
         parts = dict(choice.parts) if choice is not None else {}
         place = next((parts[relation] for relation in WHERE if relation in parts), "")
         if place and place not in been:
@@ -61,13 +62,11 @@ def _first_checked(nodes: Iterable[ast.Ast], vocabulary: Lexicon) -> Diagnostic 
     """`check whether there is a cup in the lab`, unless the lab has been named before."""
     been = set[str]()
     for phrase in _phrases(nodes):
-        named = [text for _, text in phrase.arguments]
-        parts = [part for text in named if (choice := choice_of(text)) is not None for part in choice.parts]
-        places = [*phrase.entry.given(PLACE, phrase.arguments), *(text for name, text in parts if name in _LIES)]
+        places = [*phrase.entry.given(PLACE, phrase.arguments), *described_places(phrase, _LIES)]
         span = _with_check(phrase.span, vocabulary) if places and been.isdisjoint(places) else phrase.span
         if span.start < phrase.span.start and phrase.entry.sort == "condition":
             return _from_memory(span, places[0], vocabulary)
-        been.update(named, places)
+        been.update(places, (text for _, text in phrase.arguments))
     return None
 
 
@@ -88,6 +87,16 @@ def _phrases(nodes: Iterable[ast.Ast]) -> list[ast.Phrase]:
 
 
 def _from_memory(span: Span, place: str, vocabulary: Lexicon) -> Diagnostic:
-    journey = " ".join((*vocabulary.asking["journey"], place, vocabulary.word("then")))
-    fixed = f"{journey} {span.text[:1].lower()}{span.text[1:]}"
+    fixed = with_journey_first(place, span.text, vocabulary)
     return diagnostic("BT254", span, words=span.text, place=place, fixed=fixed)
+
+
+def drives_robot(entry: Entry) -> bool:
+    """Whether a command drives the robot, by a measure or to somebody or somewhere."""
+    return MOVES in entry.resources or TRAVELS in entry.needs
+
+
+def with_journey_first(goal: str, words: str, vocabulary: Lexicon) -> str:
+    """Write a command with a journey before it: `go to Bob then ask him "Tea?"`."""
+    journey = " ".join((*vocabulary.asking["journey"], goal, vocabulary.word("then")))
+    return f"{journey} {words[:1].lower()}{words[1:]}"

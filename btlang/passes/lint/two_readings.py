@@ -25,7 +25,7 @@ from itertools import pairwise
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic, two_readings
 from btlang.passes.compilation import Compilation
 from btlang.passes.lint.asked_once import ON_THE_WAY
-from btlang.passes.lint.asked_too_late import WHERE
+from btlang.passes.lint.asked_too_late import described_places
 from btlang.passes.lint.other_form import find_in_form, find_in_pace, find_in_sentences, find_in_time
 from btlang.passes.lint.other_readings import (
     Attachment,
@@ -39,9 +39,9 @@ from btlang.passes.lint.other_readings import (
 from btlang.text.formatting import joined
 from btlang.text.source import Source, Span
 from btlang.tree import ast
+from btlang.tree.rounds import meets_somebody
 from btlang.tree.sums import COUNTING
 from btlang.vocabulary.capabilities import MOVES
-from btlang.vocabulary.references import ALL, choice_of
 from btlang.vocabulary.value_type import PERSON, PLACE
 
 TYPE_CHECKING = False
@@ -243,7 +243,7 @@ def find_counts_behind_lists(compilation: Compilation) -> Iterator[Diagnostic]:
                 if not isinstance(right, ast.Phrase) or _places_of(right):
                     continue
                 counts = right.entry.id in COUNTING
-                if not counts and not _meets_somebody(right):
+                if not counts and (not meets_somebody(right) or described_places(right)):
                     continue
                 goals = [sorted(_places_of(each)) for each in ast.parts(left) if isinstance(each, ast.Phrase)]
                 if not (ast.is_list(left) and all(goals)):
@@ -256,12 +256,6 @@ def find_counts_behind_lists(compilation: Compilation) -> Iterator[Diagnostic]:
                 if not counts:
                     other = f"{left.span.text}, {word('and')} in each of them {right.span.text}"
                 yield two_readings(whole, taken, other)
-
-
-def _meets_somebody(phrase: ast.Phrase) -> bool:
-    """Whether a command is for somebody whom the robot chooses when it gets there."""
-    choices = map(choice_of, phrase.entry.given(PERSON, phrase.arguments))
-    return any(own is not None and own.how != ALL and not {*WHERE} & dict(own.parts).keys() for own in choices)
 
 
 def _places_of(phrase: ast.Phrase) -> set[str]:

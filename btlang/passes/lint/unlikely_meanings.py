@@ -19,6 +19,7 @@ from itertools import pairwise
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
+from btlang.passes.lint.known_people import drives_robot, with_journey_first
 from btlang.passes.lint.other_readings import Readings
 from btlang.passes.lint.two_readings import make_printer, make_warning
 from btlang.text.formatting import joined
@@ -28,7 +29,7 @@ from btlang.tree import ast
 from btlang.tree.answers import ASK, KEEP_ASKING, asking_verbs, asks
 from btlang.tree.rounds import DAYTIME
 from btlang.tree.sums import COMPARED, COUNTING, asks_for_number
-from btlang.vocabulary.capabilities import MOVES, TRAVELS
+from btlang.vocabulary.capabilities import MOVES
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import choice_of
 from btlang.vocabulary.value_type import OBJECT, PERSON
@@ -226,16 +227,15 @@ def find_distant_questions(compilation: Compilation) -> Iterator[Diagnostic]:
         parts = dict(choice.parts) if choice is not None else {}
         there = next((parts[relation] for relation in ("at", "inside") if relation in parts), "")
         goal = there or (named[0] if named and named[0] in vocabulary.values.listed(PERSON) else "")
-        drives = MOVES in phrase.entry.resources or TRAVELS in phrase.entry.needs
+        drives = drives_robot(phrase.entry)
         stays = phrase.entry.sort == "action" and not drives
         is_far = there != "" and (stays or (phrase.entry.id in _SIGHTS and id(phrase) in sights))
         if (phrase.entry.id == ASK or is_far) and not led <= failed.get(id(phrase), set()):
             return
         if (phrase.entry.id == ASK or is_far) and goal and goal[:1] != "{" and goal != met:
             words = phrase.span.text
-            journey = " ".join((*vocabulary.asking["journey"], goal, vocabulary.word("then")))
             is_verb = words.split()[0].lower() in asking_verbs(vocabulary)  # but not `keep asking Bob`
-            fixed = f"{journey} {words[:1].lower()}{words[1:]}" if is_verb else f"{journey} ..."
+            fixed = with_journey_first(goal, words if is_verb else "...", vocabulary)
             yield diagnostic("BT149", phrase.span, words=words, person=goal, fixed=fixed)
             return
         is_at_thing = {phrase.entry.slot(name).type for name, _ in phrase.arguments} == {OBJECT}
