@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from itertools import islice, pairwise
 
 from btlang.diagnostics.diagnostic import MissionError
-from btlang.frontends.mission.explanations.unknown import example_commands
+from btlang.frontends.mission.explanations.suggestions import example_commands
 from btlang.repl.draft import MissionDraft
 from btlang.run.robot_state import read_robot
 from btlang.text.output import is_unicode

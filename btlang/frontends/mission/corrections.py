@@ -19,7 +19,7 @@ from itertools import islice, product
 
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.frontends.mission.explanations.spelling_rule import is_respelling, words_of
-from btlang.frontends.mission.explanations.unknown import nearest_known
+from btlang.frontends.mission.explanations.suggestions import nearest_known
 from btlang.frontends.mission.grouping.grouping import Grouped, group
 from btlang.frontends.mission.symbols.prefixes import find_prefixes
 from btlang.frontends.mission.token import Called, Header, Listed, NodeCall, Token

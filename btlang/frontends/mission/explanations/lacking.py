@@ -28,7 +28,8 @@ def untold(text: Words, at: int, end: int, vocabulary: Lexicon) -> Diagnostic | 
                 said, value = next((part, value) for part, value in parts if not is_told(kinds[0], part))
                 part, span = DENIED.get(said, said), text.span(i, last)
                 line = f'{part} = ["{value}"]' if part == "state" else f'{part} = "{value}"'
-                return diagnostic("BT178", span, words=span.text, part=part, type=kinds[0], line=line)
+                unknown = diagnostic("BT178", span, words=span.text, part=part, type=kinds[0], line=line)
+                return unknown.advising(f"Or leave out '{span.text}'")
     return None
 
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import re
 from bisect import bisect_left
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.explanations.fragments import explain_fragment
@@ -15,6 +14,7 @@ from btlang.frontends.mission.explanations.nameless import KIND_NAMES, near_name
 from btlang.frontends.mission.explanations.nearest_phrases import nearest_phrases
 from btlang.frontends.mission.explanations.roles import explain_role
 from btlang.frontends.mission.explanations.spelling_rule import is_respelling
+from btlang.frontends.mission.explanations.suggestions import defined, examples, heard, nearest_known
 from btlang.frontends.mission.explanations.times import explain_time, without_hour
 from btlang.frontends.mission.symbols.definitions import Definitions
 from btlang.frontends.mission.symbols.nodes import misread_form, misread_node
@@ -35,11 +35,9 @@ from btlang.text.spelling import nearest
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
 from btlang.vocabulary.node_words import BEHIND_ID, near_commands, role_end
-from btlang.vocabulary.pattern import forms, spelled
 from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.value_type import OBJECT, PLACE, WORLD, ValueType, with_unit
-from btlang.vocabulary.verbs import canonical
+from btlang.vocabulary.value_type import PLACE, WORLD, ValueType, with_unit
 from btlang.vocabulary.word_tree import SLOTS, find
 
 _BEFORE_TIMES = ("until", "wait_until", "before", "after")
@@ -286,14 +284,14 @@ def _unknown_phrase(
     if near_node and near_node[0] not in vocabulary.nodes.values():  # `do wavee`
         return diagnostic("BT010", span, fix=(span, near_node[0]), kind=kind, words=span.text,
                           help=nearest_known(near_node[:3]))  # fmt: skip
-    node = misread_node(text, at, vocabulary) if is_node else None
-    if node is not None:
-        advice = f"A node by its id: {' or '.join(node[1])}"
-        return diagnostic("BT010", node[0], fix=(node[0], node[1][0]), kind="node", words=node[0].text, help=advice)
     if is_node and at + 1 < end and at + 1 in text.articles and not any(f" {name} " in written for name in names):
         name = text.span(at + 1, end)  # `do the round`
         advice = f"To give commands this name, write them in a line of their own: {name.text} is ..."
         return diagnostic("BT010", name, kind="name", words=name.text, help=advice)
+    node = misread_node(text, at, vocabulary) if is_node else None
+    if node is not None:
+        advice = f"A node by its id: {' or '.join(node[1])}"
+        return diagnostic("BT010", node[0], fix=(node[0], node[1][0]), kind="node", words=node[0].text, help=advice)
     listed = _listed(text, at, before, vocabulary)
     if listed is not None:
         return unnamed(span, [listed], "", vocabulary)
@@ -301,17 +299,25 @@ def _unknown_phrase(
     near = dict(inside) | dict(nearest_phrases(tuple(text.words[at:end]), vocabulary, tuple(names))) | dict(inside)
     # what is wrong stands behind a phrase that begins as it is written
     near = {one: words for one, words in near.items() if not written.startswith(f" {one.partition(' {')[0]} ")}
+    further = (heard if kind == "condition" else defined)(text, at, end, before, vocabulary)
     if not near:  # a value alone, in a list or where the other words are left out: `if Allice or Bob is near`
         values = [name for kind in WORLD if kind in vocabulary.types for name in vocabulary.values.said_names(kind)]
         word = text.words[at]
         near_values = nearest(word, values) if word.isalpha() else []
-        value = [one for one in near_values if any(is_respelling(word, of, vocabulary) for of in one.lower().split())]
+        words_of = ((one, one.lower().split()) for one in near_values)
+        value = [one for one, said in words_of
+                 if word not in said and any(is_respelling(word, of, vocabulary) for of in said)]  # fmt: skip
         fix = (text.span(at, at + 1), value[0]) if value else None
-        advice = nearest_known(value) if value else _examples(vocabulary, kind)
-        return diagnostic("BT010", span, fix=fix, kind=kind, words=span.text, help=advice)
+        advice = nearest_known(value) if value else examples(vocabulary, kind)
+        unknown = diagnostic("BT010", span, fix=fix, kind=kind, words=span.text, help=advice)
+        return unknown if value or not further else unknown.advising(further)
     likely, words = next(iter(near.items()))
-    fix = (text.span(at, min(at + words, end)), likely.partition(" {")[0])
-    return diagnostic("BT010", span, fix=fix, kind=kind, words=span.text, help=nearest_known(near))
+    start = likely.partition(" {")[0]
+    pairs = zip(text.words[at:end], start.lower().split(), strict=False)
+    is_misspelt = all(one == other or is_respelling(one, other, vocabulary) for one, other in pairs)
+    fix = (text.span(at, min(at + words, end)), start)
+    unknown = diagnostic("BT010", span, fix=fix, kind=kind, words=span.text, help=nearest_known(near))
+    return unknown if is_misspelt or not further else unknown.advising(further)
 
 
 _ASKING = frozenset((
@@ -325,36 +331,6 @@ def _asks(before: Sequence[Token]) -> bool:
     """Whether a condition belongs after these tokens."""
     kinds = [token.kind for token in before if token.kind not in _BEFORE_ANY]
     return kinds[-1:] != [] and (kinds[-1] in _ASKING or (kinds[-1] == "once" and asks_once(before, len(before) - 1)))
-
-
-def _examples(vocabulary: Lexicon, sort: str = "command") -> str:
-    """Three commands, or conditions, about what there is in the world, where nothing is like the words."""
-    found: list[str] = []
-    for kind in (OBJECT, "person", "door") if sort == "condition" else ():
-        names = vocabulary.values.said_names(kind) if kind in vocabulary.types else []
-        asking = (entry for entries in vocabulary.entries.values() for entry in entries if entry.sort == "condition")
-        said = next((way for entry in asking for way in entry.phrases[:1] if re.findall(r"{(\w+)}", way) == [kind]), "")
-        found += [re.sub(r"\{\w+\}", names[0], said)] if said and names else []
-    found = found or example_commands(vocabulary)
-    return f"I understand for example: {'; '.join(found)}" if found else "'btc words' lists what I know."
-
-
-def example_commands(vocabulary: Lexicon) -> list[str]:
-    """Up to three commands about what there is in the world, in the words of a vocabulary."""
-    found: list[str] = []
-    for kind in (PLACE, OBJECT, "person"):
-        names = vocabulary.values.said_names(kind) if kind in vocabulary.types else []
-        entries = (entry for entries in vocabulary.entries.values() for entry in entries if entry.verbs)
-        ways = (forms(canonical(verbs[0], roles[:1])) for entry in entries for verbs, roles in entry.verbs[:1]
-                if roles and roles[0].type == kind and not any(role.is_needed for role in roles[1:]))  # fmt: skip
-        said = next((spelled(way[0]) for way in ways), "") if names else ""
-        found += [re.sub(r"\{\w+\}", names[0], said)] if said else []
-    return found
-
-
-def nearest_known(words: Iterable[str]) -> str:
-    """The advice that lists what was probably meant."""
-    return "Similar: " + ", ".join(re.sub(r"\{\w+\}", "...", phrase) for phrase in words)
 
 
 def _article(word: str) -> str:

@@ -270,7 +270,9 @@ class Mentions:
         is_met = self._text.words[value.last] in self._vocabulary.asking["who"]  # `greet each visitor who comes in`
         if value.group and not choice.parts and not is_met:
             kind = f'kind = "{sort}"'
-            self.problems.append(diagnostic("BT178", span, words=span.text, part="kind", type=PERSON, line=kind))
+            unknown = diagnostic("BT178", span, words=span.text, part="kind", type=PERSON, line=kind)
+            names = self._vocabulary.values.said_names(PERSON)
+            self.problems.append(unknown.advising(f"Or name them, for example: {names[0]}"))
         else:
             self.problems.append(diagnostic("BT255", span, words=span.text, sort=sort))
 
@@ -293,7 +295,8 @@ class Mentions:
                 if value.type == PLACE and value.text not in listed and not known.likenesses.says(PLACE, OWNER):
                     span = self._text.span(first, value.last)
                     whose = f'{OWNER} = "{"me" if owner is None else owner[0]}"'
-                    problem = diagnostic("BT178", span, words=span.text, part=OWNER, type=PLACE, line=whose)
+                    unknown = diagnostic("BT178", span, words=span.text, part=OWNER, type=PLACE, line=whose)
+                    problem = unknown.advising(f"Or name the place, for example: {known.said_names(PLACE)[0]}")
                 else:
                     span = self._text.span(first, last)
                     problem = diagnostic("BT177", span, words=span.text)
