@@ -312,10 +312,10 @@ def _unknown_phrase(
         unknown = diagnostic("BT010", span, fix=fix, kind=kind, words=span.text, help=advice)
         return unknown if value or not further else unknown.advising(further)
     likely, words = next(iter(near.items()))
-    start = likely.partition(" {")[0]
-    pairs = zip(text.words[at:end], start.lower().split(), strict=False)
+    meant_start = likely.partition(" {")[0]
+    pairs = zip(text.words[at:end], meant_start.lower().split(), strict=False)
     is_misspelt = all(one == other or is_respelling(one, other, vocabulary) for one, other in pairs)
-    fix = (text.span(at, min(at + words, end)), start)
+    fix = (text.span(at, min(at + words, end)), meant_start)
     unknown = diagnostic("BT010", span, fix=fix, kind=kind, words=span.text, help=nearest_known(near))
     return unknown if is_misspelt or not further else unknown.advising(further)
 
