@@ -60,9 +60,9 @@ def heard(text: Words, at: int, end: int, _: Sequence[Token], vocabulary: Lexico
 
 def defined(text: Words, at: int, end: int, before: Sequence[Token], vocabulary: Lexicon) -> str:
     """Return the advice to define words as a command, "" where they hardly name what is done."""
-    words = text.words[at:end]
+    words, asks = text.words[at:end], vocabulary.values.texts.asks
     goes_on = bool(before) and before[-1].kind in ("command", "condition")
-    is_name = 1 < len(words) <= _LONGEST_NAME and all(word.isalnum() for word in words)
+    is_name = 1 < len(words) <= _LONGEST_NAME and all(word.isalnum() and not asks(word) for word in words)
     if goes_on or not is_name or not vocabulary.values.role_words.prepositions.isdisjoint(words):
         return ""
     return f"To teach it, define it first: {text.span(at, end).text} is ..."

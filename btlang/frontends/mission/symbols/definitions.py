@@ -187,6 +187,8 @@ def _header(
         return Header(text.words[start][1:], text.span(start, at), at + 1, reach(text, at), is_quoted=True)
     asking = phrases.vocabulary.asking
     is_weak = text.words[at] not in phrases.vocabulary.roles["define_strong"]
+    if is_weak and at > start and phrases.vocabulary.values.texts.asks(text.words[at - 1]):
+        return None  # `see who is in the lab`
     if (is_weak and _begins_question(phrases, start, at)) or (
         start == at and text.words[at] in asking["asking_be"] and (start == first or text.words[start - 1] == ",")
     ):

@@ -180,6 +180,9 @@ class AddressedTexts(Hearers):
         clear.update(self._said_lists(value.first, end))
         doubtful = (place for place in range(value.first, end) if texts.doubt(text, place, place + 1, clear))
         self._doubt(entry, next(doubtful, 0), said=(command, value.first, end))
+        is_noun = value.first in text.articles or self._context.read(PLACE, text, value.first) is not None
+        if is_noun and not is_thing:  # `get Bob to the lab`
+            self._doubt(entry, value.first, "begins no request that I know")
         slot = self._ask_instead(command) if is_thing and text.words[end - 1] in asking["told_about"] else ""
         if slot:  # `ask Bob for his name`
             question = f"{asking['what_is'][0].capitalize()} {texts.written(heard, value.first, end)}?"
@@ -189,8 +192,7 @@ class AddressedTexts(Hearers):
             return end
         kind = "plea_for" if is_thing else "reminder" if text.words[at] in asking["reminding"] else "plea"
         said = asking["plea_for_help" if helps else kind][0].capitalize()
-        if not helps:
-            said += f" {texts.written(heard, value.first, end)}"
+        said += "" if helps else f" {texts.written(heard, value.first, end)}"
         self._set_text(command, value.name, said)
         command.end = text.ends[end - 1]
         self._tokens.append(command)
