@@ -15,6 +15,7 @@ from btlang.robots.robot import Hands, Navigation, Perception
 from btlang.robots.worlds.descriptions import describe_relations
 from btlang.robots.worlds.likeness import describe
 from btlang.robots.worlds.world import said
+from btlang.text.formatting import joined
 from btlang.vocabulary.references import choice_of
 
 TYPE_CHECKING = False
@@ -26,6 +27,7 @@ Found: TypeAlias = Callable[[str], object]
 COUNT = "@_count"
 """The blackboard key of the last count."""
 _COUNTED, _PERSON = "@_counted", "person"  # what the last count was of: a kind, or a type of things
+_NAMES = "@_counted_names"
 _AROUND = 360.0
 
 
@@ -140,6 +142,14 @@ def count(blackboard: Blackboard) -> int | Failed:
     return int(blackboard.get(COUNT))
 
 
+def counted_names(blackboard: Blackboard) -> str | Failed:
+    """Return who or what the robot counted last, of those at the place where it did. Fails if it hasn't counted."""
+    if _NAMES not in blackboard:
+        raise ActionFailed("nothing was counted")
+    names = blackboard.get(_NAMES)
+    return joined(names) if names else "nobody" if blackboard.get(_COUNTED) == _PERSON else "nothing"
+
+
 def counted(
     blackboard: Blackboard,
     below: float | None = None,
@@ -182,6 +192,8 @@ def _count(
             found.update(*map(robot.seen, types))
     if of_kind:
         found &= set(of_a_kind(robot, what))
+    there = found if place is None else set[str]().union(*(robot.described(type, {"at": place}) for type in types))
+    blackboard.set(_NAMES, sorted(found & there))
     blackboard.set(COUNT, len(found))
     blackboard.set(_COUNTED, what)
 

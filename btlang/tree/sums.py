@@ -5,9 +5,10 @@ Where somebody asks for the number behind several counts of one command, these a
 
 from __future__ import annotations
 
-from collections.abc import Container, Sequence
+from collections.abc import Container, Iterator, Sequence
 from functools import partial
 
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.tree import ast
 from btlang.tree.visit import fold
 from btlang.vocabulary.entry import COUNT, Entry
@@ -16,30 +17,49 @@ from btlang.vocabulary.value_type import number_type
 
 COUNTING = frozenset(("CountPeople", "CountObjects", "CountKind"))
 """The ids of commands that count."""
+COUNTED_NAMES = "CountedNames"
+"""The id of the quantity that is the names of what was counted last."""
 COMPARED = "Counted"
 """The id of the condition about what was counted last."""
 _IN_TURN = ("sequence", "and")
 """Operators of chains whose commands run one after another: one that counts goes with nothing else."""
 _Made = tuple[ast.Ast, bool]
 """A node, and whether it counts."""
+_LOST = "only the names of the place that was counted last are known by then; say them in each place"
 _TOTAL, _LAST = "counted_in_all", "counted_there"
 
 
-def with_sums(mission: ast.Program, vocabulary: Lexicon) -> ast.Program:
-    """Return the mission with the sums that it asks for."""
+def with_sums(mission: ast.Program, vocabulary: Lexicon) -> tuple[ast.Program, list[Diagnostic]]:
+    """Return the mission with the sums that it asks for, and what is wrong with it.
+
+    That is names that are asked for behind several counts, of which only the last ones are kept (BT049).
+    """
     count, number = vocabulary.entry(COUNT), number_type(vocabulary.types)
     if count is None or number is None:
-        return mission
-    sums = _Sums(count, number)
+        return mission, []
+    sums, problems = _Sums(count, number), list[Diagnostic]()
 
     def body(root: ast.Ast) -> ast.Ast:
-        is_asked = any(map(asks_for_number, ast.parents_first(root)))
-        return fold(root, ast.parts, sums.add_sum)[0] if is_asked else root
+        nodes = ast.parents_first(root)
+        if any(map(_is_names, nodes)):
+            lost = (each for node in nodes if isinstance(node, ast.Chain) for each in _lost_names(node))
+            problems.extend(diagnostic("BT049", each.span, words=each.span.text, reason=_LOST) for each in lost)
+        return fold(root, ast.parts, sums.add_sum)[0] if any(map(asks_for_number, nodes)) else root
 
     def program(part: ast.Program) -> ast.Program:
         return ast.with_bodies(part, body, program)
 
-    return program(mission)
+    return program(mission), problems
+
+
+def _lost_names(chain: ast.Chain) -> Iterator[ast.Ast]:
+    """Yield what asks for names behind a command of a sequence that counts in each place of a list or set."""
+    counts_several = False
+    for item in chain.items if chain.operator in _IN_TURN else ():
+        if counts_several:
+            yield from (node for node in ast.parents_first(item) if _is_names(node))
+        if _counts(item):
+            counts_several = _last_count(item)[1] is not None
 
 
 class _Sums:
@@ -110,6 +130,11 @@ class _Sums:
 def _is_count(node: ast.Ast) -> bool:
     """Whether a node counts."""
     return isinstance(node, ast.Phrase) and node.entry.id in COUNTING
+
+
+def _is_names(node: ast.Ast) -> bool:
+    """Whether a node keeps the names of what was counted last."""
+    return isinstance(node, ast.Remember) and node.entry.id == COUNTED_NAMES
 
 
 def _is_number(node: ast.Ast) -> bool:

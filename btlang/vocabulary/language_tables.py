@@ -52,14 +52,15 @@ ASKING = (
     "pausing", "working", "stops", "at_least", "pairs", "telling_to", "says",
     "reporting", "told_pronouns", "replying", "missed", "outside", "at_once", "some_time", "judged",
     "until_none", "rounds", "obliging", "failing", "found", "counted", "replied",
-    "so", "being", "causing", "asking_for", "plea_for", "helping", "plea_for_help",
+    "so", "being", "counting_people", "counting_things", "what",
+    "causing", "asking_for", "plea_for", "helping", "plea_for_help",
     "speaking", "spoken_of", "still", "motionless", "who", "somebody", "answering", "likewise",
     "foremost", "numbers", "in_all", "throughout", "postures", "opinions", "supposing", "rooms", "left_there",
     "sorts_of_people", "remaining", "entering", "turning_to", "ended", "fewer", "having", "putting", "denied",
 )  # fmt: skip
 """What the table `asking` of a language may have; without it there are no questions, and no remarks."""
 
-QUESTIONS = ("ask_value", "ask_where", "ask_how_many")
+QUESTIONS = ("ask_value", "ask_where", "ask_how_many", "ask_who", "find_who")
 """The roles of words that begin questions; "there_are" are words that may end one."""
 
 ORDER = (

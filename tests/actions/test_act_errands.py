@@ -293,6 +293,18 @@ def test_count(bench):
     assert search.count(board) == 1
 
 
+def test_the_names_of_what_was_counted_are_those_at_the_place(bench):
+    b, board = bench(load_world()), Blackboard()
+    with pytest.raises(ActionFailed, match=r"^nothing was counted$"):
+        search.counted_names(board)
+    b.run(search.count_people, blackboard=board, place="kitchen")
+    assert search.counted_names(board) == "Alice"
+    b.run(search.count_people, blackboard=board, place="lobby")
+    assert search.counted_names(board) == "nobody"
+    b.run(search.count_kind, blackboard=board, kinds="cup", place="lobby")
+    assert search.counted_names(board) == "nothing"
+
+
 def test_take_a_picture(bench):
     b = bench(load_world())
     b.run(navigation.go_to, place="kitchen")

@@ -38,7 +38,7 @@ NEEDS = {
     "ComeToMe": ("I see nobody", "go to Alice"),
     "LookAtObject": ("the cup is behind the robot; the head can't turn that far", "face the cup"),
 }
-UNKNOWN_AT_THE_START = {"Answer", "Count", "Counted"}
+UNKNOWN_AT_THE_START = {"Answer", "Count", "Counted", "CountedNames"}
 """Nobody has been asked, and nothing counted."""
 HOLDS_AT_THE_START = {
     "HandEmpty", "PathClear", "BatteryFull", "DistanceAhead", "DistanceToPlace", "DistanceToPerson", "DistanceToObject",
@@ -157,6 +157,7 @@ def heads(lines: list[str]) -> list[str]:
                 "count {kinds} [in {place}]",
                 "there are fewer than {below}  (condition)",
                 "last count is below {value}  (condition)",
+                "names of those counted is below {value}  (condition)",
                 "twice, thrice, forever, endlessly, over and over, again and again, in loop,",
                 "{count}     a whole number from 1 on",
                 "{counted}   objects, people",

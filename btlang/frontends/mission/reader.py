@@ -68,11 +68,12 @@ def read_mission(
 
 
 def _whole(mission: Program, vocabulary: Lexicon) -> tuple[Program, list[Diagnostic]]:
-    """A mission with what takes all of it to know, and what there is to say about it. Raises MissionError (BT144)."""
+    """A mission with what takes all of it to know, and what there is to say. Raises MissionError (BT049, BT144)."""
     looped = with_rounds(mission, vocabulary)
-    answered, problems = with_answers(with_sums(with_ends(looped), vocabulary))
-    if problems:
-        raise MissionError(problems)
+    summed, lost = with_sums(with_ends(looped), vocabulary)
+    answered, problems = with_answers(summed)
+    if problems or lost:
+        raise MissionError([*problems, *lost])
     return resolve(answered, vocabulary)
 
 

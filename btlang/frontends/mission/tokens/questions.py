@@ -5,47 +5,45 @@ Each becomes the commands that answer it: what is asked is measured, and said.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from functools import cached_property
+
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.token import (
     JOINTS,
     STATEMENT_ENDS,
     Called,
     Listed,
-    Remembered,
     Token,
-    arguments_of,
     drives,
-    statement_start,
 )
 from btlang.frontends.mission.tokens.addressed_texts import TELL
-from btlang.frontends.mission.tokens.answers import Answers
-from btlang.frontends.mission.tokens.counted_answers import COUNTED
-from btlang.frontends.mission.tokens.sentence_reader import is_question, latest_question
+from btlang.frontends.mission.tokens.counting_questions import ANSWER, NAMED, CountingQuestions
+from btlang.frontends.mission.tokens.sentence_reader import is_question
 from btlang.frontends.mission.tokens.settling import IMPLIED
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT
-from btlang.tree.answers import EXAMPLE
-from btlang.tree.sums import COUNTING
-from btlang.vocabulary.entry import COUNT, RECIPIENT, SAY, Entry, Meaning
+from btlang.tree.sums import COUNTED_NAMES, COUNTING
+from btlang.vocabulary.entry import COUNT, RECIPIENT, Entry, Meaning
 from btlang.vocabulary.match import Match
-from btlang.vocabulary.references import free_key, key_of
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.value_type import KINDS, PERSON, PLACE, TEXT
+from btlang.vocabulary.value_type import PERSON, TEXT
 from btlang.vocabulary.word_tree import find
 
-_ANSWER = "Answer"
 _BETWEEN = (*JOINTS, *STATEMENT_ENDS)
-_OF_SEVERAL = "could be that of any of those who were asked"
 _MOST_WORDS = 8  # of the subject of a question
-_MOST_BEFORE_REPLY = 3  # `how many people said yes`
 _DEPENDS = "may begin what is told, as 'whether' does, or say when it is told"
 
 
-class Questions(Answers):
+class Questions(CountingQuestions):
     """Those of one text."""
 
-    @property
-    def _saying(self) -> Entry | None:
-        return self._vocabulary.entry(SAY)
+    @cached_property
+    def _readers(self) -> Mapping[str, Callable[..., int]]:
+        """What reads the words behind the words of each role, up to where it returns; 0 if they ask for nothing."""
+        return {
+            "ask_value": self._asked, "ask_where": self._where, "ask_how_many": self._how_many, "ask_who": self._who,
+            "find_who": self._find_who,
+        }  # fmt: skip
 
     def _measured(self, at: int) -> Match | None:
         """The quantity that words name."""
@@ -56,7 +54,7 @@ class Questions(Answers):
         """`what is the battery?`, `what the battery is`"""
         measured = self._measured(end)
         if measured is None:
-            return 0
+            return self._what(at, end, command, slot)
         behind = self._phrase(measured.last)
         last = behind.last if behind is not None and behind.meaning.role == "there_are" else measured.last
         if command is not None and self._text.words[last] in self._vocabulary.values.texts.inverting:
@@ -116,8 +114,9 @@ class Questions(Answers):
         before = next((each for each in done if not drives(each.value) or _finds_out(each)), None)
         if before is None or not isinstance(before.value, Called | Listed) or not self._ends(end):
             return 0
-        counts = before.value.entry.id in COUNTING
-        entry = self._vocabulary.entry(COUNT if counts else _ANSWER) if _finds_out(before) else None
+        counted = COUNT if before.role != NAMED else COUNTED_NAMES
+        found = counted if before.value.entry.id in COUNTING else ANSWER
+        entry = self._vocabulary.entry(found) if _finds_out(before) else None
         if entry is None:
             return 0
         command = Token("command", self._text.starts[at], self._text.ends[end - 1], told)
@@ -144,7 +143,7 @@ class Questions(Answers):
             return measured.last
         asked = self._phrase(first)
         role = asked.meaning.role if asked is not None else ""
-        read = {"ask_value": self._asked, "ask_where": self._where, "ask_how_many": self._how_many}.get(role)
+        read = self._readers.get(role)
         if asked is None or read is None:
             return 0
         return read(at, asked.last, Token("command", text.starts[at], text.ends[asked.last - 1], said), slot)
@@ -210,81 +209,6 @@ class Questions(Answers):
             Token("command", at, at, no),
         ]  # fmt: skip
 
-    def _how_many(self, at: int, end: int, command: Token | None = None, slot: str = "") -> int:
-        """`how many people are there?`"""
-        if answered := self._how_many_said(at, end, command, slot):
-            return answered
-        counted, count = self._counted(end), self._vocabulary.entry(COUNT)
-        if counted is None:
-            return self._say_last_count(at, end, command, slot)
-        is_over = not set(self._vocabulary.asking["counted"]).isdisjoint(self._text.words[end : counted.last])
-        is_over = (is_over and self._has_counted()) or self._has_counted(counted)
-        if is_over and count is not None and self._ends(counted.last):  # `say how many people you saw`
-            self._say(at, Match(Meaning("quantity", count), counted.last), command, slot)
-            return counted.last
-        return self._say_count(at, counted, command, slot) if self._ends(counted.last) else 0
-
-    def _how_many_said(self, at: int, end: int, command: Token | None, slot: str) -> int:
-        """`ask everyone "Tea?", then tell Bob how many said yes`: the answers that are counted."""
-        text, asking = self._text, self._vocabulary.asking
-        places = range(end, min(end + _MOST_BEFORE_REPLY, self._end_of_statement(end)))
-        verb = next((place for place in places if text.words[place] in asking["replying"]), 0)
-        answer = text.words[verb + 1].removeprefix('"') if verb else ""
-        if not verb or not self._ends(verb + 2) or latest_question(self._tokens) is None:
-            return 0
-        key = free_key(key_of([*answer.split(), asking["replying"][0]]), self._context.known or ())
-        if command is None:
-            command = Token("command", text.starts[at], text.ends[verb + 1], self._saying_of(f"{{{key}}}"))
-        else:
-            self._set_text(command, slot, f"{{{key}}}")
-        command.role, command.end = f"{COUNTED}|{answer}|{key}", text.ends[verb + 1]
-        self._tokens.append(command)
-        return verb + 2
-
-    def _say_last_count(self, at: int, end: int, command: Token | None, slot: str) -> int:
-        """`count the boxes, then tell me how many there are`, `then say how many`: what was counted."""
-        behind, count = self._phrase(end), self._vocabulary.entry(COUNT)
-        is_there = behind is not None and behind.meaning.role == "there_are"
-        last = behind.last if behind is not None and is_there else end
-        if count is None or not self._ends(last) or not (is_there or self._has_counted()):
-            return 0
-        self._say(at, Match(Meaning("quantity", count), last), command, slot)
-        return last
-
-    def _has_counted(self, things: Match | None = None) -> bool:
-        """Whether something has been counted before; `things` that are counted nowhere else, last of all."""
-        said = [token.value for token in self._tokens]
-        counts = [value for value in said if isinstance(value, Called | Listed) and value.entry.id in COUNTING]
-        if things is None or not counts or any(value.type == PLACE for value in things.values):
-            return things is None and bool(counts)
-        kinds = {value.text for value in things.values if value.type == KINDS}
-        last, given = counts[-1].entry, arguments_of(counts[-1])[-1]
-        return last is things.meaning.entry and kinds == {*last.given(KINDS, given)}
-
-    def _counted(self, at: int) -> Match | None:
-        """The command that counts what words name, with the words that may stand behind that."""
-        counted = self._with_front(at - 1, at, "counting")
-        if counted is None:
-            return None
-        behind = self._phrase(counted.last)
-        if behind is None or behind.meaning.role != "there_are":
-            return counted
-        counting, left_out = self._vocabulary.asking["counting"], range(counted.last, behind.last)
-        wider = self._partial.with_front(at - 1, at, counting, left_out=left_out)
-        if wider is not None and wider.last > behind.last:
-            return wider  # `how many people are there in the lab`
-        made: Match = counted.replace(last=behind.last)
-        return made
-
-    def _say_count(self, at: int, counted: Match, command: Token | None = None, slot: str = "") -> int:
-        count = self._vocabulary.entry(COUNT)
-        if count is None:
-            return 0
-        self._tokens.append(self._calls.token(counted, at))
-        self._tokens.append(Token("and", self._text.starts[at], self._text.starts[at]))  # `in each room, say how many`
-        self._say(at, counted.replace(meaning=counted.meaning.replace(entry=count), values=()), command, slot)
-        return counted.last
-
     def _whether(self, at: int) -> int:
         """`is the battery low?`, `do you see Alice?`: says yes or no."""
         text, word = self._text, self._text.words[at]
@@ -335,50 +259,6 @@ class Questions(Answers):
         if match is None or match.last != places[-1] or match.meaning.role not in ("condition", "negated"):
             return None
         return match
-
-    def _saying_of(self, words: str) -> Called:
-        assert self._saying is not None
-        return Called(self._saying, ((self._saying.slots[0].name, words),))
-
-    def _then(self, at: int) -> None:
-        self._tokens.append(Token("then", self._text.starts[at], self._text.starts[at]))
-
-    def _say(self, at: int, measured: Match, command: Token | None = None, slot: str = "", adds: bool = False) -> None:
-        """Remembers what is measured and says it, with a command or the one that says."""
-        entry, text = measured.meaning.entry, self._text
-        assert entry is not None
-        if entry.id == _ANSWER and self._asks_several():
-            words = text.span(at, measured.last)
-            problem = diagnostic("BT144", words, words=words.text, problem=_OF_SEVERAL, example=EXAMPLE)
-            self._calls.problems.append(problem)
-        key = self._key(entry)
-        start, end = text.starts[at], text.ends[measured.last - 1]
-        remembered = Remembered(key, entry, self._calls.arguments(entry, measured.values))
-        self._tokens.append(Token("command", start, end, remembered))
-        self._then(at)
-        if command is None:
-            command = Token("command", start, end, self._saying_of(f"{{{key}}}"))
-        else:
-            self._set_text(command, slot, f"{{{key}}}", adds)
-            command.end = end
-        self._tokens.append(command)
-
-    def _asks_several(self) -> bool:
-        """Whether the latest question went to several people: `ask each of them "Tea?", then say what they said`."""
-        asked = latest_question(self._tokens)
-        if asked is None or isinstance(asked.value, Listed):
-            return asked is not None
-        said = {text for _, text in asked.value.arguments} if isinstance(asked.value, Called) else set()
-        before = self._tokens[: self._tokens.index(asked)]
-        if statement_start(self._tokens, len(self._tokens)) <= len(before):
-            return False  # in the round
-        return any(self._calls.is_round(token, text) for token in before for text in said if text[:1] == "{")
-
-    def _key(self, entry: Entry) -> str:
-        """A free key for what a quantity measures, by its words."""
-        words = entry.quantity[0].split()
-        slot = next((at for at, word in enumerate(words) if "{" in word), len(words) + 1)
-        return free_key(key_of(words[: slot - 1]), self._context.known or ())
 
 
 def _finds_out(token: Token) -> bool:

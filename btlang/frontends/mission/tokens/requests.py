@@ -34,7 +34,7 @@ class Requests(Questions):
         """A question at the start of a statement."""
         if self._saying is None:
             return 0
-        read = {"ask_value": self._asked, "ask_where": self._where, "ask_how_many": self._how_many}.get(role)
+        read = self._readers.get(role)
         return read(at, match.last) if match is not None and read is not None else self._whether(at)
 
     def value_in(self, match: Match, at: int, command: Token) -> int:
@@ -88,8 +88,9 @@ class Requests(Questions):
             return 0  # a text that nobody says is its words: `listen for the bell`
         text, first = self._text, value.first
         asked = self._phrase(first)
-        if asked is not None and asked.meaning.role == "ask_how_many":
-            return self._how_many(at, asked.last, command, value.name)
+        if asked is not None and asked.meaning.role in ("ask_how_many", "ask_who"):
+            if end := self._readers[asked.meaning.role](at, asked.last, command, value.name):
+                return end
         is_timed = asked is not None and asked.meaning.role == "as_soon_as"
         if entry.id == TELL and (is_timed or text.words[first] in self._vocabulary.roles["and"]):
             return self._inform(at)  # `tell Bob and wave`, `tell Bob as soon as the door is open`
