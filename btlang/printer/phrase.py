@@ -166,9 +166,11 @@ def _read_back_value(text: str, kind: ValueType, vocabulary: Lexicon) -> str:
 
 def _ways(text: str, kind: ValueType, vocabulary: Lexicon) -> list[str]:
     """List the ways to say a text, the most natural first."""
+    choice = choice_of(text) if text.startswith("{") else None
+    if choice is not None:
+        return [vocabulary.values.choice_words(choice)]
     if text.startswith("{") and kind.kind != "text":
-        choice = choice_of(text)
-        return [vocabulary.values.choice_words(choice) if choice is not None else text]
+        return [text]
     if kind.kind == "quantity":
         return [with_unit(text, kind.units[0].words[0])]
     if kind.kind in ("number", "time"):

@@ -11,8 +11,8 @@ from btlang.tree.answers import EXAMPLE
 from btlang.tree.sums import COUNTED_NAMES, COUNTING
 from btlang.vocabulary.entry import COUNT, SAY, Entry, Meaning
 from btlang.vocabulary.match import Match
-from btlang.vocabulary.references import free_key, key_of
-from btlang.vocabulary.value_type import KINDS, PLACE
+from btlang.vocabulary.references import choice_of, free_key, key_of
+from btlang.vocabulary.value_type import KINDS, OBJECT, PLACE
 
 ANSWER = "Answer"
 """The id of the quantity that is the latest answer."""
@@ -113,7 +113,28 @@ class CountingQuestions(Answers):
         begin = end + (self._text.words[end] in self._vocabulary.forms_of_be)
         if not self._is_what(begin - 2) or self._text.words[begin - 1] not in self._vocabulary.forms_of_be:
             return 0
-        return self._say_names(at, begin, "counting_things", command, slot)
+        named = self._say_names(at, begin, "counting_things", command, slot)
+        return named or self._say_chosen(at, begin, command, slot)
+
+    def _say_chosen(self, at: int, begin: int, command: Token | None, slot: str) -> int:
+        """`what is the largest object on the table?`: looks there, chooses one, and says its name."""
+        thing = self._context.read(OBJECT, self._text, begin)
+        choice = choice_of(thing[0] or "") if thing is not None else None
+        counted = self._counted_there(thing[1], "counting_things") if thing is not None else None
+        if choice is None or counted is None:
+            return 0
+        there = next(value.text for value in counted.values if value.type == PLACE)
+        chosen = choice.replace(parts=(*choice.parts, ("at", there))).text
+        end = self._text.ends[counted.last - 1]
+        self._tokens.append(self._calls.token(counted, at))
+        self._then(at)
+        if command is None:
+            command = Token("command", self._text.starts[at], end, self._saying_of(chosen))
+        else:
+            self._set_text(command, slot, chosen)
+            command.end = end
+        self._tokens.append(command)
+        return counted.last
 
     def _is_what(self, at: int) -> bool:
         """Whether a word asks for things."""
