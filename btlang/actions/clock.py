@@ -35,6 +35,11 @@ def today_is(clock: Clock, days: str) -> bool | Failed:
     return not wanted.isdisjoint((today.lower(), kind)) or Failed(lambda: f"it is {today}")
 
 
+def day_of_week(clock: Clock) -> str:
+    """Return the name of the day, as Monday."""
+    return WEEKDAYS[clock.weekday]
+
+
 def time_now(clock: Clock) -> str:
     """Return the time of day, as 18:05."""
     return shown(clock.time_of_day)

@@ -56,7 +56,7 @@ class Requests(Questions):
         if is_so and entry.id in (SAY, TELL) and (said := self._asked_of()):  # `if you can't find it, say so`
             self._set_text(command, value.name, said)
             return 0
-        goes_on = entry.id == TELL and self._goes_on(value.last)  # `tell her it is late`
+        goes_on = entry.id == TELL and value.last == match.last and self._goes_on(value.last)  # `tell her it is late`
         if (is_pronoun or is_so) and value.last == value.first + 1 and not goes_on and entry.id in (SAY, TELL):
             self._doubt(entry, value.first)  # `say it again`
             return 0
