@@ -56,6 +56,7 @@ LONG: dict[str, str] = {
     "btlang/vocabulary/keyword_file.py": "what may stand in a keyword file, one table after the other",
     "btlang/vocabulary/reading_context.py": "what words stand for at a place of a mission",
     "btlang/vocabulary/lexicon.py": "all that the words of a language are made into, which is then frozen",
+    "docs/words.md": "made from the keyword files",
     "docs/engine.md": "tables of behaviour that the tests play",
     "docs/keywords.md": "every key of keyword files",
     "keywords/en/language.toml": "the words of English",
