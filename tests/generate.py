@@ -22,6 +22,7 @@ from btlang.task.commands import schema as command_schema
 from btlang.tree.catalogue import CATALOGUE, POST_CONDITIONS, PRE_CONDITIONS, NodeKind, Port
 from tests.cli_page import cli_page
 from tests.reference_pages import codes_page, nodes_page, words_page
+from tests.vscode_grammar import grammar
 
 ROOT = Path(__file__).parent.parent
 _TYPES = {"string": "string", "integer": "number", "number": "number", "boolean": "boolean", "null": "null"}
@@ -242,6 +243,7 @@ FILES: dict[str, Callable[[], str]] = {
     "docs/codes.md": codes_page,
     "docs/nodes.md": nodes_page,
     "docs/words.md": words_page,
+    "editors/vscode/syntaxes/btlang.tmLanguage.json": grammar,
     "grammar/mission.tables.json": grammar_tables,
 }
 """The files, with what makes the text of each."""

@@ -21,7 +21,7 @@ from btlang.vocabulary import keyword_file, language_tables
 from btlang.vocabulary.capabilities import CAPABILITIES
 
 ROOT = Path(__file__).parent.parent
-FOLDERS = ("btlang", "tests", "grammar", "keywords", "examples", "docs", ".ci")
+FOLDERS = ("btlang", "tests", "grammar", "keywords", "examples", "docs", "editors", ".ci")
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 LEFT_OUT = {"__pycache__", "samples", "dist", "node_modules"}
 
@@ -42,6 +42,7 @@ LONG: dict[str, str] = {
     "btlang/task/commands.schema.json": "made from the classes of commands",
     "examples/guide/robot.toml": "all of a humanoid",
     "btlang/web/package-lock.json": "made by npm",
+    "editors/vscode/package-lock.json": "made by npm",
     "btlang/robots/robot.py": "what robots can do, one capability after the other",
     "btlang/cli/verbs.py": "the table of verbs",
     "docs/cli.md": "made from the help of the commands",
