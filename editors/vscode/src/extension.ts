@@ -2,9 +2,8 @@
 import { dirname } from "node:path";
 import { commands, ExtensionContext, ProcessExecution, Task, TaskPanelKind, tasks, TaskScope, Uri, window, workspace } from "vscode";
 import { LanguageClient, RevealOutputChannelOn, State } from "vscode-languageclient/node";
-import { TreeView } from "./tree_view";
+import { isTest, TreeView } from "./tree_view";
 
-const ENDING = ".test.txt";
 let client: LanguageClient | undefined;
 let tree: TreeView | undefined;
 
@@ -40,7 +39,7 @@ async function connect(): Promise<void> {
   const command = setting("command", "btc");
   const folder = workspace.workspaceFolders?.[0]?.uri.fsPath;
   const files = setting<string[]>("otherFiles", []).map((pattern) => ({ scheme: "file", pattern }));
-  client = new LanguageClient(
+  client = new Client(
     "btlang",
     { command, args: ["lsp", ...setting<string[]>("options", [])], ...(folder ? { options: { cwd: folder } } : {}) },
     {
@@ -51,12 +50,22 @@ async function connect(): Promise<void> {
   try {
     await client.start();
     tree?.refresh();
-  } catch (error) {
-    const help = "Install it with pip install 'btlang[lsp]', or set btlang.command to its path.";
-    const chosen = await window.showErrorMessage(`'${command} lsp' can't be started. ${help}`, "Open Settings", "Show Output");
-    if (chosen === "Open Settings") await commands.executeCommand("workbench.action.openSettings", "btlang.command");
-    if (chosen === "Show Output") client.outputChannel.show();
-    client.outputChannel.appendLine(String(error));
+  } catch {
+    void offerHelp(command, client);
+  }
+}
+
+async function offerHelp(command: string, { outputChannel }: LanguageClient): Promise<void> {
+  const help = "Install it with pip install 'btlang[lsp]', or set btlang.command to its path.";
+  const chosen = await window.showErrorMessage(`'${command} lsp' can't be started. ${help}`, "Open Settings", "Show Output");
+  if (chosen === "Open Settings") await commands.executeCommand("workbench.action.openSettings", "btlang.command");
+  if (chosen === "Show Output") outputChannel.show();
+}
+
+/** A client that only writes to its output why it can't start: `offerHelp` says what to do about it. */
+class Client extends LanguageClient {
+  override error(message: string, data?: unknown, show: boolean | "force" = true): void {
+    super.error(message, data, this.state === State.Starting || this.state === State.StartFailed ? false : show);
   }
 }
 
@@ -70,7 +79,7 @@ async function start(uri: Uri | undefined, verb: "run" | "test", words: string[]
   const open = workspace.textDocuments.find((each) => each.uri.toString() === uri.toString());
   if (open?.isDirty && !(await open.save())) return;
   const folder = workspace.getWorkspaceFolder(uri);
-  const file = verb === "test" && !uri.fsPath.endsWith(ENDING) ? dirname(uri.fsPath) : uri.fsPath;
+  const file = verb === "test" && !isTest(uri) ? dirname(uri.fsPath) : uri.fsPath;
   const run = new ProcessExecution(setting("command", "btc"), [...words, file], { cwd: folder?.uri.fsPath ?? dirname(uri.fsPath) });
   const task = new Task({ type: "btlang", verb }, folder ?? TaskScope.Workspace, verb, "btlang", run, []);
   task.presentationOptions = { panel: TaskPanelKind.Dedicated, clear: true, showReuseMessage: false };

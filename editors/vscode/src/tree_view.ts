@@ -3,6 +3,12 @@ import { randomBytes } from "node:crypto";
 import { Disposable, Uri, ViewColumn, WebviewPanel, window, workspace } from "vscode";
 import { LSPErrorCodes, ResponseError } from "vscode-languageclient/node";
 
+const ENDING = ".test.txt";
+
+export function isTest(uri: Uri): boolean {
+  return uri.path.endsWith(ENDING);
+}
+
 export interface Drawing {
   svg: string;
   is_whole: boolean;
@@ -21,7 +27,7 @@ export class TreeView implements Disposable {
     this.listeners = Disposable.from(
       workspace.onDidChangeTextDocument(({ document }) => document.uri.toString() === this.uri?.toString() && this.redraw(REST)),
       window.onDidChangeActiveTextEditor((editor) => {
-        if (this.panel && editor?.document.languageId === "btlang") this.follow(editor.document.uri);
+        if (this.panel && editor?.document.languageId === "btlang" && !isTest(editor.document.uri)) this.follow(editor.document.uri);
       }),
     );
   }
@@ -90,7 +96,7 @@ label { float: right; }
 </style>
 </head>
 <body>
-<div><label><input type="checkbox" id="fit" checked> Fit the width</label><div id="said" role="status"></div></div>
+<div><label><input type="checkbox" id="fit" checked> Fit the width</label><div id="said" role="status">Waiting for the language server</div></div>
 <div id="tree" class="fit"></div>
 <script nonce="${nonce}">
 const vscode = acquireVsCodeApi();
@@ -99,7 +105,7 @@ fit.addEventListener("change", () => tree.classList.toggle("fit", fit.checked));
 addEventListener("message", ({ data }) => {
   tree.classList.toggle("old", !data.svg);
   if (data.svg) tree.innerHTML = data.svg;
-  said.textContent = data.is_whole ? "" : data.svg ? "Without what isn't understood" : "The text isn't understood yet";
+  said.textContent = data.is_whole ? "" : data.svg ? "Without the parts that aren't understood" : "The text isn't understood yet";
 });
 vscode.postMessage("ready");
 </script>
