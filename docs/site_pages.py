@@ -21,6 +21,7 @@ import btlang
 ROOT = Path(__file__).parent.parent
 CONTENTS = "docs/README.md"
 API = "docs/api.md"
+CODES = "btlang/diagnostics/pages/"
 _FENCED = re.compile(r"^(```+|~~~+).*?^\1$", re.MULTILINE | re.DOTALL)
 _LINK = re.compile(r"\]\((?!\w+:)([^)#\s]+)")
 _FILE_OF_FENCE = re.compile(r"^```(\w+) ([\w.]+)$", re.MULTILINE)
@@ -90,6 +91,8 @@ def _shown(path: Path) -> str:
 
 def on_page_markdown(markdown: str, *, page: Page, config: MkDocsConfig, files: Files) -> str:
     """Show the name of a file above its text, and make the API reference from the docstrings."""
+    if page.file.src_uri.startswith(CODES):
+        markdown += "\n[All message codes](../../../docs/codes.md)\n"
     if page.file.src_uri.startswith(("btlang/", "examples")):
         page.meta["search"] = {"boost": 0.3}  # below the pages that explain
     if page.file.src_uri == API:

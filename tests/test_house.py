@@ -160,6 +160,8 @@ def test_documents_name_every_key() -> None:
 
 def test_one_version() -> None:
     assert btlang.__version__ == PROJECT["project"]["version"]
+    assert f"\nversion: {btlang.__version__}\n" in text(ROOT / "CITATION.cff")
+    assert f"\n## [{btlang.__version__}]" in text(ROOT / "CHANGELOG.md")
     try:
         installed = version("btlang")
     except PackageNotFoundError:
