@@ -16,7 +16,7 @@ from btlang.lsp import conversion
 from btlang.lsp.documents import Document
 from btlang.lsp.open_documents import OpenDocuments
 from btlang.lsp.protocol import Protocol, answering
-from btlang.lsp.readers import drawn, hovered, layout, renamed
+from btlang.lsp.readers import hovered, layout, renamed
 
 DRAW = "btlang.drawTree"
 """The request for the picture of a tree, which the protocol doesn't have; docs/editors.md describes it."""
@@ -166,7 +166,7 @@ async def _format(documents: OpenDocuments, document: Document, _: Any) -> list[
 
 
 async def _draw(documents: OpenDocuments, params: Any) -> dict[str, Any]:
-    return await documents.ask(documents[params.textDocument.uri], drawn)
+    return await documents.drawing(documents[params.textDocument.uri])
 
 
 _FEATURES: tuple[tuple[str, Callable[..., Awaitable[Any]], Any], ...] = (

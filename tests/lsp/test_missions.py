@@ -128,6 +128,9 @@ def test_the_tree_is_drawn_of_what_is_understood() -> None:
             editor.change(uri, 3, "frobnicate\n")
             found = await editor.ask(partial(editor.protocol.send_request_async, "btlang.drawTree"), asked)
             assert found.svg == ""
+            editor.change(uri, 4, "nod\n" * 2_000)  # so long that it's read once typing rests
+            found = await editor.ask(partial(editor.protocol.send_request_async, "btlang.drawTree"), asked)
+            assert "nod" in found.svg
 
     run(check())
 
