@@ -92,8 +92,7 @@ def test_it_fits_the_server() -> None:
 
 
 def test_the_lock_file_names_no_address() -> None:
-    packages = json.loads((FOLDER / "package-lock.json").read_text(encoding="utf-8"))["packages"]
-    assert [name for name, package in packages.items() if "resolved" in package] == []
+    assert "://" not in (FOLDER / "package-lock.json").read_text(encoding="utf-8")
 
 
 @only_long

@@ -44,7 +44,6 @@ def grammar() -> str:
     ]  # fmt: skip
     order = [*patterns[:-3], patterns[-2], patterns[-1], patterns[-3]]  # `go to` before `to`
     made = {
-        "$schema": "https://json.schemastore.org/tmlanguage.json",
         "name": "btlang",
         "information_for_contributors": "Made by `python -m tests.generate`.",
         "scopeName": "source.btlang",
