@@ -21,6 +21,8 @@ from btlang.support.field_types import field_type
 from btlang.task.commands import schema as command_schema
 from btlang.tree.catalogue import CATALOGUE, POST_CONDITIONS, PRE_CONDITIONS, NodeKind, Port
 from tests.cli_page import cli_page
+from tests.reference_pages import codes_page, nodes_page, words_page
+from tests.vscode_grammar import grammar
 
 ROOT = Path(__file__).parent.parent
 _TYPES = {"string": "string", "integer": "number", "number": "number", "boolean": "boolean", "null": "null"}
@@ -238,6 +240,10 @@ FILES: dict[str, Callable[[], str]] = {
     "btlang/web/src/events.ts": events_module,
     "docs/cli.md": cli_page,
     "docs/api.md": api_page,
+    "docs/codes.md": codes_page,
+    "docs/nodes.md": nodes_page,
+    "docs/words.md": words_page,
+    "editors/vscode/syntaxes/btlang.tmLanguage.json": grammar,
     "grammar/mission.tables.json": grammar_tables,
 }
 """The files, with what makes the text of each."""

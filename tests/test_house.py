@@ -21,7 +21,7 @@ from btlang.vocabulary import keyword_file, language_tables
 from btlang.vocabulary.capabilities import CAPABILITIES
 
 ROOT = Path(__file__).parent.parent
-FOLDERS = ("btlang", "tests", "grammar", "keywords", "examples", "docs", ".ci")
+FOLDERS = ("btlang", "tests", "grammar", "keywords", "examples", "docs", "editors", ".ci")
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 LEFT_OUT = {"__pycache__", "samples", "dist", "node_modules"}
 
@@ -42,6 +42,7 @@ LONG: dict[str, str] = {
     "btlang/task/commands.schema.json": "made from the classes of commands",
     "examples/guide/robot.toml": "all of a humanoid",
     "btlang/web/package-lock.json": "made by npm",
+    "editors/vscode/package-lock.json": "made by npm",
     "btlang/robots/robot.py": "what robots can do, one capability after the other",
     "btlang/cli/verbs.py": "the table of verbs",
     "docs/cli.md": "made from the help of the commands",
@@ -56,6 +57,7 @@ LONG: dict[str, str] = {
     "btlang/vocabulary/keyword_file.py": "what may stand in a keyword file, one table after the other",
     "btlang/vocabulary/reading_context.py": "what words stand for at a place of a mission",
     "btlang/vocabulary/lexicon.py": "all that the words of a language are made into, which is then frozen",
+    "docs/words.md": "made from the keyword files",
     "docs/engine.md": "tables of behaviour that the tests play",
     "docs/keywords.md": "every key of keyword files",
     "keywords/en/language.toml": "the words of English",
@@ -158,6 +160,8 @@ def test_documents_name_every_key() -> None:
 
 def test_one_version() -> None:
     assert btlang.__version__ == PROJECT["project"]["version"]
+    assert f"\nversion: {btlang.__version__}\n" in text(ROOT / "CITATION.cff")
+    assert f"\n## [{btlang.__version__}]" in text(ROOT / "CHANGELOG.md")
     try:
         installed = version("btlang")
     except PackageNotFoundError:

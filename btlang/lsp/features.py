@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Awaitable, Callable
+from functools import partial
 from typing import Any
 
 from lsprotocol import types
@@ -17,6 +18,8 @@ from btlang.lsp.open_documents import OpenDocuments
 from btlang.lsp.protocol import Protocol, answering
 from btlang.lsp.readers import hovered, layout, renamed
 
+DRAW = "btlang.drawTree"
+"""The request for the picture of a tree, which the protocol doesn't have; docs/editors.md describes it."""
 _WATCHED = "**/*.{txt,toml,xml,btproj}"
 _TRIGGERS = [" ", '"', "["]
 
@@ -51,6 +54,7 @@ def make_server(words: RobotWords, version: str) -> Server:
     server.documents = OpenDocuments(words, server.publish, server._write_log)
     for method, handler, options in _FEATURES:
         server.feature(method, options)(_bound(handler, server.documents))
+    server.feature(DRAW)(answering(partial(_draw, server.documents)))
     server.feature(types.INITIALIZED)(lambda _: _watch(server))
     for method in (types.TEXT_DOCUMENT_DID_SAVE, types.WORKSPACE_DID_CHANGE_WATCHED_FILES):
         server.feature(method)(lambda _: server.documents.files_changed())
@@ -159,6 +163,10 @@ async def _format(documents: OpenDocuments, document: Document, _: Any) -> list[
     except MissionError:
         return None
     return conversion.formatting(document, text)
+
+
+async def _draw(documents: OpenDocuments, params: Any) -> dict[str, Any]:
+    return await documents.drawing(documents[params.textDocument.uri])
 
 
 _FEATURES: tuple[tuple[str, Callable[..., Awaitable[Any]], Any], ...] = (

@@ -16,7 +16,7 @@ from btlang.editing.help import complete
 from btlang.editing.words import RobotWords
 from btlang.lsp.documents import MISSION, TABLES, TEST, Document
 from btlang.lsp.protocol import ContentModified, RequestFailed
-from btlang.lsp.readers import NOTHING, analyse, diagnose
+from btlang.lsp.readers import NOTHING, analyse, diagnose, drawn
 from btlang.lsp.tables import complete_tables
 from btlang.support.gc_pause import gc_paused
 from btlang.support.worker import Worker, WorkerEnded
@@ -125,6 +125,12 @@ class OpenDocuments:
                 raise RequestFailed(f"{document.uri} was closed")
             await self._check(document)
         return document.analysis
+
+    async def drawing(self, document: Document) -> dict[str, Any]:
+        """Return what btlang.lsp.readers.drawn does, of a long text once typing rests."""
+        if len(document.text) > _MOST_QUICK:
+            await self.analysis(document)
+        return await self.ask(document, drawn)
 
     async def completions(self, document: Document, at: int) -> list[dict[str, Any]]:
         """Return completions at a character, without reading all of a long mission."""

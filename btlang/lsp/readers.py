@@ -23,6 +23,7 @@ from btlang.lsp.documents import MISSION, TABLES, TEST, TREE, Snapshot
 from btlang.lsp.positions import TextPositions
 from btlang.lsp.tables import analyse_tables, table_problems
 from btlang.lsp.trees import analyse_tree, tree_problems
+from btlang.pictures.tree_picture import to_svg
 from btlang.support.record import Record
 from btlang.support.test_files import ENDING
 from btlang.testing.test_file import check_tests, find_tests, format_tests
@@ -101,6 +102,18 @@ def hovered(snapshot: Snapshot, at: int) -> dict[str, Any] | None:
     read = _understood(_reading(snapshot))
     found: dict[str, Any] | None = hover(read.source, at, snapshot.words, read)["found"]
     return None if found is None else {**found, "tree": statement_tree(read, at)}
+
+
+def drawn(snapshot: Snapshot) -> dict[str, Any]:
+    """Return the tree of what is understood as an `svg` picture, "" if nothing is; `is_whole` if that is everything."""
+    if snapshot.kind not in (MISSION, TREE):
+        return {"svg": "", "is_whole": True}
+    whole = _reading(snapshot)
+    read = _understood(whole)
+    return {
+        "svg": "" if read.mission is None else to_svg(read.mission.tree, read.mission.vocabulary),
+        "is_whole": read is whole,
+    }
 
 
 def renamed(snapshot: Snapshot, at: int, name: str | None = None) -> dict[str, Any]:

@@ -6,6 +6,7 @@ import pytest
 
 pytest.importorskip("pygls", reason="the extra lsp isn't installed")
 
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -108,6 +109,28 @@ def test_what_is_shown_beside_a_text() -> None:
             assert [(each.command.title, each.command.command, each.command.arguments) for each in lenses] == [
                 ("Run", "btlang.run", (uri,)), ("Show tree", "btlang.tree", (uri,)),
             ]  # fmt: skip
+
+    run(check())
+
+
+def test_the_tree_is_drawn_of_what_is_understood() -> None:
+    async def check() -> None:
+        async with client(is_checked=False) as editor:
+            uri = editor.open("file:///nowhere/patrol.txt", "wave\nfrobnicate\n")
+            asked = {"textDocument": {"uri": uri}}
+            found = await editor.ask(partial(editor.protocol.send_request_async, "btlang.drawTree"), asked)
+            assert found.svg.startswith("<svg ")
+            assert "wave" in found.svg
+            assert not found.is_whole
+            editor.change(uri, 2, "nod\n")
+            found = await editor.ask(partial(editor.protocol.send_request_async, "btlang.drawTree"), asked)
+            assert ("wave" in found.svg, "nod" in found.svg, found.is_whole) == (False, True, True)
+            editor.change(uri, 3, "frobnicate\n")
+            found = await editor.ask(partial(editor.protocol.send_request_async, "btlang.drawTree"), asked)
+            assert found.svg == ""
+            editor.change(uri, 4, "nod\n" * 2_000)  # so long that it's read once typing rests
+            found = await editor.ask(partial(editor.protocol.send_request_async, "btlang.drawTree"), asked)
+            assert "nod" in found.svg
 
     run(check())
 
