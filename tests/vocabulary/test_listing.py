@@ -42,8 +42,8 @@ UNKNOWN_AT_THE_START = {"Answer", "Count", "Counted", "CountedNames"}
 """Nobody has been asked, and nothing counted."""
 HOLDS_AT_THE_START = {
     "HandEmpty", "PathClear", "BatteryFull", "DistanceAhead", "DistanceToPlace", "DistanceToPerson", "DistanceToObject",
-    "PeopleNear", "BatterySufficient", "DoorOpen", "PlaceOfPerson", "PlaceOfObject", "SwitchedOn", "TodayIs", "DayOfWeek",
-    "ObjectKnown", "NobodyAnswered", "ObjectsAt",
+    "PeopleNear", "BatterySufficient", "DoorOpen", "PlaceOfPerson", "PlaceOfObject", "SwitchedOn", "TodayIs",
+    "ObjectKnown", "NobodyAnswered", "ObjectsAt", "DayOfWeek",
 }  # fmt: skip
 
 
