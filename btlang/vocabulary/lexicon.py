@@ -225,6 +225,8 @@ class Lexicon:
         """The same for the form behind a subject: `the robot waves`."""
         self.of_robot: dict[str, str] = language["of_robot"]
         """What a mission calls the robot, and what the robot calls itself: `you are`, `I am`."""
+        self.affirmed: dict[str, str] = language["affirmed"]
+        """The words of what is asked, and of what turns out to be so: `anybody`, `somebody`."""
         self.happened: dict[str, str] = language["happened"]
         """The verbs of what is so, and of what was so: `is`, `was`."""
         idioms = [(way, said) for words, said in language["idioms"].items() for way in ways([words])]

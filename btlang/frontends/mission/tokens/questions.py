@@ -16,6 +16,7 @@ from btlang.frontends.mission.token import (
     Listed,
     Token,
     drives,
+    run_start,
 )
 from btlang.frontends.mission.tokens.addressed_texts import TELL
 from btlang.frontends.mission.tokens.counting_questions import ANSWER, NAMED, CountingQuestions
@@ -104,7 +105,8 @@ class Questions(CountingQuestions):
         said = self._asked_of() if self._ends(end) else ""
         told = Called(entry, ((slots[PERSON], person[0]), (slots[TEXT], said)))
         if not said:
-            return self._found_out(at, end, told, slots[TEXT]) or self._indirect(at, end, told)
+            found = self._ends(end) and self._found_whether(at, end, told, slots[TEXT])
+            return found or self._found_out(at, end, told, slots[TEXT]) or self._indirect(at, end, told)
         self._tokens.append(Token("command", text.starts[at], text.ends[end - 1], told))
         return end
 
@@ -121,6 +123,32 @@ class Questions(CountingQuestions):
             return 0
         command = Token("command", self._text.starts[at], self._text.ends[end - 1], told)
         self._say(at, Match(Meaning("", entry), end), command, slot)
+        return end
+
+    def _found_whether(self, at: int, end: int, told: Called, slot: str) -> int:
+        """`see if the door is open, come back and tell me`: whether it was open when the robot looked."""
+        tokens, text = self._tokens, self._text
+        between = run_start(tokens, len(tokens), JOINTS)
+        while between and tokens[between - 1].kind == "command" and drives(tokens[between - 1].value):
+            between = run_start(tokens, between - 1, JOINTS)
+        if [token.kind for token in tokens[max(between - 2, 0) : between]] != ["check", "condition"]:
+            return 0
+        check, asked = tokens[between - 2 : between]
+        written = " ".join(text.source.text[check.start : check.end].lower().split())
+        said = [self._condition_said(asked, (), is_denied=is_denied) for is_denied in (False, True)]
+        if written not in self._vocabulary.asking["finding_out"] or "" in said or said[0] == said[1]:
+            return 0
+        rest = tokens[between:]
+        before = rest[next((i for i, token in enumerate(rest) if token.kind == "command"), len(rest)) :]
+        start, last = text.starts[at], text.ends[end - 1]
+        tokens[between - 2 :] = [Token("open", check.start, check.start)]
+        self._if(asked, True)
+        for words in said:
+            command = Token("command", start, last, told)
+            self._set_text(command, slot, words)
+            tokens += [Token("open", start, start), *before, command, Token("close", last, last)]
+            tokens += [Token("comma", last, last), Token("otherwise", last, last)] if words is said[0] else []
+        tokens.append(Token("close", last, last))
         return end
 
     def _indirect(self, at: int, first: int, said: Called) -> int:

@@ -221,6 +221,8 @@ class Requests(Questions):
         command = Token("command", text.starts[at], text.ends[end - 1], self._saying_of(said))
         if not said:
             slot = next(slot.name for slot in self._saying.slots if slot.type == TEXT)
+            if last := self._found_whether(at, end, self._saying_of(""), slot):
+                return last
             return self._found_out(at, end, self._saying_of(""), slot) or self._miss_text(at, end, command)
         self._tokens.append(command)
         return end

@@ -199,8 +199,11 @@ class ToldWords(SentenceReader):
         done = (token for token in rest if token.kind == "command")
         is_over = any(is_about(token, {thing}) for token in done for thing in things)
         happened = self._vocabulary.happened if is_over else {}
-        denied = vocabulary.negations if is_denied else {}
-        for at in words_of(text, asked):
+        places = words_of(text, asked)
+        is_somebody = not vocabulary.negative_subjects.keys().isdisjoint(text.words[at] for at in places)
+        negated = vocabulary.negative_subjects if is_somebody else vocabulary.negations
+        denied = negated if is_denied else {}
+        for at in places:
             pronoun = find(pronouns, text.words, at)
             kinds = self._context.pronouns[pronoun[0]] if pronoun is not None else ()
             meant = [value for kind, value in named if kind in kinds] or [value for _, value in named[:1] if kinds]
@@ -210,7 +213,11 @@ class ToldWords(SentenceReader):
                 return ""
             is_there = PLACE in kinds  # `if she isn't there, tell me`
             word = next((form for form in denied.get(text.words[at], ()) if " " not in form), text.words[at])
-            word = happened.get(word) or (self._written(at) if word == text.words[at] else word)
+            word = (
+                happened.get(word)
+                or ("" if is_denied else vocabulary.affirmed.get(word))
+                or (self._written(at) if word == text.words[at] else word)
+            )
             words.append(meant[0] if meant and not is_there else word)
         said, of_robot = " ".join(words), self._vocabulary.of_robot
         if of_robot:
