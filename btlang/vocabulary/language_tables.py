@@ -60,7 +60,7 @@ ASKING = (
 )  # fmt: skip
 """What the table `asking` of a language may have; without it there are no questions, and no remarks."""
 
-QUESTIONS = ("ask_value", "ask_where", "ask_how_many", "ask_who", "find_who")
+QUESTIONS = ("ask_value", "ask_where", "ask_how_many", "ask_who", "find_who", "find_where")
 """The roles of words that begin questions; "there_are" are words that may end one."""
 
 ORDER = (

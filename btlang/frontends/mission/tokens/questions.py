@@ -14,6 +14,7 @@ from btlang.frontends.mission.token import (
     STATEMENT_ENDS,
     Called,
     Listed,
+    Remembered,
     Token,
     drives,
     run_start,
@@ -43,7 +44,7 @@ class Questions(CountingQuestions):
         """What reads the words behind the words of each role, up to where it returns; 0 if they ask for nothing."""
         return {
             "ask_value": self._asked, "ask_where": self._where, "ask_how_many": self._how_many, "ask_who": self._who,
-            "find_who": self._find_who,
+            "find_who": self._find_who, "find_where": self._find_where,
         }  # fmt: skip
 
     def _measured(self, at: int) -> Match | None:
@@ -94,6 +95,13 @@ class Questions(CountingQuestions):
         self._say(at, measured, command, slot)
         return last
 
+    def _find_where(self, at: int, end: int, command: Token | None = None, slot: str = "") -> int:
+        """`find out where the cup is`: looks for it, so that somebody may be told where it is."""
+        last = self._where(at, end) if command is None else 0
+        if last:
+            del self._tokens[-2:]  # what says it
+        return last
+
     def _inform(self, at: int) -> int:
         """`if the door is open, tell Bob`: tells him what was asked."""
         text, entry, asking = self._text, self._vocabulary.entry(TELL), self._vocabulary.asking
@@ -114,8 +122,13 @@ class Questions(CountingQuestions):
         """`ask Bob what he wants and tell Alice`, `count the cups, come back and tell me`: the answer, or how many."""
         done = (each for each in reversed(self._tokens) if each.kind not in _BETWEEN)
         before = next((each for each in done if not drives(each.value) or _finds_out(each)), None)
-        if before is None or not isinstance(before.value, Called | Listed) or not self._ends(end):
+        if before is None or not isinstance(before.value, Called | Listed | Remembered) or not self._ends(end):
             return 0
+        if isinstance(before.value, Remembered):  # `find out where Bob is and tell Alice`
+            command = Token("command", self._text.starts[at], self._text.ends[end - 1], told)
+            self._set_text(command, slot, f"{{{before.value.key}}}")
+            self._tokens.append(command)
+            return end
         counted = COUNT if before.role != NAMED else COUNTED_NAMES
         found = counted if before.value.entry.id in COUNTING else ANSWER
         entry = self._vocabulary.entry(found) if _finds_out(before) else None
