@@ -134,7 +134,10 @@ def _too_late(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> I
     is_seen = isinstance(asked, ast.Phrase) and asked.entry.id in _IN_VIEW and is_tour
     is_seen = is_seen and not _is_at_goal(asked, journeys[-1])
     if is_timed or is_driving or (is_seen and is_front):
-        each = f"{vocabulary.word('whenever')} {node.span.text[len(words.split(maxsplit=1)[0]) :].lstrip()}"
+        rest = node.span.text[len(words.split(maxsplit=1)[0]) :].lstrip()
+        body = node.body.span.text
+        rest = rest if is_front else f"{node.condition.span.text}, {body[:1].lower()}{body[1:]}"
+        each = f"{vocabulary.word('whenever')} {rest}"
         place, each = _as_sentence(node, each, vocabulary)
         when = "meanwhile" if is_timed else "on the way"
         advice = f"'{last}' is over by then. To do it {when}, and all through the mission, write: {each}"
@@ -346,7 +349,7 @@ def _warn(node: ast.If, before: ast.Ast | None, vocabulary: Lexicon, is_first: b
             yield _with_reading(node, node.span.text, advice, node.span, each)
         elif node.body.span.text.lower() not in vocabulary.halting and not _is_answered(node):
             word = next(iter(source.text[node.body.span.end : condition.start].lower().split()), "")
-            if word in vocabulary.asked_once:  # `wave when Bob is near`
+            if word in vocabulary.asked_once or _is_event(node.condition, vocabulary):  # `wave when Bob is near`
                 form = f"{node.body.span.text} {{}} {condition.text}"
                 yield _asked_once(node, f"{word} {condition.text}", form, vocabulary)
         return

@@ -29,6 +29,8 @@ from btlang.vocabulary.word_tree import find
 MARKS = {",": "comma", ";": "semi", ":": "colon", "(": "open", ")": "close"}
 """The raw kinds of marks."""
 _COME = "ComeToMe"
+_GONE_FOR = frozenset(("command", "wait_at", "wait", "wait_until", "wait_for", "wait_up_to", "wait_forever"))
+"""The roles of what is done where one goes for it: `go wait in the lab`."""
 _STAYS_BEFORE = (",", ";", ")", END_OF_STATEMENT, END_OF_TEXT)
 _DONE = ("command", "name")
 _PLAIN = frozenset(("command", "wait", "count", "every", "every_day", "weekly", "on_days", "at", *JOINTS))
@@ -84,7 +86,12 @@ def without_meaning(
     going = find(vocabulary.going, text.words, at)
     if going is not None and going[1] not in text.articles:
         follows = longest(vocabulary.trie, text, going[1], context)
-        is_command = follows is not None and follows.meaning.role == "command"
+        is_command = follows is not None and follows.meaning.role in _GONE_FOR
+        if follows is not None and follows.meaning.role == "check":
+            asked = longest(vocabulary.trie, text, follows.last, context)
+            is_command = (
+                asked is None or asked.meaning.entry is None
+            )  # `go check the door`; `go check that C` asks there
         joins = text.words[going[1] - 1] in vocabulary.roles["and"]
         if is_command or (joins and follows is None) or find(vocabulary.telling, text.words, going[1]) is not None:
             begin, end = text.starts[at], text.ends[going[1] - 1]
