@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import ExitStack, suppress
 from operator import itemgetter
 
@@ -23,7 +23,7 @@ from btlang.run.events import LOGGED, Ended, Event, PeriodPassed, Sampled, Statu
 from btlang.run.follower import KnownNodes
 from btlang.run.logs import as_json
 from btlang.run.robot_state import Movements, round_scan
-from btlang.run.sampler import Sampler
+from btlang.run.sampler import Sampler, numbers_in
 from btlang.run.snapshot import RunState, Shape, find_questions, text_and_places
 from btlang.session import Session
 from btlang.text.source import NOWHERE
@@ -104,7 +104,7 @@ class Film:
         elif isinstance(event, Sampled):
             if event.scan:
                 self._scans.append([round(event.t, 3), round_scan(event.scan)])
-            self._values += [[round(event.t, 3), *each] for each in _numbers(event.values)]
+            self._values += [[round(event.t, 3), *each] for each in numbers_in(event.values.items())]
         elif isinstance(event, LOGGED):
             self._events.append(as_json(event, self._mission.label))
             doing = [*self._state.doing.as_dict().values()]
@@ -183,13 +183,6 @@ class Film:
             **describe_rules(mission, nodes),
             "map": read_world(mission.world).as_map(),
         }
-
-
-def _numbers(values: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
-    """Yield those that the mission names and that are numbers."""
-    for name, value in values.items():
-        if not name.startswith("_") and isinstance(value, int | float) and not isinstance(value, bool):
-            yield name, value
 
 
 def side_by_side(one: str, other: str) -> dict[str, Any]:

@@ -119,6 +119,14 @@ def test_the_map_and_what_the_scanner_sees(tmp_path: Path) -> None:
         assert json.loads(json.dumps(watcher.messages, default=str, allow_nan=False))
 
 
+def test_what_a_mission_counts(tmp_path: Path) -> None:
+    with layer_in(tmp_path) as layer:
+        watcher = Watcher(layer)
+        submit(layer, 'set cups to 3\nset guest to "Ann"\nwait 1 s\ndecrease cups by 1\nwait 100 s')
+        watcher.wait(lambda message: message.get("values") == {"cups": 3})
+        watcher.wait(lambda message: message.get("values") == {"cups": 2})
+
+
 def test_the_way_that_it_follows(tmp_path: Path) -> None:
     with layer_in(tmp_path) as layer:
         watcher = Watcher(layer)

@@ -14,9 +14,9 @@ const states = lists.map((messages) => {
   const robot = new Robot("robot");
   for (const message of messages) robot.take({ robot: "robot", ...message });
   const { type, robot: name, ...state } = robot.state ?? {};
-  const { up, map, things, asking, scan, parts, joints, speech, way, doing } = robot;
+  const { up, map, things, asking, scan, parts, joints, speech, values, way, doing } = robot;
   return {
-    known: { up, run: plain(robot.run), rules: plain(robot.rules), state: robot.state && state, map, things, asking, scan, parts, joints, speech, way, doing },
+    known: { up, run: plain(robot.run), rules: plain(robot.rules), state: robot.state && state, map, things, asking, scan, parts, joints, speech, values, way, doing },
     log: robot.entries.map(({ event }) => inWords(event)),
   };
 });

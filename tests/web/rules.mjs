@@ -58,7 +58,7 @@ await visit(base, async (page) => {
   await page.waitForSelector(".latch", { state: "detached" });
 
   await submit(page, MISSION);
-  await until("go to lab", ".running");
+  await page.waitForSelector(".rules li.doing"); // it's at the lab still
   await page.getByRole("button", { name: "Cancel" }).click();
   await page.click(".tabs a[href$='/runs']");
   await page.waitForFunction(() => document.querySelectorAll(".tasks li").length === 2);

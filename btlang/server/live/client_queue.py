@@ -19,9 +19,9 @@ _MOST = 2000
 _MUCH = 4_000_000
 """The characters of answers and topics that may wait until a client has to read first."""
 TOPICS = {
-    "tree": ("run", "statuses"), "tasks": ("change",), "events": ("event",), "robot": ("robot", "asking", "doing"),
-    "map": ("map", "things", "scan", "way"), "components": ("components",),
-    "body": ("joints", "speech"),
+    "tree": ("run", "statuses"), "tasks": ("change",), "events": ("event",), "body": ("joints", "speech"),
+    "robot": ("robot", "asking", "doing", "values"), "map": ("map", "things", "scan", "way"),
+    "components": ("components",),
 }  # fmt: skip
 """The topics of a subscription, with the kinds of messages of each. Everybody hears whether a robot is up."""
 _TOPIC = {kind: topic for topic, kinds in TOPICS.items() for kind in kinds}

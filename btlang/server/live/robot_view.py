@@ -9,7 +9,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-STATES = ("asking", "components", "doing", "joints", "map", "robot", "scan", "speech", "things", "way")
+STATES = ("asking", "components", "doing", "joints", "map", "robot", "scan", "speech", "things", "values", "way")
 """The kinds of messages that say how the robot is now: the newest one of each is kept for who joins late."""
 NEWEST = (*STATES, "ages")
 """The kinds of messages of which only the newest one counts."""

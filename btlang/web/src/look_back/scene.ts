@@ -7,7 +7,7 @@ import { TreeView, joined, withoutRules, type TreeNode } from "../tree/tree_view
 import { MapView, nodeNaming } from "../watch/map";
 import { RuleStrip } from "../watch/rules";
 import { Speech } from "../watch/speech";
-import { nodeAt, Words, type Place } from "../watch/words";
+import { nodeAt, pieces, Words, type Piece, type Place } from "../watch/words";
 import { clock } from "./timeline";
 
 /** See Film.data in btlang/recording/film.py. */
@@ -104,12 +104,12 @@ export class Scene {
   private draw = oncePerFrame(() => this.show());
 
   /** `jump` is told what somebody chose in the story: a time, in seconds, and a node (-1: none); `light` gets
-   *  the places in the text of what runs, or is selected. */
+   *  the pieces of the text that run, or are selected. */
   constructor(
     readonly film: Film,
     jump: (seconds: number, node: number) => void,
     private selected: (node: number) => void = () => undefined,
-    private light: (places: Place[]) => void = () => undefined,
+    private light: (marked: Piece[]) => void = () => undefined,
   ) {
     this.rows = this.begin();
     this.tree = new TreeView({ label: t("watch.tree"), select: (node) => { this.chosen = node; this.showWords(); this.selected(node); } });
@@ -245,10 +245,10 @@ export class Scene {
       const { start = null, end = null } = nodes[at] ?? {};
       return start !== null && end !== null ? [start, end] : null;
     };
-    const running = nodes.flatMap((_, at) => (statuses[at] === "RUNNING" && !inner.has(at) && at !== this.chosen ? [place(at)] : []));
-    const lit = [place(this.chosen), ...running];
-    this.words.show(text, lit);
-    this.light(lit);
+    const running = nodes.flatMap((_, at) => (statuses[at] === "RUNNING" && !inner.has(at) ? [place(at)] : []));
+    const marked = pieces(running, place(this.chosen));
+    this.words.show(text, marked);
+    this.light(marked);
     this.map.mark(nodes[this.chosen] ? valuesOf(nodes[this.chosen]!) : []);
   }
 }

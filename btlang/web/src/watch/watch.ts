@@ -14,13 +14,14 @@ import { Failure } from "./failure";
 import { LogView } from "./log";
 import { MapView, nodeNaming } from "./map";
 import { Offers } from "./offers";
-import { Parts } from "./parts";
+import type { Parts } from "./parts";
 import { Question } from "./question";
 import { RuleStrip } from "./rules";
 import { Speech } from "./speech";
 import { Talk } from "./talk";
+import type { LiveValues } from "./values";
 import { Voice } from "./voice";
-import { nodeAt, Words } from "./words";
+import { nodeAt, pieces, Words } from "./words";
 
 const MOST_RUNNING = 12; // that are listed
 
@@ -58,12 +59,15 @@ class Watch implements View {
   private question: Question;
   private talk: Talk;
   private voice: Voice;
-  private parts: Parts;
+  private side: HTMLElement;
+  private parts: Parts | null = null;
+  private values: LiveValues | null = null;
   private failure: Failure;
   private queue: Queue;
   private unwatch: () => void;
   private refresh = oncePerFrame(() => this.show());
   private shownControls = "";
+  private closed = false;
 
   constructor(private context: Context) {
     this.robot = context.fleet.get(context.robot);
@@ -72,7 +76,6 @@ class Watch implements View {
     this.question = new Question(context);
     this.talk = new Talk(context);
     this.voice = new Voice(context);
-    this.parts = new Parts(context);
     this.failure = new Failure((path) => this.select(path));
     this.queue = new Queue(context, () => this.refresh());
     const operates = may(context.me, "operator");
@@ -89,10 +92,11 @@ class Watch implements View {
         this.text,
         h("div", { class: "card events" }, h("h2", {}, t("log")), this.log.element),
       ),
-      h("div", { class: "side" }, this.place, this.parts.element),
+      this.side = h("div", { class: "side" }, this.place),
     );
     this.unwatch = context.fleet.watch((robot, kind, news) => {
       if (robot !== this.robot) return;
+      this.values?.note(kind);
       if (kind === "statuses" && news?.["run"] === this.run?.id) {
         this.tree.setWords(news!["words"] ?? []);
         this.tree.setStatuses(news!["changes"]);
@@ -104,21 +108,36 @@ class Watch implements View {
         this.voice.note(entry);
       }
       if (kind === "up") this.body.close(); // it may have another body by now
-      if (kind === "run" && news!["task"]) this.failure.clear();
+      if (kind === "run" && news!["task"]) {
+        this.failure.clear();
+        this.values?.begin();
+      }
       this.refresh();
     });
     this.show();
+    void this.complete();
   }
 
   close(): void {
+    this.closed = true;
     this.unwatch();
     this.queue.close();
     this.map.close();
     this.body.close();
-    this.parts.close();
+    this.parts?.close();
     this.talk.close();
     this.voice.close();
     this.tree.close();
+  }
+
+  /** Adds what nobody needs at first. */
+  private async complete(): Promise<void> {
+    const [{ LiveValues }, { Parts }] = await Promise.all([import("./values"), import("./parts")]);
+    if (this.closed) return;
+    this.values = new LiveValues(this.robot);
+    this.parts = new Parts(this.context);
+    this.side.append(this.values.element, this.parts.element);
+    this.parts.show(this.robot);
   }
 
   private show(): void {
@@ -141,7 +160,7 @@ class Watch implements View {
     this.map.redraw();
     this.question.show(robot);
     this.talk.show(robot);
-    this.parts.show(robot);
+    this.parts?.show(robot);
     this.log.update(robot.entries);
     this.showControls();
   }
@@ -160,7 +179,7 @@ class Watch implements View {
     this.run = run;
     const leaves = run && this.robot.up ? running(run) : [];
     this.text.hidden = !run?.text;
-    this.words.show(run?.text ?? "", [...leaves, this.chosen].map((node) => run?.places[node] ?? null));
+    this.words.show(run?.text ?? "", pieces(leaves.map((node) => run?.places[node] ?? null), run?.places[this.chosen] ?? null));
     const words = leaves.slice(0, MOST_RUNNING).map((leaf) => run!.nodes[leaf]![2]);
     const shown = JSON.stringify([run?.id, leaves, words]);
     if (this.running.dataset["shown"] === shown) return;

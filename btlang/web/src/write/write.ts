@@ -362,7 +362,7 @@ class Desk {
       fill(this.trial);
       this.trial.hidden = true;
     };
-    const player = (this.player = new Player(film, 0, () => undefined, (places) => this.editor.text === text && this.editor.light(places)));
+    const player = (this.player = new Player(film, 0, () => undefined, (marked) => this.editor.text === text && this.editor.light(marked)));
     fill(this.trial, h("div", { class: "doing" }, h("h2", {}, t("write.try")), h("button", { type: "button", onclick: close }, t("close"))), player.element);
     this.trial.hidden = false;
   }
