@@ -116,6 +116,7 @@ await visit(base, async (page) => {
   await page.click(".tabs a[href*='/robots/']:not([href$='/tasks'])");
   await page.reload();
   await until("Darle trabajo", "summary");
+  await until("Aquí aparece lo que pase a partir de ahora.", ".log"); // an empty log would say that nothing happened
   await page.click(".tabs a[href$='/tasks']");
   await page.fill(".submit textarea", "wave");
   await page.fill(".submit input", "on Mondays and Fridays at 9:00");

@@ -79,6 +79,7 @@ await visit(base, async (page) => {
   await page.getByRole("link", { name: "Compare with this" }).click();
   await page.waitForSelector(".compared .sides");
   assert.deepEqual(await page.$$eval(".one h2 span", (all) => all.map((each) => each.textContent)), ["brew tea", "brew tea"]);
+  assert.deepEqual(await page.$$eval(".one .film-text", (all) => all.map((each) => each.textContent)), [MISSION, MISSION]);
   assert.equal(await page.$$eval(".one .rules li", (all) => all.length), 4);
   assert.match(await page.textContent(".summary .first"), /at lab: false/);
   assert.doesNotMatch(await page.textContent(".summary"), /FAILURE|SUCCESS/);

@@ -78,7 +78,7 @@ export class Comparison {
   private side(scene: Scene, which: number): HTMLElement {
     const { about } = scene.film;
     const title = h("h2", { class: "what" }, badge(which), h("span", { dir: "auto" }, titleOf(scene.film)), h("time", {}, about["wall"] ? moment(Number(about["wall"])) : ""));
-    return h("section", { class: "one", "aria-label": NAMES[which] }, title, h("div", { class: "ending" }, scene.outcome, scene.rules.element), h("div", { class: "stage card" }, scene.tree.element), h("div", { class: "below" }, scene.log, scene.place));
+    return h("section", { class: "one", "aria-label": NAMES[which] }, title, h("div", { class: "ending" }, scene.outcome, scene.rules.element), h("div", { class: "said-in" }, scene.film.text && h("div", { class: "card text-card" }, scene.words.element)), h("div", { class: "stage card" }, scene.tree.element), h("div", { class: "below" }, scene.log, scene.place));
   }
 
   private summary(): HTMLElement {

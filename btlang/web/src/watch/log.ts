@@ -34,7 +34,8 @@ function written(value: unknown): string {
 /** The log, of which only the newest lines are shown. New ones come at its end. */
 export class LogView {
   private lines = h("ol");
-  readonly element = h("div", { class: "log", role: "log", "aria-label": t("log"), tabindex: 0 }, this.lines);
+  private empty = h("p", { class: "empty" }, t("watch.from_now"));
+  readonly element = h("div", { class: "log", role: "log", "aria-label": t("log"), tabindex: 0 }, this.empty, this.lines);
   private last: Entry | null = null;
   private lastWords = "";
   private atEnd = true;
@@ -64,6 +65,7 @@ export class LogView {
       const words = inWords(entry.event);
       if (!words || words === this.lastWords) continue; // several parts of a robot say that they were stopped
       this.lastWords = words;
+      this.empty.remove();
       this.lines.append(
         h("li", { class: ALARMS.has(entry.event.event) || entry.event.event === "FAILURE" ? "bad" : null }, h("time", {}, moment(entry.wall)), "node" in entry.event && entry.event.node !== undefined
             ? h("button", { type: "button", class: "plain", dir: "auto", onclick: () => entry.task === this.entries.at(-1)?.task && this.choose((entry.event as { node: number }).node) }, words)

@@ -18,7 +18,7 @@ import type { Parts } from "./parts";
 import { Question } from "./question";
 import { RuleStrip } from "./rules";
 import { Speech } from "./speech";
-import { Talk } from "./talk";
+import type { Talk } from "./talk";
 import type { LiveValues } from "./values";
 import { Voice } from "./voice";
 import { nodeAt, pieces, Words } from "./words";
@@ -57,7 +57,7 @@ class Watch implements View {
   private body: Body;
   private offers: Offers;
   private question: Question;
-  private talk: Talk;
+  private talk: Talk | null = null;
   private voice: Voice;
   private side: HTMLElement;
   private parts: Parts | null = null;
@@ -74,12 +74,11 @@ class Watch implements View {
     this.body = new Body(context);
     this.offers = new Offers(context);
     this.question = new Question(context);
-    this.talk = new Talk(context);
     this.voice = new Voice(context);
     this.failure = new Failure((path) => this.select(path));
     this.queue = new Queue(context, () => this.refresh());
     const operates = may(context.me, "operator");
-    this.place = h("div", { class: "card place" }, this.body.element, this.map.canvas, h("div", { class: "beside" }, this.voice.element, this.visitor), this.speech.element, this.question.element, this.talk.element);
+    this.place = h("div", { class: "card place" }, this.body.element, this.map.canvas, h("div", { class: "beside" }, this.voice.element, this.visitor), this.speech.element, this.question.element);
     this.element = h(
       "section",
       { class: "watch" },
@@ -125,19 +124,21 @@ class Watch implements View {
     this.map.close();
     this.body.close();
     this.parts?.close();
-    this.talk.close();
+    this.talk?.close();
     this.voice.close();
     this.tree.close();
   }
 
   /** Adds what nobody needs at first. */
   private async complete(): Promise<void> {
-    const [{ LiveValues }, { Parts }] = await Promise.all([import("./values"), import("./parts")]);
+    const [{ LiveValues }, { Parts }, { Talk }] = await Promise.all([import("./values"), import("./parts"), import("./talk")]);
     if (this.closed) return;
     this.values = new LiveValues(this.robot);
     this.parts = new Parts(this.context);
+    this.talk = new Talk(this.context);
+    this.place.append(this.talk.element);
     this.side.append(this.values.element, this.parts.element);
-    this.parts.show(this.robot);
+    this.refresh();
   }
 
   private show(): void {
@@ -159,7 +160,7 @@ class Watch implements View {
     this.offers.show(robot, task !== null);
     this.map.redraw();
     this.question.show(robot);
-    this.talk.show(robot);
+    this.talk?.show(robot);
     this.parts?.show(robot);
     this.log.update(robot.entries);
     this.showControls();
