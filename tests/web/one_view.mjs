@@ -109,10 +109,13 @@ await visit(base, async (page) => {
   assert.equal(await page.evaluate(() => document.documentElement.lang), "es");
   await page.click(".tabs a[href*='/robots/']:not([href$='/tasks'])");
   await until("Lo que ha pasado", ".events h2");
+  for (const words of ["saluda", "repite 2 veces", "ve a cafe", "espera 600 s"]) await until(words, ".node .words"); // not the mission, which is in English
+  await until("wait 10 minutes", ".film-text");
   await page.screenshot({ path: `${pictures}/view_spanish.png` });
   await page.click(".tabs a[href$='/runs']");
   await page.locator("li", { hasText: "set cups" }).getByRole("link", { name: "Reproducir" }).click();
-  await until("wait 600 s: se interrumpió", ".story");
+  await until("espera 600 s: se interrumpió", ".story");
+  await until("espera 600 s", ".film .node .words");
   await page.click(".tabs a[href*='/robots/']:not([href$='/tasks'])");
   await page.reload();
   await until("Darle trabajo", "summary");

@@ -65,7 +65,7 @@ def merge_statuses(before: dict[str, Any] | None, after: dict[str, Any]) -> dict
     if before is None:
         return after
     message = {**before, **after}
-    for pairs in {"changes", "words"} & message.keys():
-        both = dict(before.get(pairs, ())) | dict(after.get(pairs, ()))
-        message[pairs] = [[*pair] for pair in both.items()]
+    for part in {"changes", "words"} & message.keys():
+        both = {each[0]: each for each in (*before.get(part, ()), *after.get(part, ()))}
+        message[part] = [*both.values()]
     return message

@@ -310,10 +310,11 @@ def _statuses(watcher: _Watcher, watched: _Watched) -> Iterator[dict[str, Any]]:
     changed = watched.changed  # before the statuses, so that none of them is older
     codes = run.follower.codes()  # none before the first event
     found = watcher.known.new_statuses(codes) if codes else []
-    words = watcher.known.new_words(watched.valued.copy(), watched.mission.words)  # a copy: the run goes on
-    if found or words:
+    valued = watcher.known.new_values(watched.valued.copy())  # a copy: the run goes on
+    if found or valued:
         changes = [[index, NAMES[status]] for index, status in found]
-        said = {"words": [[*pair] for pair in words]} if words else {}
+        words = [[index, watched.mission.words(node), node.id, dict(node.ports)] for index, node in valued]
+        said = {"words": words, "language": watched.mission.vocabulary.language} if words else {}
         yield {"type": "statuses", "run": run.id, "t": changed, "changes": changes, **said}
 
 
@@ -329,7 +330,8 @@ def _tree(watched: _Watched) -> dict[str, Any]:
     prepared = [index for index, node in enumerate(filled) if is_prepared(node)]
     return {
         "nodes": listed, "prepared": prepared, "text": text, "spans": spans, "asks": asks,
-        **describe_rules(mission, nodes),
+        "named": [index for index, node in enumerate(filled) if node.name],
+        "language": mission.vocabulary.language, **describe_rules(mission, nodes),
     }  # fmt: skip
 
 

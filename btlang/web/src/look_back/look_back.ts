@@ -4,7 +4,7 @@ import { request } from "../api";
 import { fill, h, menuButton, set } from "../dom";
 import { downloadItems, pictures, textBlob, type Offer } from "../download";
 import { called, command, type Task } from "../tasks/queue";
-import { moment, t, type Key } from "../texts";
+import { language, moment, t, type Key } from "../texts";
 import type { Context, View } from "../view";
 import { Comparison, titleOf, type Compared } from "./compare";
 import { Player } from "./player";
@@ -52,7 +52,7 @@ function openAnswer<T>(path: string, make: (answer: T) => { title: HTMLElement; 
 }
 
 function openFilm({ me }: Context, robot: string, name: string, at: number): View {
-  return openAnswer(`/api/films/${encodeURIComponent(name)}?${query(robot)}`, (film: Film) => {
+  return openAnswer(`/api/films/${encodeURIComponent(name)}?${query(robot)}&language=${language()}`, (film: Film) => {
     const player = new Player(film, at, (seconds) => history.replaceState(null, "", address("runs", robot, name, seconds.toFixed(1))));
     const of = `/${encodeURIComponent(name)}?${query(robot)}`;
     const xml = async (): Promise<Blob> => {
@@ -103,7 +103,7 @@ function showFailures(element: HTMLElement, { nodes, root }: Film, { runs, faile
 }
 
 function openComparison(robot: string, name: string, other: string, at: number | null): View {
-  return openAnswer(`/api/comparisons/${encodeURIComponent(name)}?${query(robot)}&with=${encodeURIComponent(other)}`, (compared: Compared) => {
+  return openAnswer(`/api/comparisons/${encodeURIComponent(name)}?${query(robot)}&with=${encodeURIComponent(other)}&language=${language()}`, (compared: Compared) => {
     const moved = (seconds: number): void => history.replaceState(null, "", address("runs", robot, name, WITH, other, seconds.toFixed(1)));
     const comparison = new Comparison(compared, at, moved);
     const another = h("a", { class: "button", href: address("runs", robot, name, WITH) }, t("compare.another"));
