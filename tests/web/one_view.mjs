@@ -121,6 +121,9 @@ await visit(base, async (page) => {
   await until("Darle trabajo", "summary");
   await until("Aquí aparece lo que pase a partir de ahora.", ".log"); // an empty log would say that nothing happened
   await page.click(".tabs a[href$='/tasks']");
+  await page.fill(".submit textarea", "go to the caffe");
+  await page.click(".submit .primary");
+  await until("Línea 1: No hay nada llamado «caffe»", ".submit .problem");
   await page.fill(".submit textarea", "wave");
   await page.fill(".submit input", "on Mondays and Fridays at 9:00");
   await page.click(".submit .primary");

@@ -2,7 +2,7 @@
 import { fill, h, oncePerFrame, type Child } from "../dom";
 import { whole } from "../events";
 import { Robot, STATUSES, type Rule, type Status, type Thing, type WorldMap } from "../fleet";
-import { t, type Key } from "../texts";
+import { said, t, type Key } from "../texts";
 import { TreeView, joined, withoutRules, type TreeNode } from "../tree/tree_view";
 import { MapView, nodeNaming } from "../watch/map";
 import { RuleStrip } from "../watch/rules";
@@ -40,8 +40,8 @@ export type Noted = [t: number, node: number, words: string, ending: Exclude<Sta
 
 /** What was done and how it ended: what succeeded are its words alone. */
 export function noted([, , words, ending, reason]: Noted): string {
-  const said = ending && ending !== "SUCCESS" ? t(`log.${ending}`, { name: words }) : words;
-  return reason ? `${said} (${reason})` : said;
+  const done = ending && ending !== "SUCCESS" ? t(`log.${ending}`, { name: words }) : words;
+  return reason ? `${done} (${said(reason)})` : done;
 }
 
 /** Rows that begin with their times, in seconds, given out as these come. */
@@ -75,8 +75,8 @@ function inWords({ ending, stopped, is_cut, failed, nodes, text }: Film): Child[
   const start = nodes[failed]?.start ?? null;
   const line = start === null ? "" : `${t("write.line", { line: text.slice(0, start).split("\n").length })}: `;
   return [
-    h("p", {}, stopped && `${t("film.stopped")} ${stopped}. `, t(by[ending.stopped] ?? "end.stopped", { seconds, by: ending.stopped }), motion && ` ${motion}.`),
-    words && h("p", { class: "why" }, h("strong", {}, line), h("span", { lang: "en", dir: "auto" }, `${words}: ${reason}`)),
+    h("p", {}, stopped && `${t("film.stopped")} ${stopped}. `, t(by[ending.stopped] ?? "end.stopped", { seconds, by: said(ending.stopped) }), motion && ` ${motion}.`),
+    words && h("p", { class: "why" }, h("strong", {}, line), h("span", { dir: "auto" }, `${words}: ${said(reason)}`)),
     context.length > 0 && h("details", {}, h("summary", {}, t("film.context")), h("pre", { lang: "en", dir: "auto" }, context.join("\n"))),
     is_cut && h("p", {}, t("film.cut")),
   ];

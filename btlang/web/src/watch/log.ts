@@ -2,10 +2,11 @@
 import { h } from "../dom";
 import { ALARMS, DEFAULTS } from "../events";
 import type { Entry } from "../fleet";
-import { KEYS, moment, t, type Key } from "../texts";
+import { KEYS, moment, said, t, type Key } from "../texts";
 
 const NEWEST = 200;
 const PERIOD = 200; // milliseconds
+const REASONS = ["reason", "stopped"]; // fields that are English
 const TEXTS = KEYS.map((key) => [key, key.split(".")] as const).filter(([, [log]]) => log === "log");
 
 /** An event in words, "" for one that only programs need. Of the texts that its fields fit, the last one says it:
@@ -13,7 +14,7 @@ const TEXTS = KEYS.map((key) => [key, key.split(".")] as const).filter(([, [log]
  */
 export function inWords(event: Entry["event"]): string {
   const fields: Record<string, unknown> = { ...event };
-  const values = Object.fromEntries(Object.entries(fields).map(([name, value]) => [name, written(value)]));
+  const values = Object.fromEntries(Object.entries(fields).map(([name, value]) => [name, REASONS.includes(name) ? said(written(value)) : written(value)]));
   const fits = (condition: string): boolean => {
     const [name, wanted] = condition.split("=") as [string, string?];
     return wanted === undefined ? Boolean(values[name]) && fields[name] !== DEFAULTS[event.event]?.[name] : values[name] === wanted;
