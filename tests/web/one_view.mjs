@@ -58,7 +58,7 @@ await visit(base, async (page) => {
   await until("wait 10 minutes", ".film-text mark.runs");
   await page.waitForSelector(".node[data-status=RUNNING]");
   assert.equal(await page.$(".scroll.chosen"), null, "a node is selected that nobody chose");
-  for (const name of ["battery, %", "nearest, m", "cups"]) await until(name, ".watch .plots li");
+  for (const name of ["battery, %", "cups"]) await until(name, ".watch .plots li");
   await page.waitForFunction(() => [...document.querySelectorAll(".watch .plots li")].some((each) => each.textContent === "cups1"));
   for (const where of [".log", ".film-text", ".watch .tree", ".map", ".watch .plots"]) assert.ok(await onScreen(where), `${where} is below the fold`);
   await selects();
