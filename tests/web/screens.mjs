@@ -60,6 +60,7 @@ await visit(base, async (page) => {
   await page.keyboard.press("Enter");
   assert.match(await current(), /nod/);
   await until("1/1", ".count");
+  await until("nod", ".film-text mark.chosen");
   await page.click(".toolbar button[aria-pressed]");
   await page.waitForSelector(".node .port");
   await page.click(".toolbar button[aria-label='Turn the tree']");

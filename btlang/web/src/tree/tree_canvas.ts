@@ -113,6 +113,12 @@ export class TreeCanvas {
     this.move(item, scroll);
   }
 
+  /** Selects a node as a click on it does. */
+  pick(node: number): void {
+    this.select(node);
+    this.options.select?.(node);
+  }
+
   /** Brings a node into view, where it isn't. */
   bring(node: number): void {
     const item = this.items.all.reveal(node);
