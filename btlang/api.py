@@ -24,7 +24,7 @@ from btlang.tree.node import Node, Tree
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import Known
 from btlang.vocabulary.references import key_of
-from btlang.vocabulary.shipped import DEFAULT_WORLD, ENGLISH
+from btlang.vocabulary.shipped import DEFAULT_WORLD, ENGLISH, languages
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -335,12 +335,17 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax", "
 
         return node.name or phrase_of(node, self.vocabulary)
 
-    def words(self, node: Node) -> str:
+    def words(self, node: Node, language: str = "") -> str:
         """Return the words of a node, also of one that only leads others, as the mission says it: `try up to 4
-        times`.
+        times`. With a `language` that ships, such as "es", they are in that language where it has words for the node.
         """
-        from btlang.printer.node_words import words_of_node
+        from btlang.printer.node_words import words_in, words_of_node
+        from btlang.vocabulary.load import load_vocabulary
 
+        if language in languages() and language != self.vocabulary.language:
+            said = words_in(node, load_vocabulary((), None, language))
+            if said:
+                return said
         return node.name or words_of_node(node, self.vocabulary)
 
     def is_action(self, node: Node) -> bool:

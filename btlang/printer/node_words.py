@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import lru_cache
 
 from btlang.printer.exact import node_head
-from btlang.printer.phrase import is_sentence, phrase_of, seconds
+from btlang.printer.phrase import is_sentence, is_written, phrase_of, seconds
 from btlang.printer.printer import Printer
 from btlang.text.source import NOWHERE, Span
 from btlang.tree import ast
@@ -43,6 +43,20 @@ def words_of_node(node: Node, vocabulary: Lexicon) -> str:
         return _own_words(node, _leading_words(vocabulary)) or _usual_words(node, vocabulary)
     said = phrase_of(node, vocabulary)
     return _exact_words(node, vocabulary) if said == describe_node(node) else said
+
+
+def words_in(node: Node, vocabulary: Lexicon) -> str:
+    """Return the words of a node in another language than its mission's, "" if that has none for it.
+
+    It has none for names, for values that the mission computes, and for words of keyword files without a translation.
+    """
+    if node.name or node.id == SUBTREE:
+        return ""
+    if node.children:
+        say = _WORDS.get(node.id)
+        return say(node, _printer(vocabulary)) if say is not None else ""
+    said = "" if is_written(node) else phrase_of(node.replace(span=None), vocabulary)
+    return "" if said == describe_node(node) else said
 
 
 @lru_cache(maxsize=4)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import ExitStack, suppress
+from functools import partial
 from operator import itemgetter
 
 from btlang.api import Mission
@@ -23,7 +24,7 @@ from btlang.run.events import LOGGED, Ended, Event, PeriodPassed, Sampled, Statu
 from btlang.run.follower import KnownNodes
 from btlang.run.logs import as_json
 from btlang.run.robot_state import Movements, round_scan
-from btlang.run.sampler import Sampler
+from btlang.run.sampler import Sampler, numbers_in
 from btlang.run.snapshot import RunState, Shape, find_questions, text_and_places
 from btlang.session import Session
 from btlang.text.source import NOWHERE
@@ -48,14 +49,18 @@ _APART = 0.1  # seconds between two looks at where people are: more would fill t
 
 
 class Film:
-    """A sink that keeps what happens in a run of a mission, up to MOST_CHANGES; `data` gives it out."""
+    """A sink that keeps what happens in a run of a mission, up to MOST_CHANGES; `data` gives it out.
+
+    The words of nodes are the mission's, or in another `language` (see Mission.words).
+    """
 
     policy = BLOCK
 
-    def __init__(self, mission: Mission, about: dict[str, str] | None = None) -> None:
+    def __init__(self, mission: Mission, about: dict[str, str] | None = None, language: str = "") -> None:
         self._mission, self._about = mission, about or {}
+        self._label = partial(mission.words, language=language)
         self._nodes = RecordedNodes(*outline(mission.tree))
-        self._story = Story(mission, self._nodes, self._about, mission.words)
+        self._story = Story(mission, self._nodes, self._about, self._label)
         indices = range(self._nodes.size)
         self._state = RunState(
             Shape([self._nodes.parent(at) for at in indices]), [self._nodes.node(at) for at in indices]
@@ -93,8 +98,8 @@ class Film:
             if changes:
                 self._statuses.append([round(event.t, 3), *(number for change in changes for number in change)])
             self._count += len(changes)
-            words = self._known.new_words(event.values_now(), self._mission.words)
-            self._words += [[round(event.t, 3), *each] for each in words]
+            valued = self._known.new_values(event.values_now())
+            self._words += [[round(event.t, 3), index, self._label(node)] for index, node in valued]
         elif isinstance(event, PeriodPassed):
             self._take_state(event)
             if event.t >= self._next_look - 1e-9:
@@ -104,7 +109,7 @@ class Film:
         elif isinstance(event, Sampled):
             if event.scan:
                 self._scans.append([round(event.t, 3), round_scan(event.scan)])
-            self._values += [[round(event.t, 3), *each] for each in _numbers(event.values)]
+            self._values += [[round(event.t, 3), *each] for each in numbers_in(event.values.items())]
         elif isinstance(event, LOGGED):
             self._events.append(as_json(event, self._mission.label))
             doing = [*self._state.doing.as_dict().values()]
@@ -157,7 +162,7 @@ class Film:
             node, (start, end) = nodes.node(index), places[index] or (None, None)
             listed.append(
                 {
-                    "parent": nodes.parent(index), "id": node.id, "label": mission.words(node), "ports": node.ports,
+                    "parent": nodes.parent(index), "id": node.id, "label": self._label(node), "ports": node.ports,
                     "start": start, "end": end, "prepared": is_prepared(node),
                     "asks": asks[index],
                 }
@@ -185,14 +190,7 @@ class Film:
         }
 
 
-def _numbers(values: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
-    """Yield those that the mission names and that are numbers."""
-    for name, value in values.items():
-        if not name.startswith("_") and isinstance(value, int | float) and not isinstance(value, bool):
-            yield name, value
-
-
-def side_by_side(one: str, other: str) -> dict[str, Any]:
+def side_by_side(one: str, other: str, language: str = "") -> dict[str, Any]:
     """Return two recordings, by their paths, as JSON has it; runs nothing. Raises MissionError for what can't be read.
 
     - `films`: see Film.data; `stories`: what only one of the runs did: its number, then as in the `story` of a film;
@@ -203,7 +201,7 @@ def side_by_side(one: str, other: str) -> dict[str, Any]:
     """
     with ExitStack() as stack:
         sides = [stack.enter_context(open_recording(path)) for path in (one, other)]
-        films = [Film(mission, dict(recording.about)) for recording, mission, _ in sides]
+        films = [Film(mission, dict(recording.about), language) for recording, mission, _ in sides]
         events = [list(recording.events(nodes)) for recording, _, nodes in sides]
         data = [film.take(happened).data() for film, happened in zip(films, events, strict=True)]
         stories = [each["story"] for each in data]

@@ -118,13 +118,13 @@ class KnownNodes:
         changed = differences(before, self._codes)
         return [(found.start(), self._codes[found.start()]) for found in _NOT_0.finditer(changed)]
 
-    def new_words(self, valued: Mapping[int, Node], label: Callable[[Node], str]) -> list[tuple[int, str]]:
-        """Return number and words of each node whose keys have other values by now."""
+    def new_values(self, valued: Mapping[int, Node]) -> list[tuple[int, Node]]:
+        """Return number and node, with the values of its keys, of each one whose keys have other values by now."""
         found = []
         for index, node in valued.items():
             known = self._valued.get(index)
             if known is not node:
                 self._valued[index] = node
                 if known is None or known.ports != node.ports:
-                    found.append((index, label(node)))
+                    found.append((index, node))
         return found

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
+
 from btlang.engine.blackboard import Blackboard
 from btlang.run.bus import INLINE, Bus
 from btlang.run.events import Event, PeriodPassed, Sampled
@@ -10,6 +12,13 @@ from btlang.run.robot_state import ask_sensor
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
+
+
+def numbers_in(values: Iterable[tuple[str, Any]]) -> Iterator[tuple[str, float]]:
+    """Yield the values of the blackboard that the mission names and that are numbers."""
+    for name, value in values:
+        if not name.startswith("_") and isinstance(value, int | float) and not isinstance(value, bool):
+            yield name, value
 
 
 class Sampler:

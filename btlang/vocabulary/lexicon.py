@@ -75,6 +75,8 @@ class Lexicon:
         english: Lexicon | None = None,
         folder: str = "",
     ) -> None:
+        self.language = os.path.basename(folder)
+        """What its language is called in options: "en", "es"."""
         self._problems: list[Diagnostic] = []
         self._redeclared: dict[str, Span] = {}  # types that exist already, each where it is declared last
         self._added: TrieNode | None = None

@@ -18,11 +18,11 @@ CASES = json.loads(Path(__file__).with_name("robot_views.json").read_text(encodi
 UNKNOWN: dict[str, Any] = {
     "up": False, "run": None, "rules": None, "state": None, "map": None, "things": [], "asking": "", "scan": None,
     "parts": {"components": [], "devices": []}, "joints": [], "speech": {"text": "", "start": 0, "end": 0}, "way": [],
-    "doing": {"task": 0, "goal": "", "says": "", "heard": ""},
+    "values": {}, "doing": {"task": 0, "goal": "", "says": "", "heard": ""},
 }  # fmt: skip
 """What the page knows of a robot in the beginning."""
 RENAMED = {"robot": "state", "components": "parts"}
-ONLY = {"things": "things", "asking": "text", "way": "points", "joints": "positions"}
+ONLY = {"things": "things", "values": "values", "asking": "text", "way": "points", "joints": "positions"}
 
 
 def view_of(messages: list[dict[str, Any]]) -> RobotView:

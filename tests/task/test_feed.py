@@ -78,7 +78,7 @@ def test_nodes_have_the_words_of_their_round(tmp_path: Path) -> None:
 
         def is_told(message: dict[str, Any]) -> bool:
             return message["type"] == "statuses" and any(
-                words == 'say "round 2"' for _, words in message.get("words", ())
+                words == 'say "round 2"' for _, words, *_ in message.get("words", ())
             )
 
         watcher.wait(is_told)
@@ -91,7 +91,7 @@ def test_nodes_have_the_words_of_their_round(tmp_path: Path) -> None:
         [prepared] = run["prepared"]
         assert run["nodes"][says][0] == f"{run['nodes'][prepared][0]}/1"
         found = [pair for message in watcher.of("statuses") for pair in message.get("words", ()) if pair[0] == says]
-        assert [words for _, words in found] == ['say "round 1"', 'say "round 2"']
+        assert [words for _, words, *_ in found] == ['say "round 1"', 'say "round 2"']
 
 
 def test_who_comes_late_knows_what_the_robot_does(tmp_path: Path) -> None:
@@ -117,6 +117,14 @@ def test_the_map_and_what_the_scanner_sees(tmp_path: Path) -> None:
         assert len(ranges) == 360
         assert all(distance is None or 0 < distance < 100 for distance in ranges)
         assert json.loads(json.dumps(watcher.messages, default=str, allow_nan=False))
+
+
+def test_what_a_mission_counts(tmp_path: Path) -> None:
+    with layer_in(tmp_path) as layer:
+        watcher = Watcher(layer)
+        submit(layer, 'set cups to 3\nset guest to "Ann"\nwait 1 s\ndecrease cups by 1\nwait 100 s')
+        watcher.wait(lambda message: message.get("values") == {"cups": 3})
+        watcher.wait(lambda message: message.get("values") == {"cups": 2})
 
 
 def test_the_way_that_it_follows(tmp_path: Path) -> None:

@@ -3,10 +3,11 @@ import { readFileSync } from "node:fs";
 import { pathToFileURL } from "node:url";
 
 const [folder, file] = process.argv.slice(2);
-const { lists, events, steps, languages, documents, rules, schedules, film } = JSON.parse(readFileSync(file, "utf8"));
+const { lists, events, steps, languages, documents, rules, schedules, film, spoken } = JSON.parse(readFileSync(file, "utf8"));
 let language = "en";
 globalThis.localStorage = { getItem: () => language };
-const { Robot, inWords, loadTexts, patched, ruleInWords, ruleStates, seriesOf, valueAt, whole } = await import(pathToFileURL(`${folder}/page.js`));
+const page = await import(pathToFileURL(`${folder}/page.js`));
+const { Robot, inWords, loadTexts, patched, ruleInWords, ruleStates, seriesOf, valueAt, whole } = page;
 await loadTexts();
 
 const plain = (run) => run && { id: run.id, task: run.task, statuses: run.statuses, words: run.nodes.map(([, , words]) => words) };
@@ -14,15 +15,16 @@ const states = lists.map((messages) => {
   const robot = new Robot("robot");
   for (const message of messages) robot.take({ robot: "robot", ...message });
   const { type, robot: name, ...state } = robot.state ?? {};
-  const { up, map, things, asking, scan, parts, joints, speech, way, doing } = robot;
+  const { up, map, things, asking, scan, parts, joints, speech, values, way, doing } = robot;
   return {
-    known: { up, run: plain(robot.run), rules: plain(robot.rules), state: robot.state && state, map, things, asking, scan, parts, joints, speech, way, doing },
+    known: { up, run: plain(robot.run), rules: plain(robot.rules), state: robot.state && state, map, things, asking, scan, parts, joints, speech, values, way, doing },
     log: robot.entries.map(({ event }) => inWords(event)),
   };
 });
-const [words, due] = [{}, {}];
+const [words, due, said] = [{}, {}, {}];
 for (language of languages) {
   await loadTexts();
+  said[language] = spoken.map((each) => page.said(each)); // another function in each language
   due[language] = schedules.map(ruleInWords);
   words[language] = events.map((event) => inWords(whole(event)));
 }
@@ -41,4 +43,4 @@ const ages = steps.map(([moment, message]) => {
 let nodes = [];
 const shown = documents.map(({ difference, change }) => (nodes = change ? patched(nodes, difference, change) : difference));
 const series = seriesOf(film);
-console.log(JSON.stringify({ states, words, due, ages, shown, rules: ruleStates(...rules), series, values: series.map((each) => [1, 2.5, 9].map((moment) => valueAt(each, moment))) }));
+console.log(JSON.stringify({ states, words, due, said, ages, shown, rules: ruleStates(...rules), series, values: series.map((each) => [1, 2.5, 9].map((moment) => valueAt(each, moment))) }));

@@ -64,7 +64,7 @@ await visit(base, async (page) => {
   await page.getByRole("button", { name: "Try in simulation" }).click();
   await page.waitForSelector(".trial .film");
   assert.ok(await page.isVisible(".panes .text .cm-content"));
-  const lit = (words) => page.waitForFunction((words) => [...document.querySelectorAll(".cm-content .said")].map((each) => each.textContent).join() === words, words);
+  const lit = (words) => page.waitForFunction((words) => [...document.querySelectorAll(".cm-content :is(.runs, .chosen)")].map((each) => each.textContent).join() === words, words);
   await lit("wave");
   await page.locator(".trial .story button", { hasText: "go to cafe" }).click();
   await lit("go to the cafe");

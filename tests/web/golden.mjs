@@ -8,7 +8,7 @@ const SIZE = { width: 800, height: 600 };
 const MOST = 0.0002; // of all pixels: letters are smoothed in other ways, but a button that moved has more
 /** Times, numbers and what the robot has come to just then. */
 const STYLE = `
-  time, .number, .why, .clock, .map, .watch .doing, .log, .now .pill, .film-page h1, input[type=date] { visibility: hidden !important; }
+  time, .number, .why, .clock, .map, .values, .watch .doing, .log, .now .pill, .film-page h1, input[type=date] { visibility: hidden !important; }
   ol.tasks li:not(:last-child) { display: none !important; }
   *, ::before, ::after { transition: none !important; animation: none !important; scrollbar-width: none !important; caret-color: transparent !important; }
   .cm-cursorLayer, .cm-tooltip { display: none !important; }`;

@@ -104,13 +104,18 @@ async function reads(page) {
   assert.match(await read(body().replace("0.1", "NaN")), /needs 1 numbers/);
 }
 
-/** Names of things at one place, at an edge and beside the robot are in the picture, and not over one another. */
+/** Names of things at one place, at an edge and beside the robot are in the picture, and not over one another. Those that
+ *  aren't beside what they name have a line to it.
+ */
 async function names(page) {
   await page.addScriptTag({ path: `${parts}/labels.js` });
-  const boxes = await page.evaluate(() => {
+  const [boxes, lines] = await page.evaluate(() => {
     const canvas = document.body.appendChild(Object.assign(document.createElement("canvas"), { width: 300, height: 150 }));
     const pen = canvas.getContext("2d");
     const found = [["robot", 140, 65, 160, 85]];
+    const lines = [];
+    pen.moveTo = (x, y) => lines.push([x, y]);
+    pen.lineTo = (x, y) => lines.at(-1).push(x, y);
     pen.fillText = (text, x, y) => found.push([text, x, y - 6, x + pen.measureText(text).width, y + 6]);
     const labels = new globalThis.labels.Labels();
     labels.keepFree([150, 75], 10);
@@ -118,9 +123,13 @@ async function names(page) {
     for (const [name, at] of [["corner", [0, 0]], ["other corner", [299, 149]]]) labels.add(name, at, "black", 5);
     labels.write(pen, "white");
     canvas.remove();
-    return found;
+    return [found, lines];
   });
   assert.equal(boxes.length, 9);
+  const far = boxes.filter(([name, left, top, right, bottom]) => !/robot|corner/.test(name) && Math.hypot(Math.max(left - 150, 0, 150 - right), Math.max(top - 75, 0, 75 - bottom)) > 27);
+  assert.ok(far.length > 0 && far.length < 6, String(far));
+  assert.deepEqual(lines.map(([x, y]) => [x, y]), far.map(() => [150, 75]));
+  for (const [, , x, y] of lines) assert.ok(far.some(([, left, top, right, bottom]) => x >= left && x <= right && y >= top - 1 && y <= bottom + 1), "a line leads to no name");
   const crowd = await page.evaluate(() => {
     const canvas = document.body.appendChild(Object.assign(document.createElement("canvas"), { width: 240, height: 120 }));
     const pen = canvas.getContext("2d");

@@ -11,6 +11,7 @@ await visit(base, async (page) => {
   const until = (text, where) => page.waitForFunction(([text, where]) => [...document.querySelectorAll(where)].some((each) => each.textContent.includes(text)), [text, where]);
   const selected = () => page.$eval(".node[aria-selected=true]", (node) => node.textContent.trim());
   const onScreen = (where) => page.$eval(where, (each) => each.getBoundingClientRect().bottom <= innerHeight && each.getBoundingClientRect().top >= 0);
+  const colour = (where) => page.$eval(`.film-text ${where}`, (mark) => getComputedStyle(mark).backgroundColor);
   const clickOn = async (words) => { // in the text
     const at = await page.$eval(".film-text", (text, words) => {
       const range = document.createRange();
@@ -39,7 +40,7 @@ await visit(base, async (page) => {
     assert.match(await selected(), /go to cafe/, "the map selects nothing");
     await page.waitForSelector(".map[aria-label='Map: cafe']");
     await page.locator(".node", { hasText: /^\s*wave/ }).first().click();
-    await until("wave", ".film-text mark");
+    await until("wave", ".film-text mark.chosen");
     await clickOn("repeat 2 times");
     assert.match(await selected(), /repeat 2 times/);
     await page.locator(".log button", { hasText: "wave" }).first().click();
@@ -54,9 +55,15 @@ await visit(base, async (page) => {
   for (const where of [".log", "summary", ".map"]) assert.ok(await onScreen(where), `${where} is below the fold`);
   await submit(page, MISSION);
   await until("wait 600 s", ".running");
-  await until("wait 10 minutes", ".film-text mark");
-  for (const where of [".log", ".film-text", ".watch .tree", ".map"]) assert.ok(await onScreen(where), `${where} is below the fold`);
+  await until("wait 10 minutes", ".film-text mark.runs");
+  await page.waitForSelector(".node[data-status=RUNNING]");
+  assert.equal(await page.$(".scroll.chosen"), null, "a node is selected that nobody chose");
+  for (const name of ["battery, %", "cups"]) await until(name, ".watch .plots li");
+  await page.waitForFunction(() => [...document.querySelectorAll(".watch .plots li")].some((each) => each.textContent === "cups1"));
+  for (const where of [".log", ".film-text", ".watch .tree", ".map", ".watch .plots"]) assert.ok(await onScreen(where), `${where} is below the fold`);
   await selects();
+  await page.waitForSelector(".film-text mark.chosen:not(.runs):text-is('wave')");
+  assert.notEqual(await colour("mark.chosen"), await colour("mark.runs"), "what is selected looks as if it ran");
   await accessible(page, "one view");
   await page.screenshot({ path: `${pictures}/view_live.png` });
 
@@ -80,7 +87,9 @@ await visit(base, async (page) => {
   const plots = await page.$$eval(".plots li", (all) => all.map((each) => each.firstElementChild.textContent));
   for (const wanted of ["battery, %", "cups"]) assert.ok(plots.includes(wanted), String(plots));
   const picture = page.locator(".plots li", { hasText: "cups" }).locator("svg");
-  const { width } = await picture.boundingBox();
+  const { x: left, width } = await picture.boundingBox();
+  const track = await page.locator(".timeline input").boundingBox();
+  assert.ok(Math.abs(track.x + 8 - left) < 2 && Math.abs(track.width - 16 - width) < 2, "the values have another time line than the slider");
   await picture.click({ position: { x: width - 2, y: 5 } });
   await page.waitForFunction(() => [...document.querySelectorAll(".plots li")].some((each) => each.textContent === "cups1"));
   const [now, all] = (await page.textContent(".clock")).split(" / ");
@@ -100,14 +109,21 @@ await visit(base, async (page) => {
   assert.equal(await page.evaluate(() => document.documentElement.lang), "es");
   await page.click(".tabs a[href*='/robots/']:not([href$='/tasks'])");
   await until("Lo que ha pasado", ".events h2");
+  for (const words of ["saluda", "repite 2 veces", "ve a cafe", "espera 600 s"]) await until(words, ".node .words"); // not the mission, which is in English
+  await until("wait 10 minutes", ".film-text");
   await page.screenshot({ path: `${pictures}/view_spanish.png` });
   await page.click(".tabs a[href$='/runs']");
   await page.locator("li", { hasText: "set cups" }).getByRole("link", { name: "Reproducir" }).click();
-  await until("wait 600 s: se interrumpió", ".story");
+  await until("espera 600 s: se interrumpió", ".story");
+  await until("espera 600 s", ".film .node .words");
   await page.click(".tabs a[href*='/robots/']:not([href$='/tasks'])");
   await page.reload();
   await until("Darle trabajo", "summary");
+  await until("Aquí aparece lo que pase a partir de ahora.", ".log"); // an empty log would say that nothing happened
   await page.click(".tabs a[href$='/tasks']");
+  await page.fill(".submit textarea", "go to the caffe");
+  await page.click(".submit .primary");
+  await until("Línea 1: No hay nada llamado «caffe»", ".submit .problem");
   await page.fill(".submit textarea", "wave");
   await page.fill(".submit input", "on Mondays and Fridays at 9:00");
   await page.click(".submit .primary");

@@ -22,4 +22,9 @@ await visit(base, async (page) => {
   await page.setViewportSize({ width: 360, height: 740 });
   await fits(page);
   assert.equal(await page.locator(".parts .problem").textContent(), "");
+
+  await page.click(".user");
+  await page.getByRole("menuitem", { name: "Español" }).click();
+  await page.click(".parts > summary");
+  await line("machine").locator(".pill", { hasText: "activo" }).waitFor();
 });

@@ -58,7 +58,7 @@ await visit(base, async (page) => {
   await page.waitForSelector(".latch", { state: "detached" });
 
   await submit(page, MISSION);
-  await until("go to lab", ".running");
+  await page.waitForSelector(".rules li.doing"); // it's at the lab still
   await page.getByRole("button", { name: "Cancel" }).click();
   await page.click(".tabs a[href$='/runs']");
   await page.waitForFunction(() => document.querySelectorAll(".tasks li").length === 2);
@@ -79,6 +79,7 @@ await visit(base, async (page) => {
   await page.getByRole("link", { name: "Compare with this" }).click();
   await page.waitForSelector(".compared .sides");
   assert.deepEqual(await page.$$eval(".one h2 span", (all) => all.map((each) => each.textContent)), ["brew tea", "brew tea"]);
+  assert.deepEqual(await page.$$eval(".one .film-text", (all) => all.map((each) => each.textContent)), [MISSION, MISSION]);
   assert.equal(await page.$$eval(".one .rules li", (all) => all.length), 4);
   assert.match(await page.textContent(".summary .first"), /at lab: false/);
   assert.doesNotMatch(await page.textContent(".summary"), /FAILURE|SUCCESS/);

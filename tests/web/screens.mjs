@@ -60,6 +60,7 @@ await visit(base, async (page) => {
   await page.keyboard.press("Enter");
   assert.match(await current(), /nod/);
   await until("1/1", ".count");
+  await until("nod", ".film-text mark.chosen");
   await page.click(".toolbar button[aria-pressed]");
   await page.waitForSelector(".node .port");
   await page.click(".toolbar button[aria-label='Turn the tree']");
@@ -120,7 +121,7 @@ await visit(base, async (page) => {
   await page.getByRole("button", { name: "Cancel" }).click();
   await page.click(".tabs a[href$='/runs']");
   await page.locator("li", { hasText: "It can't work." }).getByRole("button", { name: "Again" }).click();
-  await page.waitForFunction(() => document.querySelectorAll("ol.tasks li .pill.bad").length > 2);
+  await page.waitForFunction(() => [...document.querySelectorAll("ol.tasks li:has(.pill.bad)")].filter((each) => each.textContent.includes("It can't work.")).length === 2);
   await page.locator("li", { hasText: "It can't work." }).getByRole("link", { name: "Replay" }).first().click();
   await page.getByRole("button", { name: "Failures of all runs" }).click();
   await until("fail: 2/2", ".often");
@@ -165,7 +166,7 @@ await visit(base, async (page) => {
   await tests('test "it waves":\n  run "tour"\n  within 5 s it has done "wave"\n\ntest "it works":\n  run "tour"\n  finally the mission succeeds\n');
   await until("1 of 2 passed", ".results");
   await page.getByRole("button", { name: "Show its words" }).click();
-  await until("battery is low", ".desk .said");
+  await until("battery is low", ".desk .chosen");
   await look("tests");
   await page.getByRole("button", { name: "Replay" }).click();
   await page.waitForSelector(".dialog .film .outcome.bad");

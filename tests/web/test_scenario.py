@@ -84,7 +84,7 @@ def test_components_devices_and_a_camera(tmp_path: Path) -> None:
 @only_long
 def test_the_words_stay_with_house_rules(page: Path, tmp_path: Path) -> None:
     rules = tmp_path / "rules.txt"
-    rules.write_text("whenever the robot is at the lab, wait 8 seconds\nwhenever the battery is below 5%, dock\n")
+    rules.write_text("whenever the robot is at the lab, wait 30 seconds\nwhenever the battery is below 5%, dock\n")
     with served("--robot", robot_file(tmp_path, machine()), "--rules", str(rules), "--speed", "4") as address:
         node(HERE / "rules.mjs", address, PASSWORD, str(tmp_path), folder=installed(HERE))
 

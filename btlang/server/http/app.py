@@ -296,13 +296,18 @@ class Api:
         return FileResponse(path, media_type="application/octet-stream")
 
     async def _show_film(self, show: Callable[..., bytes], query: tuple[str, ...] | None, request: Request) -> Response:
-        """Return what a page shows of a recording, and of others: those in the `query`, or None for all like it."""
+        """Return what a page shows of a recording, and of others: those in the `query`, or None for all like it.
+
+        What has words of nodes has them in the `language` of the query, "" for that of the mission.
+        """
         feed, name = await self._recorder(request), request.path_params["name"]
         more = await runs_like(feed, name) if query is None else [request.query_params.get(each, "") for each in query]
         async with AsyncExitStack() as stack:
             if feed.is_elsewhere:
                 await stack.enter_async_context(self._fetching)  # a copy may be large
             paths = [await stack.enter_async_context(self._file(feed, name, request)) for name in (name, *more)]
+            if show in (film, comparison):
+                show = partial(show, language=request.query_params.get("language", ""))
             return Response(await self.trials.shown(show, *paths), media_type="application/json")
 
     @asynccontextmanager

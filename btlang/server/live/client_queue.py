@@ -9,6 +9,7 @@ from collections.abc import Container
 from contextlib import suppress
 
 from btlang.server.live.robot_view import NEWEST, merge_statuses
+from btlang.server.live.translation import translate
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -19,9 +20,9 @@ _MOST = 2000
 _MUCH = 4_000_000
 """The characters of answers and topics that may wait until a client has to read first."""
 TOPICS = {
-    "tree": ("run", "statuses"), "tasks": ("change",), "events": ("event",), "robot": ("robot", "asking", "doing"),
-    "map": ("map", "things", "scan", "way"), "components": ("components",),
-    "body": ("joints", "speech"),
+    "tree": ("run", "statuses"), "tasks": ("change",), "events": ("event",), "body": ("joints", "speech"),
+    "robot": ("robot", "asking", "doing", "values"), "map": ("map", "things", "scan", "way"),
+    "components": ("components",),
 }  # fmt: skip
 """The topics of a subscription, with the kinds of messages of each. Everybody hears whether a robot is up."""
 _TOPIC = {kind: topic for topic, kinds in TOPICS.items() for kind in kinds}
@@ -30,12 +31,13 @@ _TOPIC = {kind: topic for topic, kinds in TOPICS.items() for kind in kinds}
 class RobotNews:
     """A message for many clients, which is written as JSON once. So are statuses that were merged for many."""
 
-    __slots__ = ("_merged", "_text", "message", "robot")
+    __slots__ = ("_merged", "_text", "_translated", "message", "robot")
 
     def __init__(self, robot: str, message: dict[str, Any]) -> None:
         self.robot, self.message = robot, message
         self._text = ""
         self._merged: tuple[RobotNews, RobotNews] | None = None
+        self._translated: dict[str, RobotNews] = {}
 
     @property
     def text(self) -> str:
@@ -43,6 +45,13 @@ class RobotNews:
         if not self._text:
             self._text = json.dumps({"robot": self.robot, **self.message}, separators=(",", ":"), default=str)
         return self._text
+
+    def in_language(self, language: str) -> RobotNews:
+        """Return the same with the words of nodes in a language."""
+        if language not in self._translated:
+            message = translate(self.message, language)
+            self._translated[language] = self if message is self.message else RobotNews(self.robot, message)
+        return self._translated[language]
 
     def after(self, before: RobotNews) -> RobotNews:
         """Merge these statuses with earlier ones of the same run, where these count."""
@@ -63,6 +72,8 @@ class ClientQueue:
         self._states: dict[tuple[str, str], RobotNews] = {}
         self.topics: Container[str] = TOPICS
         """The topics whose messages are taken."""
+        self.language = ""
+        """The language of the words of nodes, "" for that of each mission."""
         self._topics: dict[str, deque[str]] = {}
         self._length = 0  # of answers and topics
         self._full = self._is_closed = False
@@ -73,6 +84,8 @@ class ClientQueue:
         kind = news.message["type"]
         if kind in _TOPIC and _TOPIC[kind] not in self.topics:
             return
+        if self.language and _TOPIC.get(kind) == "tree":
+            news = news.in_language(self.language)
         if kind == "statuses":
             self._merge(news)
         elif kind in NEWEST:

@@ -182,11 +182,11 @@ class ClientProtocol:
         return answer.as_json()
 
     def _subscribe(self, client: ConnectedClient, data: dict[str, Any]) -> dict[str, Any]:
-        """Subscribe to {"robots": [...], "topics": [...], "rate": N, "after": {...}}: by default all that all robots
-        publish, at their rate, and only what comes from now on.
+        """Subscribe to {"robots": [...], "topics": [...], "rate": N, "after": {...}, "language": "es"}: by default all
+        that all robots publish, at their rate, only what comes from now on, and in the words of the missions.
         """
         robots, rate, after = data.get("robots"), data.get("rate", 0), data.get("after", {})
-        topics = data.get("topics", list(TOPICS))
+        topics, language = data.get("topics", list(TOPICS)), data.get("language", "")
         if robots is not None and not (isinstance(robots, list) and all(isinstance(name, str) for name in robots)):
             raise AccessError(400, "'robots' must be a list of names.")
         if not isinstance(rate, int | float) or isinstance(rate, bool) or not 0 <= rate <= 100:
@@ -195,7 +195,10 @@ class ClientProtocol:
             raise AccessError(400, "'after' must have the number of a change for each robot.")
         if not isinstance(topics, list) or not all(isinstance(topic, str) and topic in TOPICS for topic in topics):
             raise AccessError(400, f"'topics' must be a list of these: {', '.join(TOPICS)}.")
+        if not isinstance(language, str):
+            raise AccessError(400, "'language' must be a text.")
         self._unsubscribe(client)
+        client.queue.language = language
         client.allowance = Allowance(1.0 / rate if rate else 0.0)
         client.queue.topics = frozenset(topics)
         self._watchers[client] = None if robots is None else frozenset(robots), after

@@ -9,7 +9,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-STATES = ("asking", "components", "doing", "joints", "map", "robot", "scan", "speech", "things", "way")
+STATES = ("asking", "components", "doing", "joints", "map", "robot", "scan", "speech", "things", "values", "way")
 """The kinds of messages that say how the robot is now: the newest one of each is kept for who joins late."""
 NEWEST = (*STATES, "ages")
 """The kinds of messages of which only the newest one counts."""
@@ -65,7 +65,7 @@ def merge_statuses(before: dict[str, Any] | None, after: dict[str, Any]) -> dict
     if before is None:
         return after
     message = {**before, **after}
-    for pairs in {"changes", "words"} & message.keys():
-        both = dict(before.get(pairs, ())) | dict(after.get(pairs, ()))
-        message[pairs] = [[*pair] for pair in both.items()]
+    for part in {"changes", "words"} & message.keys():
+        both = {each[0]: each for each in (*before.get(part, ()), *after.get(part, ()))}
+        message[part] = [*both.values()]
     return message

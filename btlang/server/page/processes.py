@@ -62,14 +62,14 @@ def _place(value: Any, units: Utf16Units) -> Any:
     return [units.unit(each) for each in value] if value is not None else None
 
 
-def film(path: str) -> bytes:
-    """Return the film of a recording (see Film.data) as JSON; runs nothing."""
-    return _write_film(partial(_film, path))
+def film(path: str, language: str = "") -> bytes:
+    """Return the film of a recording (see Film) as JSON; runs nothing."""
+    return _write_film(partial(_film, path, language))
 
 
-def comparison(one: str, other: str) -> bytes:
+def comparison(one: str, other: str, language: str = "") -> bytes:
     """Return two recordings side by side as JSON (see recording/film.py); runs nothing."""
-    return _write_film(partial(_comparison, one, other))
+    return _write_film(partial(_comparison, one, other, language))
 
 
 def failures(*paths: str) -> bytes:
@@ -82,14 +82,14 @@ def tree(path: str) -> bytes:
     return _write_film(partial(_tree, path))
 
 
-def _film(path: str) -> dict[str, Any]:
+def _film(path: str, language: str) -> dict[str, Any]:
     with open_recording(path) as (recording, mission, nodes):
-        data = Film(mission, dict(recording.about)).take(recording.events(nodes)).data()
+        data = Film(mission, dict(recording.about), language).take(recording.events(nodes)).data()
     return in_units(data, data["text"])
 
 
-def _comparison(one: str, other: str) -> dict[str, Any]:
-    data = side_by_side(one, other)
+def _comparison(one: str, other: str, language: str) -> dict[str, Any]:
+    data = side_by_side(one, other, language)
     return {**data, "films": [in_units(each, each["text"]) for each in data["films"]]}
 
 

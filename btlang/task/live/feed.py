@@ -18,6 +18,7 @@ from btlang.run.events import LOGGED, Arrived, DoorMoved, Ended, Event, PeriodPa
 from btlang.run.follower import KnownNodes
 from btlang.run.logs import as_json
 from btlang.run.robot_state import RobotState, ask_sensor, round_scan
+from btlang.run.sampler import numbers_in
 from btlang.run.snapshot import Doing, find_questions, text_and_places
 from btlang.session import Run
 from btlang.task.live.robot_now import BodyNow, MapNow
@@ -127,6 +128,7 @@ class Feed:
         self._scanned_from: list[float] | None = None
         self._planned: Sequence[Point] = ()
         self._way: list[list[float]] = []
+        self._values: dict[str, float] = {}
         self._next_scan = 0.0
         self._read: dict[str, float] = {}  # when the state and the scan were read, on the clock of `_ages`
         self._doing = Doing()
@@ -135,7 +137,7 @@ class Feed:
     def sinks(self, task: int, mission: Mission, run: Run) -> list[Sink]:
         """Make the sinks of a run that is about to begin: of the task with a number, 0 for the house rules."""
         watched = _Watched(task, mission, run)
-        self._current = watched
+        self._current, self._values = watched, {}
         self._doing = Doing(watched.task) if watched.task else self._doing
         for watcher in tuple(self._watchers):
             watcher.runs.append(watched)
@@ -177,6 +179,8 @@ class Feed:
             if self._watchers:
                 self._take_way(ask_sensor(lambda: event.robot.way) or ())
                 self._body.look(event.robot, event.wall)
+                blackboard = watched.run.nodes.blackboard
+                self._values = dict(numbers_in((key, blackboard.get(key)) for key in blackboard.keys()))  # noqa: SIM118
             if self._watchers and event.wall >= self._next_scan:
                 self._next_scan = event.wall + _SCANS
                 self._scan, self._scanned_from = _scan(event), None if event.state is None else event.state.place
@@ -254,6 +258,7 @@ class Feed:
         yield {"type": "doing", **self._doing.as_dict()}
         yield {"type": "joints", "positions": self._body.joints}
         yield {"type": "speech", "text": text, "start": start, "end": end}
+        yield {"type": "values", "values": self._values}
 
 
 _SILENT: tuple[dict[str, Any], ...] = (
@@ -265,6 +270,7 @@ _SILENT: tuple[dict[str, Any], ...] = (
     {"type": "doing", **Doing().as_dict()},
     {"type": "joints", "positions": []},
     {"type": "speech", "text": "", "start": 0, "end": 0},
+    {"type": "values", "values": {}},
 )
 """The states that a watcher takes for granted until it gets others."""
 
@@ -304,10 +310,11 @@ def _statuses(watcher: _Watcher, watched: _Watched) -> Iterator[dict[str, Any]]:
     changed = watched.changed  # before the statuses, so that none of them is older
     codes = run.follower.codes()  # none before the first event
     found = watcher.known.new_statuses(codes) if codes else []
-    words = watcher.known.new_words(watched.valued.copy(), watched.mission.words)  # a copy: the run goes on
-    if found or words:
+    valued = watcher.known.new_values(watched.valued.copy())  # a copy: the run goes on
+    if found or valued:
         changes = [[index, NAMES[status]] for index, status in found]
-        said = {"words": [[*pair] for pair in words]} if words else {}
+        words = [[index, watched.mission.words(node), node.id, dict(node.ports)] for index, node in valued]
+        said = {"words": words, "language": watched.mission.vocabulary.language} if words else {}
         yield {"type": "statuses", "run": run.id, "t": changed, "changes": changes, **said}
 
 
@@ -323,7 +330,8 @@ def _tree(watched: _Watched) -> dict[str, Any]:
     prepared = [index for index, node in enumerate(filled) if is_prepared(node)]
     return {
         "nodes": listed, "prepared": prepared, "text": text, "spans": spans, "asks": asks,
-        **describe_rules(mission, nodes),
+        "named": [index for index, node in enumerate(filled) if node.name],
+        "language": mission.vocabulary.language, **describe_rules(mission, nodes),
     }  # fmt: skip
 
 

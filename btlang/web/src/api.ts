@@ -1,5 +1,5 @@
 // Requests to the server that this page came from, and to no other.
-import { t } from "./texts";
+import { said, t } from "./texts";
 
 /** What the server answers to a command. */
 export interface Answer {
@@ -27,19 +27,19 @@ export function may(me: Me, role: Role): boolean {
   return ROLES.indexOf(me.role) >= ROLES.indexOf(role);
 }
 
-/** A request that failed: the HTTP status (0: nobody answered), what the server says, and all of its answer. */
 /** Messages about a text, each with its line. */
 function inWords(messages: { message: string; hint: string; line: number }[]): string {
   return messages.map(({ message, hint, line }) => [line && `${t("write.line", { line })}:`, message, hint].filter(Boolean).join(" ")).join("\n");
 }
 
+/** A request that failed: the HTTP status (0: nobody answered), what the server says, and all of its answer. */
 export class RequestError extends Error {
   constructor(
     readonly status: number,
     text: string,
     readonly data: any = {},
   ) {
-    super(inWords(data.data?.messages ?? []) || text.replace(/^btc: error BT\d+: /, "")); // which is for a terminal
+    super(inWords(data.data?.messages ?? []) || said(text.replace(/^btc: error BT\d+: /, ""))); // which is for a terminal
   }
 }
 
@@ -53,7 +53,13 @@ export async function request(method: string, path: string, body?: unknown, sign
     ...(body === undefined ? {} : { body: JSON.stringify(body) }),
     ...(signal ? { signal } : {}),
   });
-  return answer.json().catch(() => ({}));
+  return translated(await answer.json().catch(() => ({})));
+}
+
+/** An answer with its messages in the language of the page. */
+function translated(answer: any): any {
+  for (const each of [...(answer.messages ?? []), ...(answer.data?.messages ?? [])]) for (const part of ["message", "hint"]) each[part] &&= said(each[part]);
+  return answer;
 }
 
 /** A text that isn't JSON. Throws RequestError. */
@@ -64,7 +70,7 @@ export async function requestText(path: string): Promise<string> {
 async function answered(path: string, options: RequestInit = {}): Promise<Response> {
   const answer = await fetch(path, options).catch((error) => { throw new RequestError(0, String(error)); });
   if (answer.ok) return answer;
-  const data = await answer.json().catch(() => ({}));
+  const data = translated(await answer.json().catch(() => ({})));
   throw new RequestError(answer.status, data.text ?? answer.statusText, data);
 }
 

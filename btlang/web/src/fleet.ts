@@ -119,6 +119,8 @@ const unknown = () => ({
   joints: [] as (number | null)[],
   /** What it speaks now, "" for nothing, and the characters of the word of now. */
   speech: { text: "", start: 0, end: 0 },
+  /** What its mission counts or measures now, by name. */
+  values: {} as Record<string, number>,
   /** Where it is going, as far as its navigation tells. */
   way: [] as Point[],
   /** Its task, 0 for none, its goal, and what it said and heard last, "" for nothing. */
@@ -169,6 +171,7 @@ export class Robot {
       else if (news.type === "way") this.way = news["points"];
       else if (news.type === "joints") this.joints = news["positions"];
       else if (news.type === "speech") this.speech = { text: news["text"], start: news["start"], end: news["end"] };
+      else if (news.type === "values") this.values = news["values"];
       else if (news.type === "components") this.parts = { components: news["components"], devices: news["devices"] };
       else if (news.type === "doing") this.doing = { task: news["task"], goal: news["goal"], says: news["says"], heard: news["heard"] };
     }
@@ -262,7 +265,7 @@ export function entryOf(news: News): Entry {
   return { task: news["task"], wall: news["event"].wall, event: whole(news["event"]) };
 }
 
-export type Kind = "up" | "away" | "run" | "statuses" | "robot" | "map" | "things" | "asking" | "scan" | "way" | "doing" | "joints" | "speech" | "components" | "event" | "change" | "ages" | "old" | "offline";
+export type Kind = "up" | "away" | "run" | "statuses" | "robot" | "map" | "things" | "asking" | "scan" | "way" | "doing" | "joints" | "speech" | "values" | "components" | "event" | "change" | "ages" | "old" | "offline";
 export type Watcher = (robot: Robot, kind: Kind, news: News | null) => void;
 
 /** All robots by their names. Watchers are called after each message has been taken in. */

@@ -33,7 +33,7 @@ async function openScreen(token: string): Promise<void> {
     history.replaceState(null, "", `/${address(...screen)}`);
     await start();
   } catch (error) {
-    fill(document.body, h("main", { class: "alone" }, h("p", { role: "alert", lang: "en" }, (error as Error).message)));
+    fill(document.body, h("main", { class: "alone" }, h("p", { role: "alert" }, (error as Error).message)));
   }
 }
 

@@ -3,7 +3,7 @@ import { address } from "./address";
 import { request } from "./api";
 import { fill, h, oncePerFrame } from "./dom";
 import type { Robot } from "./fleet";
-import { t } from "./texts";
+import { said, t } from "./texts";
 import type { Context, View } from "./view";
 import { MapView } from "./watch/map";
 
@@ -99,6 +99,6 @@ function latest(robot: Robot): [kind: "good" | "bad" | "quiet", text: string] {
   if (robot.state?.stopped) return ["bad", t("robot.stopped") + charge];
   if (robot.state?.paused) return ["quiet", t("robot.paused") + charge];
   if (robot.state?.acting) return ["quiet", t("robot.rule") + charge];
-  if (robot.state?.hindrance) return ["bad", robot.state.hindrance + charge];
+  if (robot.state?.hindrance) return ["bad", said(robot.state.hindrance) + charge];
   return ["good", t(robot.doing.task ? "robot.working" : "robot.ready") + charge];
 }

@@ -103,7 +103,7 @@ export class Shell {
   }
 
   private listen(tab: Tab | null): void {
-    const wanted = tab ? { topics: ALL, rate: 20, ...(this.robot ? { robots: [this.robot] } : {}) } : { topics: ["robot", "tasks", "map"], rate: 2 };
+    const wanted = tab ? { topics: ALL, rate: 20, language: language(), ...(this.robot ? { robots: [this.robot] } : {}) } : { topics: ["robot", "tasks", "map"], rate: 2 };
     if (this.heard === JSON.stringify(wanted)) return;
     this.heard = JSON.stringify(wanted);
     this.link.subscribe(wanted);

@@ -12,6 +12,7 @@ interface Subscription {
   robots?: string[];
   topics: string[];
   rate: number;
+  language?: string;
 }
 
 /** What a page shows. `mission` is the name of the one that is open, `changing` that it isn't saved. */

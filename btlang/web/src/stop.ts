@@ -3,7 +3,7 @@ import { may, request, stopBeside, type Me } from "./api";
 import { fill, h } from "./dom";
 import type { Fleet, Robot } from "./fleet";
 import type { Link } from "./socket";
-import { t } from "./texts";
+import { said, t } from "./texts";
 
 const CONFIRMED = 900; // milliseconds in which a stop has to be confirmed; people are warned within a second
 
@@ -115,7 +115,7 @@ export class EmergencyStop {
     return h(
       "div",
       { class: "latch" },
-      h("p", {}, h("strong", { dir: "auto" }, t("stop.latched", { robot: robot.name })), " ", h("span", { lang: "en", dir: "auto" }, robot.state!.stopped), !robot.isHeard && ` (${t("robot.unheard")})`),
+      h("p", {}, h("strong", { dir: "auto" }, t("stop.latched", { robot: robot.name })), " ", h("span", { dir: "auto" }, said(robot.state!.stopped)), !robot.isHeard && ` (${t("robot.unheard")})`),
       may(this.me, "operator") && h("button", { type: "button", class: "release", onclick: () => void this.release(robot) }, t("stop.release")),
     );
   }

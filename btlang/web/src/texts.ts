@@ -2,19 +2,18 @@
 import en from "./texts/en.json";
 
 export type Key = keyof typeof en;
-/** The languages with their own names. Others than English are loaded where they are chosen. */
+/** The languages with their own names. Others than English are loaded where they are chosen: see translations.ts. */
 export const languages: [string, string][] = [["en", "English"], ["de", "Deutsch"], ["es", "Español"]];
-const FURTHER: Record<string, () => Promise<{ default: Record<string, string> }>> = {
-  de: () => import("./texts/de.json"),
-  es: () => import("./texts/es.json"),
-};
 const KEPT = "btlang.language";
 let texts: Record<string, string> = en;
+/** What a server or robot says in English, in the language of the page as far as its sentences are known. */
+export let said = (english: string): string => english;
 
 /** Loads the texts of the language of the page; until then, and where that fails, they are English. */
 export async function loadTexts(): Promise<void> {
   const name = language();
-  texts = name in FURTHER ? await FURTHER[name]!().then((found) => found.default, () => en) : en;
+  const found = name === "en" ? null : await import("./translations").then(({ load }) => load(name)).catch(() => null);
+  [texts, said] = found ?? [en, (english) => english];
 }
 
 /** The language of the page: the chosen one, else the browser's, else English. */

@@ -1,7 +1,7 @@
 // Two runs side by side, at one moment: where they differ first, what ended otherwise, and what only one of them did.
 import { h } from "../dom";
 import { ANSWERS, type Status } from "../fleet";
-import { moment, t } from "../texts";
+import { moment, said, t } from "../texts";
 import { called } from "../tasks/queue";
 import { noted, Scene, type Film, type Noted } from "./scene";
 import { clock, Timeline } from "./timeline";
@@ -78,7 +78,7 @@ export class Comparison {
   private side(scene: Scene, which: number): HTMLElement {
     const { about } = scene.film;
     const title = h("h2", { class: "what" }, badge(which), h("span", { dir: "auto" }, titleOf(scene.film)), h("time", {}, about["wall"] ? moment(Number(about["wall"])) : ""));
-    return h("section", { class: "one", "aria-label": NAMES[which] }, title, h("div", { class: "ending" }, scene.outcome, scene.rules.element), h("div", { class: "stage card" }, scene.tree.element), h("div", { class: "below" }, scene.log, scene.place));
+    return h("section", { class: "one", "aria-label": NAMES[which] }, title, h("div", { class: "ending" }, scene.outcome, scene.rules.element), h("div", { class: "said-in" }, scene.film.text && h("div", { class: "card text-card" }, scene.words.element)), h("div", { class: "stage card" }, scene.tree.element), h("div", { class: "below" }, scene.log, scene.place));
   }
 
   private summary(): HTMLElement {
@@ -142,7 +142,7 @@ const side = (which: number, words: string): HTMLElement => h("li", {}, badge(wh
 function stepInWords({ nodes }: Film, { t: seconds, node, status, reason }: Step): string {
   if (seconds === null) return t("compare.no_more");
   const { label, asks } = nodes[node]!;
-  return `${clock(seconds)}  ${t(`log.${(asks && ANSWERS[status]) || status}`, { name: label })}${reason && ` (${reason})`}`;
+  return `${clock(seconds)}  ${t(`log.${(asks && ANSWERS[status]) || status}`, { name: label })}${reason && ` (${said(reason)})`}`;
 }
 
 /** The first line of a mission that says something, or its name. */

@@ -4,7 +4,7 @@ import { request } from "../api";
 import { fill, h, menuButton, set } from "../dom";
 import { downloadItems, pictures, textBlob, type Offer } from "../download";
 import { called, command, type Task } from "../tasks/queue";
-import { moment, t, type Key } from "../texts";
+import { language, moment, said, t, type Key } from "../texts";
 import type { Context, View } from "../view";
 import { Comparison, titleOf, type Compared } from "./compare";
 import { Player } from "./player";
@@ -41,18 +41,18 @@ function openAnswer<T>(path: string, make: (answer: T) => { title: HTMLElement; 
   void request("GET", path).then(
     (answer: T & { ok: boolean; text: string }) => {
       if (closed) return;
-      if (!answer.ok) return fill(element, h("p", { class: "problem", lang: "en" }, answer.text));
+      if (!answer.ok) return fill(element, h("p", { class: "problem" }, said(answer.text)));
       const made = make(answer);
       close = made.close;
       fill(element, made.title, made.element);
     },
-    (error: Error) => fill(element, h("p", { class: "problem", role: "alert", lang: "en" }, error.message)),
+    (error: Error) => fill(element, h("p", { class: "problem", role: "alert" }, error.message)),
   );
   return { element, close: () => { closed = true; close(); } };
 }
 
 function openFilm({ me }: Context, robot: string, name: string, at: number): View {
-  return openAnswer(`/api/films/${encodeURIComponent(name)}?${query(robot)}`, (film: Film) => {
+  return openAnswer(`/api/films/${encodeURIComponent(name)}?${query(robot)}&language=${language()}`, (film: Film) => {
     const player = new Player(film, at, (seconds) => history.replaceState(null, "", address("runs", robot, name, seconds.toFixed(1))));
     const of = `/${encodeURIComponent(name)}?${query(robot)}`;
     const xml = async (): Promise<Blob> => {
@@ -60,7 +60,7 @@ function openFilm({ me }: Context, robot: string, name: string, at: number): Vie
       if (!answer.ok) throw new Error(answer.text);
       return textBlob(answer.xml);
     };
-    const problem = h("p", { class: "problem", role: "alert", lang: "en" });
+    const problem = h("p", { class: "problem", role: "alert" });
     const offers = (): Offer[] => [
       { key: "download.mcap", ending: "mcap", content: async () => `/api/recordings${of}` },
       { key: "download.xml", ending: "xml", content: xml },
@@ -103,7 +103,7 @@ function showFailures(element: HTMLElement, { nodes, root }: Film, { runs, faile
 }
 
 function openComparison(robot: string, name: string, other: string, at: number | null): View {
-  return openAnswer(`/api/comparisons/${encodeURIComponent(name)}?${query(robot)}&with=${encodeURIComponent(other)}`, (compared: Compared) => {
+  return openAnswer(`/api/comparisons/${encodeURIComponent(name)}?${query(robot)}&with=${encodeURIComponent(other)}&language=${language()}`, (compared: Compared) => {
     const moved = (seconds: number): void => history.replaceState(null, "", address("runs", robot, name, WITH, other, seconds.toFixed(1)));
     const comparison = new Comparison(compared, at, moved);
     const another = h("a", { class: "button", href: address("runs", robot, name, WITH) }, t("compare.another"));
@@ -145,7 +145,7 @@ function openList(context: Context, chosen: string): View {
           h("span", { class: "number" }, `#${task.id}`),
           h("span", { class: "what", dir: "auto" }, called(task)),
           h("span", { class: `pill ${BAD.includes(task.state) ? "bad" : task.state === "completed" ? "good" : "quiet"}` }, t(`state.${task.state}` as Key)),
-          h("span", { class: "why", lang: "en", dir: "auto" }, [task.ended && moment(task.ended), task.person, task.reason].filter(Boolean).join(" · ")),
+          h("span", { class: "why", dir: "auto" }, [task.ended && moment(task.ended), task.person, said(task.reason)].filter(Boolean).join(" · ")),
           h("span", { class: "acts" }, ...acts(task, recorded.get(task.id))),
         ),
       ),

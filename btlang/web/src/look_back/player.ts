@@ -1,7 +1,7 @@
 // A film of a run, of a recording or of a trial, from any moment on.
 import { h } from "../dom";
 import { t } from "../texts";
-import type { Place } from "../watch/words";
+import type { Piece } from "../watch/words";
 import { Plots, seriesOf } from "./plots";
 import { Scene, type Film } from "./scene";
 import { Timeline } from "./timeline";
@@ -13,18 +13,19 @@ export class Player {
   readonly scene: Scene;
   private timeline: Timeline;
 
-  /** `moved` is told the time, in seconds, when somebody chose it; `light` the places in the text of what runs and is
+  /** `moved` is told the time, in seconds, when somebody chose it; `light` the pieces of the text that run or are
    *  selected, where the text is beside the player.
    */
   constructor(
     film: Film,
     at = 0,
     private moved: (seconds: number) => void = () => undefined,
-    light?: (places: Place[]) => void,
+    light?: (marked: Piece[]) => void,
   ) {
     const scene = new Scene(film, (seconds, node) => this.jump(seconds, node), undefined, light);
     const failure = film.failed >= 0 && h("button", { type: "button", onclick: () => this.jump(scene.timeOf(film.failed), film.failed) }, t("film.failure"));
-    const plots = new Plots(seriesOf(film), film.seconds, (seconds) => this.jump(seconds, -1));
+    const plots = new Plots((seconds) => this.jump(seconds, -1));
+    plots.draw(seriesOf(film), film.seconds);
     const seek = (): void => {
       scene.seek(this.timeline.now);
       plots.show(this.timeline.now);

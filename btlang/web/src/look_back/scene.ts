@@ -2,12 +2,12 @@
 import { fill, h, oncePerFrame, type Child } from "../dom";
 import { whole } from "../events";
 import { Robot, STATUSES, type Rule, type Status, type Thing, type WorldMap } from "../fleet";
-import { t, type Key } from "../texts";
+import { said, t, type Key } from "../texts";
 import { TreeView, joined, withoutRules, type TreeNode } from "../tree/tree_view";
 import { MapView, nodeNaming } from "../watch/map";
 import { RuleStrip } from "../watch/rules";
 import { Speech } from "../watch/speech";
-import { nodeAt, Words, type Place } from "../watch/words";
+import { nodeAt, pieces, Words, type Piece, type Place } from "../watch/words";
 import { clock } from "./timeline";
 
 /** See Film.data in btlang/recording/film.py. */
@@ -40,8 +40,8 @@ export type Noted = [t: number, node: number, words: string, ending: Exclude<Sta
 
 /** What was done and how it ended: what succeeded are its words alone. */
 export function noted([, , words, ending, reason]: Noted): string {
-  const said = ending && ending !== "SUCCESS" ? t(`log.${ending}`, { name: words }) : words;
-  return reason ? `${said} (${reason})` : said;
+  const done = ending && ending !== "SUCCESS" ? t(`log.${ending}`, { name: words }) : words;
+  return reason ? `${done} (${said(reason)})` : done;
 }
 
 /** Rows that begin with their times, in seconds, given out as these come. */
@@ -75,8 +75,8 @@ function inWords({ ending, stopped, is_cut, failed, nodes, text }: Film): Child[
   const start = nodes[failed]?.start ?? null;
   const line = start === null ? "" : `${t("write.line", { line: text.slice(0, start).split("\n").length })}: `;
   return [
-    h("p", {}, stopped && `${t("film.stopped")} ${stopped}. `, t(by[ending.stopped] ?? "end.stopped", { seconds, by: ending.stopped }), motion && ` ${motion}.`),
-    words && h("p", { class: "why" }, h("strong", {}, line), h("span", { lang: "en", dir: "auto" }, `${words}: ${reason}`)),
+    h("p", {}, stopped && `${t("film.stopped")} ${stopped}. `, t(by[ending.stopped] ?? "end.stopped", { seconds, by: said(ending.stopped) }), motion && ` ${motion}.`),
+    words && h("p", { class: "why" }, h("strong", {}, line), h("span", { dir: "auto" }, `${words}: ${said(reason)}`)),
     context.length > 0 && h("details", {}, h("summary", {}, t("film.context")), h("pre", { lang: "en", dir: "auto" }, context.join("\n"))),
     is_cut && h("p", {}, t("film.cut")),
   ];
@@ -104,12 +104,12 @@ export class Scene {
   private draw = oncePerFrame(() => this.show());
 
   /** `jump` is told what somebody chose in the story: a time, in seconds, and a node (-1: none); `light` gets
-   *  the places in the text of what runs, or is selected. */
+   *  the pieces of the text that run, or are selected. */
   constructor(
     readonly film: Film,
     jump: (seconds: number, node: number) => void,
     private selected: (node: number) => void = () => undefined,
-    private light: (places: Place[]) => void = () => undefined,
+    private light: (marked: Piece[]) => void = () => undefined,
   ) {
     this.rows = this.begin();
     this.tree = new TreeView({ label: t("watch.tree"), select: (node) => { this.chosen = node; this.showWords(); this.selected(node); } });
@@ -245,10 +245,10 @@ export class Scene {
       const { start = null, end = null } = nodes[at] ?? {};
       return start !== null && end !== null ? [start, end] : null;
     };
-    const running = nodes.flatMap((_, at) => (statuses[at] === "RUNNING" && !inner.has(at) && at !== this.chosen ? [place(at)] : []));
-    const lit = [place(this.chosen), ...running];
-    this.words.show(text, lit);
-    this.light(lit);
+    const running = nodes.flatMap((_, at) => (statuses[at] === "RUNNING" && !inner.has(at) ? [place(at)] : []));
+    const marked = pieces(running, place(this.chosen));
+    this.words.show(text, marked);
+    this.light(marked);
     this.map.mark(nodes[this.chosen] ? valuesOf(nodes[this.chosen]!) : []);
   }
 }

@@ -26,7 +26,7 @@ export class Timeline {
     set(this.slider, { max: seconds });
     this.slider.addEventListener("input", () => this.seek(Number(this.slider.value)));
     this.slider.addEventListener("change", () => moved(this.now));
-    this.element = h("div", { class: "timeline card" }, this.button, this.slider, this.clock, this.speed, ...more);
+    this.element = h("div", { class: "timeline card" }, this.button, this.slider, h("div", { class: "controls" }, this.clock, this.speed, ...more));
   }
 
   close(): void {

@@ -11,7 +11,7 @@ export function submitForm(context: Context, done: () => void = () => undefined)
   const mission = h("select", {}, h("option", { value: "" }, t("submit.words")));
   const rule = h("input", { dir: "auto", placeholder: t("submit.rule.example") });
   const said = h("p", { class: "said", role: "status" });
-  const problem = h("pre", { class: "problem", role: "alert", lang: "en" });
+  const problem = h("pre", { class: "problem", role: "alert" });
   const button = h("button", { class: "primary" }, t("submit"));
   const words = h("label", {}, t("submit.text"), text);
   mission.addEventListener("change", () => (words.hidden = mission.value !== ""));

@@ -1,7 +1,7 @@
 // The queue of a robot and its schedules: add, reorder, cancel, remove.
 import { may } from "../api";
 import { fill, h } from "../dom";
-import { moment, t, type Key } from "../texts";
+import { moment, said, t, type Key } from "../texts";
 import type { Context, View } from "../view";
 import { called, command, Queue, type Task } from "./queue";
 import { ruleInWords, type Scheduled } from "./schedule";
@@ -38,7 +38,7 @@ export function openTasks(context: Context): View {
       h("span", { class: "number" }, `#${task.id}`),
       h("span", { class: "what", dir: "auto" }, called(task)),
       h("span", { class: `pill ${begun ? "good" : task.state === "blocked" ? "bad" : "quiet"}` }, t(`state.${task.state}` as Key)),
-      h("span", { class: "why", lang: "en", dir: "auto" }, [task.waits || task.reason, task.person].filter(Boolean).join(" · ")),
+      h("span", { class: "why", dir: "auto" }, [said(task.waits || task.reason), task.person].filter(Boolean).join(" · ")),
       operates && h(
         "span", { class: "acts" },
         !begun && before && !["underway", "standby"].includes(before.state) && button("tasks.earlier", () => act("reorder", { task: task.id, before: before.id }), task.mission),

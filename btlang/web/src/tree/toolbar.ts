@@ -11,7 +11,7 @@ export function toolbar(view: TreeCanvas): HTMLElement {
   const next = (step: number): void => {
     if (!found.length) return;
     at = (at + step + found.length) % found.length;
-    view.select(found[at]!);
+    view.pick(found[at]!);
     fill(count, `${at + 1}/${found.length}`);
   };
   search.addEventListener("input", () => {

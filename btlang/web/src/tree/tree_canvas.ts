@@ -64,12 +64,13 @@ export class TreeCanvas {
   /** Shows another tree; with `keep` the same one after an edit, so folds, selection and place stay where they can. */
   setNodes(nodes: readonly TreeNode[], keep = false): void {
     const open = keep ? new Set(this.items.rows.filter((item) => item.open).map((item) => item.node)) : null;
-    const selected = keep ? this.selected : null;
+    const selected = keep && this.scroll.classList.contains("chosen") ? this.selected : null;
     this.nodes = nodes;
     this.items.all = new Items(nodes);
     this.statuses = nodes.map(() => "IDLE");
     this.matches.clear();
     this.current = null;
+    this.scroll.classList.remove("chosen");
     if (open) for (const node of open) if (node < nodes.length) this.items.all.open(this.items.all.reveal(node) ?? this.items.all.roots[0]!);
     if (!keep) this.scroll.scrollTo(0, 0);
     this.arrange();
@@ -110,6 +111,12 @@ export class TreeCanvas {
     const item = node === null ? null : this.items.all.reveal(node);
     if (item && this.items.rows[item.row] !== item) this.arrange();
     this.move(item, scroll);
+  }
+
+  /** Selects a node as a click on it does. */
+  pick(node: number): void {
+    this.select(node);
+    this.options.select?.(node);
   }
 
   /** Brings a node into view, where it isn't. */
@@ -249,6 +256,7 @@ export class TreeCanvas {
 
   private move(item: Item | null, scroll: boolean): void {
     this.current = item;
+    this.scroll.classList.toggle("chosen", item !== null); // not so the first node, at which the keys begin
     if (item && scroll) this.show(item);
     this.draw();
   }

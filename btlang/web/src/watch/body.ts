@@ -3,6 +3,7 @@ import { requestText } from "../api";
 import type { BodyView } from "../body/body_view";
 import { fill, h } from "../dom";
 import type { Robot } from "../fleet";
+import { state } from "../robots";
 import { t } from "../texts";
 import type { Context } from "../view";
 import { spoken } from "./speech";
@@ -26,7 +27,7 @@ export class Body {
     if (!this.canvas) void this.begin();
     this.view?.show(robot);
     const says = robot.speech.text;
-    this.canvas?.setAttribute("aria-label", t("body", { robot: robot.name, does: [does, says && t("log.say", { text: says })].filter(Boolean).join("; ") || t("robot.ready") }));
+    this.canvas?.setAttribute("aria-label", t("body", { robot: robot.name, does: [does, says && t("log.say", { text: says })].filter(Boolean).join("; ") || state(robot)[1] }));
     this.showBubble(robot);
   }
 

@@ -1,7 +1,7 @@
 // Why a mission failed, with the node and the words that did.
 import { fill, h } from "../dom";
 import type { Entry } from "../fleet";
-import { t } from "../texts";
+import { said, t } from "../texts";
 
 const AROUND = 2; // lines of the mission before and after the one that failed
 
@@ -16,12 +16,12 @@ export class Failure {
   }
 
   /** Shows a failed end, with the lines of the mission around it. */
-  note({ task, event }: Entry, text: string, said: string): void {
+  note({ task, event }: Entry, text: string, label: string): void {
     if (event.event !== "end" || event.outcome !== "FAILURE" || event.stopped || !task) return;
     const words = h("pre", { class: "words", dir: "auto" });
     fill(
       this.element,
-      h("p", {}, h("strong", {}, t("failure", { what: said || event.id })), " ", h("span", { lang: "en", dir: "auto" }, event.reason)),
+      h("p", {}, h("strong", {}, t("failure", { what: label || event.id })), " ", h("span", { dir: "auto" }, said(event.reason))),
       words,
       event.path && h("button", { type: "button", onclick: () => this.select(event.path) }, t("failure.node")),
     );

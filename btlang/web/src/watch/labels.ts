@@ -1,4 +1,4 @@
-// The names on a map, each beside what it names, where no other name is. One that has no such place isn't written.
+// The names on a map, each where no other name is: beside what it names, or with a line to it. One without a place isn't written.
 import type { Point } from "../fleet";
 
 const FONT = "12px system-ui, sans-serif";
@@ -38,22 +38,40 @@ export class Labels {
     context.font = FONT;
     context.textAlign = "left";
     context.textBaseline = "middle";
-    context.lineWidth = 3;
     context.setLineDash([]);
-    context.strokeStyle = edge;
     const names: Box[] = [];
-    for (const { text, at, paint, gap } of this.labels) {
+    const written: [Label, Box][] = [];
+    for (const label of this.labels) {
+      const { text, at, gap } = label;
       const places = placesOf(at, context.measureText(text).width, gap, wide, high).filter((place) => names.every((box) => !shared(place, box)));
       const box = freest(places, this.taken);
       if (!box) continue;
       names.push(box);
       this.taken.push(box);
+      written.push([label, box]);
+    }
+    for (const each of written) lead(context, ...each); // below all names
+    context.lineWidth = 3;
+    context.strokeStyle = edge;
+    for (const [{ text, paint }, box] of written) {
       const middle = (box.top + box.bottom) / 2;
       context.strokeText(text, box.left, middle);
       context.fillStyle = paint;
       context.fillText(text, box.left, middle);
     }
   }
+}
+
+/** Draws a line from what is named to a name that isn't beside it. */
+function lead(context: CanvasRenderingContext2D, { at: [x, y], paint, gap }: Label, { left, right, top, bottom }: Box): void {
+  const [across, down] = [Math.max(left, Math.min(x, right)), Math.max(top, Math.min(y, bottom))];
+  if (Math.hypot(across - x, down - y) < gap + 1.5 * HEIGHT) return;
+  context.lineWidth = 1;
+  context.strokeStyle = paint;
+  context.beginPath();
+  context.moveTo(x, y);
+  context.lineTo(across, down);
+  context.stroke();
 }
 
 /** Above, below, right and left of a point, then further away above and below; moved into a picture of a size. */

@@ -2,10 +2,11 @@
 import { h } from "../dom";
 import { ALARMS, DEFAULTS } from "../events";
 import type { Entry } from "../fleet";
-import { KEYS, moment, t, type Key } from "../texts";
+import { KEYS, moment, said, t, type Key } from "../texts";
 
 const NEWEST = 200;
 const PERIOD = 200; // milliseconds
+const REASONS = ["reason", "stopped"]; // fields that are English
 const TEXTS = KEYS.map((key) => [key, key.split(".")] as const).filter(([, [log]]) => log === "log");
 
 /** An event in words, "" for one that only programs need. Of the texts that its fields fit, the last one says it:
@@ -13,7 +14,7 @@ const TEXTS = KEYS.map((key) => [key, key.split(".")] as const).filter(([, [log]
  */
 export function inWords(event: Entry["event"]): string {
   const fields: Record<string, unknown> = { ...event };
-  const values = Object.fromEntries(Object.entries(fields).map(([name, value]) => [name, written(value)]));
+  const values = Object.fromEntries(Object.entries(fields).map(([name, value]) => [name, REASONS.includes(name) ? said(written(value)) : written(value)]));
   const fits = (condition: string): boolean => {
     const [name, wanted] = condition.split("=") as [string, string?];
     return wanted === undefined ? Boolean(values[name]) && fields[name] !== DEFAULTS[event.event]?.[name] : values[name] === wanted;
@@ -34,7 +35,8 @@ function written(value: unknown): string {
 /** The log, of which only the newest lines are shown. New ones come at its end. */
 export class LogView {
   private lines = h("ol");
-  readonly element = h("div", { class: "log", role: "log", "aria-label": t("log"), tabindex: 0 }, this.lines);
+  private empty = h("p", { class: "empty" }, t("watch.from_now"));
+  readonly element = h("div", { class: "log", role: "log", "aria-label": t("log"), tabindex: 0 }, this.empty, this.lines);
   private last: Entry | null = null;
   private lastWords = "";
   private atEnd = true;
@@ -64,6 +66,7 @@ export class LogView {
       const words = inWords(entry.event);
       if (!words || words === this.lastWords) continue; // several parts of a robot say that they were stopped
       this.lastWords = words;
+      this.empty.remove();
       this.lines.append(
         h("li", { class: ALARMS.has(entry.event.event) || entry.event.event === "FAILURE" ? "bad" : null }, h("time", {}, moment(entry.wall)), "node" in entry.event && entry.event.node !== undefined
             ? h("button", { type: "button", class: "plain", dir: "auto", onclick: () => entry.task === this.entries.at(-1)?.task && this.choose((entry.event as { node: number }).node) }, words)

@@ -3,7 +3,7 @@ import { may } from "../api";
 import { fill, h } from "../dom";
 import type { Component, Device, Robot } from "../fleet";
 import { command } from "../tasks/queue";
-import { t } from "../texts";
+import { said, t } from "../texts";
 import type { Context } from "../view";
 
 const PERIOD = 700; // milliseconds between two pictures of a camera
@@ -37,12 +37,12 @@ export class Parts {
     const wrong = each.state !== "active";
     const restart = h("button", { type: "button", disabled: !up, onclick: () => void this.restart(each.name) }, t("parts.restart"));
     const about = [each.place, each.version, each.starts > 1 && t("parts.starts", { count: String(each.starts) })].filter(Boolean).join(" · ");
-    return this.line(each.name, each.state, wrong, about, each.why, may(this.context.me, "administrator") && restart);
+    return this.line(each.name, said(each.state), wrong, about, said(each.why), may(this.context.me, "administrator") && restart);
   }
 
   private device(each: Device): HTMLElement {
     const state = each.silent ? t("parts.silent") : t("parts.works");
-    const line = this.line(each.name, state, each.silent !== "", [each.kind, each.driver, each.port].filter(Boolean).join(" · "), each.silent, false);
+    const line = this.line(each.name, state, each.silent !== "", [each.kind, each.driver, each.port].filter(Boolean).join(" · "), said(each.silent), false);
     if (each.kind === "camera") {
       let camera = this.cameras.get(each.name);
       if (!camera) this.cameras.set(each.name, (camera = new Camera(this.context, each.name)));

@@ -14,13 +14,14 @@ import { Failure } from "./failure";
 import { LogView } from "./log";
 import { MapView, nodeNaming } from "./map";
 import { Offers } from "./offers";
-import { Parts } from "./parts";
+import type { Parts } from "./parts";
 import { Question } from "./question";
 import { RuleStrip } from "./rules";
 import { Speech } from "./speech";
-import { Talk } from "./talk";
+import type { Talk } from "./talk";
+import type { LiveValues } from "./values";
 import { Voice } from "./voice";
-import { nodeAt, Words } from "./words";
+import { nodeAt, pieces, Words } from "./words";
 
 const MOST_RUNNING = 12; // that are listed
 
@@ -56,27 +57,28 @@ class Watch implements View {
   private body: Body;
   private offers: Offers;
   private question: Question;
-  private talk: Talk;
+  private talk: Talk | null = null;
   private voice: Voice;
-  private parts: Parts;
+  private side: HTMLElement;
+  private parts: Parts | null = null;
+  private values: LiveValues | null = null;
   private failure: Failure;
   private queue: Queue;
   private unwatch: () => void;
   private refresh = oncePerFrame(() => this.show());
   private shownControls = "";
+  private closed = false;
 
   constructor(private context: Context) {
     this.robot = context.fleet.get(context.robot);
     this.body = new Body(context);
     this.offers = new Offers(context);
     this.question = new Question(context);
-    this.talk = new Talk(context);
     this.voice = new Voice(context);
-    this.parts = new Parts(context);
     this.failure = new Failure((path) => this.select(path));
     this.queue = new Queue(context, () => this.refresh());
     const operates = may(context.me, "operator");
-    this.place = h("div", { class: "card place" }, this.body.element, this.map.canvas, h("div", { class: "beside" }, this.voice.element, this.visitor), this.speech.element, this.question.element, this.talk.element);
+    this.place = h("div", { class: "card place" }, this.body.element, this.map.canvas, h("div", { class: "beside" }, this.voice.element, this.visitor), this.speech.element, this.question.element);
     this.element = h(
       "section",
       { class: "watch" },
@@ -89,10 +91,11 @@ class Watch implements View {
         this.text,
         h("div", { class: "card events" }, h("h2", {}, t("log")), this.log.element),
       ),
-      h("div", { class: "side" }, this.place, this.parts.element),
+      this.side = h("div", { class: "side" }, this.place),
     );
     this.unwatch = context.fleet.watch((robot, kind, news) => {
       if (robot !== this.robot) return;
+      this.values?.note(kind);
       if (kind === "statuses" && news?.["run"] === this.run?.id) {
         this.tree.setWords(news!["words"] ?? []);
         this.tree.setStatuses(news!["changes"]);
@@ -104,21 +107,38 @@ class Watch implements View {
         this.voice.note(entry);
       }
       if (kind === "up") this.body.close(); // it may have another body by now
-      if (kind === "run" && news!["task"]) this.failure.clear();
+      if (kind === "run" && news!["task"]) {
+        this.failure.clear();
+        this.values?.begin();
+      }
       this.refresh();
     });
     this.show();
+    void this.complete();
   }
 
   close(): void {
+    this.closed = true;
     this.unwatch();
     this.queue.close();
     this.map.close();
     this.body.close();
-    this.parts.close();
-    this.talk.close();
+    this.parts?.close();
+    this.talk?.close();
     this.voice.close();
     this.tree.close();
+  }
+
+  /** Adds what nobody needs at first. */
+  private async complete(): Promise<void> {
+    const [{ LiveValues }, { Parts }, { Talk }] = await Promise.all([import("./values"), import("./parts"), import("./talk")]);
+    if (this.closed) return;
+    this.values = new LiveValues(this.robot);
+    this.parts = new Parts(this.context);
+    this.talk = new Talk(this.context);
+    this.place.append(this.talk.element);
+    this.side.append(this.values.element, this.parts.element);
+    this.refresh();
   }
 
   private show(): void {
@@ -140,8 +160,8 @@ class Watch implements View {
     this.offers.show(robot, task !== null);
     this.map.redraw();
     this.question.show(robot);
-    this.talk.show(robot);
-    this.parts.show(robot);
+    this.talk?.show(robot);
+    this.parts?.show(robot);
     this.log.update(robot.entries);
     this.showControls();
   }
@@ -160,7 +180,7 @@ class Watch implements View {
     this.run = run;
     const leaves = run && this.robot.up ? running(run) : [];
     this.text.hidden = !run?.text;
-    this.words.show(run?.text ?? "", [...leaves, this.chosen].map((node) => run?.places[node] ?? null));
+    this.words.show(run?.text ?? "", pieces(leaves.map((node) => run?.places[node] ?? null), run?.places[this.chosen] ?? null));
     const words = leaves.slice(0, MOST_RUNNING).map((leaf) => run!.nodes[leaf]![2]);
     const shown = JSON.stringify([run?.id, leaves, words]);
     if (this.running.dataset["shown"] === shown) return;

@@ -26,7 +26,7 @@ export function ask(title: string, fields: Field[], does: (values: Record<string
     inputs.set(field.name, input);
     labels.set(field.name, h("label", {}, field.label, input));
   }
-  const problem = h("p", { class: "problem", role: "alert", lang: "en" });
+  const problem = h("p", { class: "problem", role: "alert" });
   const values = (): Record<string, string> => Object.fromEntries([...inputs].map(([name, input]) => [name, input.value]));
   const changed = new Set<EventTarget>();
   const update = (event?: Event): void => {

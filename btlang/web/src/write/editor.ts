@@ -9,6 +9,7 @@ import { Decoration, drawSelection, EditorView, highlightActiveLine, highlightSp
 
 import { h } from "../dom";
 import { t } from "../texts";
+import type { Piece } from "../watch/words";
 import type { Change, Message, Reader } from "./understood";
 
 /** `changed` is called after each change of the text, `moved` when the caret goes elsewhere. */
@@ -47,15 +48,14 @@ const coloured = StateField.define<DecorationSet>({
   provide: (field) => EditorView.decorations.from(field),
 });
 const mark = StateEffect.define<{ from: number; to: number } | null>();
-const lights = StateEffect.define<[start: number, end: number][]>();
+const lights = StateEffect.define<readonly Piece[]>();
 const marked = StateField.define<DecorationSet>({
   create: () => Decoration.none,
   update(before, transaction) {
     let now = before.map(transaction.changes);
     for (const effect of transaction.effects) {
-      const places = effect.is(lights) ? [...effect.value].filter(([start, end]) => start < end && end <= transaction.newDoc.length).sort(([one], [other]) => one - other) : null;
-      if (places) now = Decoration.set(places.map(([start, end]) => Decoration.mark({ class: "said" }).range(start, end)));
-      if (effect.is(mark)) now = effect.value && effect.value.from < effect.value.to ? Decoration.set(Decoration.mark({ class: "said" }).range(effect.value.from, effect.value.to)) : Decoration.none;
+      if (effect.is(lights)) now = Decoration.set(effect.value.filter(([, end]) => end <= transaction.newDoc.length).map(([start, end, kind]) => Decoration.mark({ class: kind }).range(start, end)));
+      if (effect.is(mark)) now = effect.value && effect.value.from < effect.value.to ? Decoration.set(Decoration.mark({ class: "chosen" }).range(effect.value.from, effect.value.to)) : Decoration.none;
     }
     return now;
   },
@@ -76,7 +76,9 @@ const colours = EditorView.theme({
   ".token-name": { color: "var(--success)", fontWeight: "600" },
   ".token-text, .token-number": { color: "var(--skipped)" },
   ".token-comment": { color: "var(--muted)", fontStyle: "italic" },
-  ".said": { backgroundColor: "var(--mark)", borderRadius: "2px" },
+  ".chosen": { backgroundColor: "var(--mark)", borderRadius: "2px" },
+  ".runs": { backgroundColor: "var(--now)", borderRadius: "2px" },
+  ".runs.chosen": { boxShadow: "inset 0 0 0 2px var(--mark)" },
   ".cm-tooltip": { backgroundColor: "var(--raised)", color: "var(--text)", border: "1px solid var(--line)", borderRadius: "6px", boxShadow: "0 4px 16px rgb(0 0 0 / 18%)", maxWidth: "min(34rem, 90vw)" },
   ".cm-tooltip .about": { padding: "0.5rem 0.75rem", display: "grid", gap: "0.25rem" },
   ".cm-tooltip-autocomplete ul li[aria-selected]": { backgroundColor: "var(--accent)", color: "var(--on-accent)" },
@@ -158,9 +160,9 @@ export class Editor {
     this.silent = false;
   }
 
-  /** Marks some places, without going there. */
-  light(places: readonly ([start: number, end: number] | null)[]): void {
-    this.view.dispatch({ effects: lights.of(places.filter((place) => place !== null)) });
+  /** Marks some pieces, without going there. */
+  light(marked: readonly Piece[]): void {
+    this.view.dispatch({ effects: lights.of(marked) });
   }
 
   /** Puts the caret there. */

@@ -15,7 +15,7 @@ export function merge(reason: string, theirs: Kept, mine: string, take: (text: s
   const place = h("div", { class: "merge" });
   const dialog = show(
     t("write.stale"),
-    h("p", { lang: "en" }, reason),
+    h("p", {}, reason),
     h("p", {}, t("write.merge_help")),
     place,
     h(

@@ -19,7 +19,7 @@ export async function choose(reader: Reader, text: string, conditions: boolean, 
     topic,
     items: items.filter(({ sort, insert }) => insert && (sort === "name" || conditions === (sort === "condition"))),
   }));
-  const problem = h("p", { class: "problem", role: "alert", lang: "en" });
+  const problem = h("p", { class: "problem", role: "alert" });
   const input = h("input", { type: "text", dir: "auto", lang: "en", autocomplete: "off", "aria-label": t("write.words"), placeholder: t("write.words") });
   const list = h("div", { class: "palette", lang: "en" });
   const done = async (words: string): Promise<void> => {

@@ -37,7 +37,7 @@ export interface Tested {
 export class Tests {
   readonly element: HTMLElement;
   private state = h("span", { class: "state", role: "status" });
-  private problem = h("p", { class: "problem", role: "alert", lang: "en" });
+  private problem = h("p", { class: "problem", role: "alert" });
   private results = h("ol", { class: "results", "aria-live": "polite" });
   private editor: Editor;
   private saved: SavedMission;
@@ -138,7 +138,7 @@ export class Tests {
   }
 
   private asProblem({ line, code, message }: Problem): HTMLElement {
-    return h("li", { class: "bad" }, h("button", { type: "button", class: "plain", onclick: () => this.go(line) }, h("b", {}, code), " ", h("span", { lang: "en" }, message)));
+    return h("li", { class: "bad" }, h("button", { type: "button", class: "plain", onclick: () => this.go(line) }, h("b", {}, code), " ", h("span", {}, message)));
   }
 
   private asResult(result: Result): HTMLElement {

@@ -39,7 +39,7 @@ function openList(context: Context): View {
       );
       fill(list, ...(items.length ? items : [h("li", { class: "empty" }, t("write.empty"))]));
     },
-    (error: Error) => fill(list, h("li", { class: "problem", lang: "en" }, error.message)),
+    (error: Error) => fill(list, h("li", { class: "problem" }, error.message)),
   );
   const begin = (): void =>
     ask(t("write.new"), [{ name: "name", label: t("write.name"), required: true }], async ({ name }) => {
@@ -56,10 +56,10 @@ class Desk {
   private title: HTMLElement;
   private state = h("span", { class: "state", role: "status" });
   private company = h("p", { class: "company", role: "status", dir: "auto" });
-  private problem = h("p", { class: "problem", role: "alert", lang: "en" });
+  private problem = h("p", { class: "problem", role: "alert" });
   private origin = h("div", { class: "offered origin" });
   private offered = h("div", { class: "offered" });
-  private messages = h("ol", { class: "messages", lang: "en" });
+  private messages = h("ol", { class: "messages" });
   private outline = h("select", { "aria-label": t("write.outline") }, h("option", { value: "0" }, t("write.outline")));
   private text = h("div", { class: "text" });
   private save = h("button", { type: "button", class: "primary", onclick: () => void this.keep() }, t("write.keep"));
@@ -362,7 +362,7 @@ class Desk {
       fill(this.trial);
       this.trial.hidden = true;
     };
-    const player = (this.player = new Player(film, 0, () => undefined, (places) => this.editor.text === text && this.editor.light(places)));
+    const player = (this.player = new Player(film, 0, () => undefined, (marked) => this.editor.text === text && this.editor.light(marked)));
     fill(this.trial, h("div", { class: "doing" }, h("h2", {}, t("write.try")), h("button", { type: "button", onclick: close }, t("close"))), player.element);
     this.trial.hidden = false;
   }
