@@ -20,6 +20,8 @@ from btlang.vocabulary.value_type import DOOR, PERSON, PLACE
 
 WHERE = ("at", "inside")
 """The parts of a description that say at which place somebody or something is."""
+_FROM = ("off",)
+"""The part that says from where something is fetched."""
 _CLOSED, _OPEN = "DoorClosed", "DoorOpen"
 _FIRST = "comes first, and fails if it can't be done."
 _WHICH, _BEFORE = "What decides about it stands before it.", "To ask before it, write: "
@@ -123,9 +125,8 @@ def leads_through(node: ast.If, before: Sequence[ast.Phrase]) -> bool:
     if any(not doors.isdisjoint(each.entry.given(DOOR, each.arguments)) for each in before):
         return False  # `wait until the kitchen door is open`
     journeys = [each for each in before if MOVES in each.entry.resources]
-    return any(
-        f" {goal.lower()} " in f" {door.lower()} " for door in doors for each in journeys for goal in _places(each)
-    )
+    goals = {goal for each in journeys for goal in (*_places(each), *described_places(each, _FROM))}
+    return any(f" {goal.lower()} " in f" {door.lower()} " for door in doors for goal in goals)
 
 
 def on_the_way(node: ast.If, before: Sequence[ast.Ast], vocabulary: Lexicon) -> Diagnostic:

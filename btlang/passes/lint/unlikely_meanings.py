@@ -223,9 +223,10 @@ def find_distant_questions(compilation: Compilation) -> Iterator[Diagnostic]:
         if id(phrase) in in_rules or phrase.entry.constrains:
             continue  # what a rule does is done at some time
         named = phrase.entry.given(PERSON, phrase.arguments)
-        choice = choice_of(named[0]) if named else None
+        seen = phrase.entry.given(OBJECT, phrase.arguments) if phrase.entry.id in _SIGHTS else ()
+        choice = next(map(choice_of, (*named, *seen)), None)
         parts = dict(choice.parts) if choice is not None else {}
-        there = next((parts[relation] for relation in ("at", "inside") if relation in parts), "")
+        there = next((parts[relation] for relation in ("at", "inside", "on") if relation in parts), "")
         goal = there or (named[0] if named and named[0] in vocabulary.values.listed(PERSON) else "")
         drives = drives_robot(phrase.entry)
         stays = phrase.entry.sort == "action" and not drives

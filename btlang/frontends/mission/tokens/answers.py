@@ -20,6 +20,7 @@ from btlang.frontends.mission.tokens.replies import REPLIES, missing_words, pers
 from btlang.frontends.mission.tokens.sentence_reader import is_answer, is_question, latest_question
 from btlang.frontends.mission.tokens.silent_words import begins
 from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of
+from btlang.text.source import Span
 from btlang.tree.answers import (
     ABOUT_ANSWERS,
     ANSWERED,
@@ -250,7 +251,8 @@ class Answers(AddressedTexts):
         value = token.value
         if not isinstance(value, Called) or value.entry.id not in REPLIES:
             return  # as nearly always
-        may_ask = self._may_ask and not (self._is_done_until() or self._speaks_of_another())
+        is_asked = self._may_ask and latest_question(self._tokens) is not None  # `ask Bob for the cup` is no question
+        may_ask = is_asked and not (self._is_done_until() or self._speaks_of_another())
         if isinstance(value, Called) and value.entry.id in (PERSON_SAYS, SOMEBODY_SAYS) and may_ask:
             value = token.value = self._answer_of_asked(value)
         if not isinstance(value, Called) or value.entry.id != ANSWERED:
@@ -262,6 +264,10 @@ class Answers(AddressedTexts):
         if find(self._vocabulary.values.pronoun_words, self._text.words, at) is None:
             return
         words, person = value.arguments[0][1], self._context.latest.get(PERSON, "")
+        said = Span(self._text.source, token.start, token.end)
+        if set(self._vocabulary.asking["replying"]).isdisjoint(said.text.lower().split()):
+            self._calls.problems.append(diagnostic("BT145", said, words=said.text, example=EXAMPLE))
+            return  # `if he wants tea`: nobody says so unasked
         heard = self._vocabulary.entry(PERSON_SAYS if person else SOMEBODY_SAYS)
         if heard is not None:
             by_type = {PERSON: person, TEXT: words}
