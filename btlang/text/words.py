@@ -34,7 +34,7 @@ _PIECE = re.compile(
     |([,:()%°{{}}])                                                    # mark
     |(\n[ \t\r]*{_ITEM})                                               # line
     |("[^"\n]*"|(?<!\w)'[^'\n]*'(?!\w))                                # quote
-    |([.!?]+|;)                                                        # stop
+    |((?:[.!?]+|;)(?:[ \t]+\d{{1,3}}[.)](?=[ \t]))?)                     # stop, with the mark of the next item: `. 2. `
     |(\#[^\n]*|\Z)                                                     # comment
     |("[^\n]*)                                                         # open
     |(.))                                                              # other""",

@@ -6,13 +6,20 @@ what is taken behind it.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 
+from btlang.text.source import Span
 from btlang.tree import ast
 from btlang.tree.visit import fold
 from btlang.vocabulary.capabilities import TRAVELS
-from btlang.vocabulary.references import ALL, Choice, choice_of
-from btlang.vocabulary.value_type import PLACE
+from btlang.vocabulary.descriptions import NAME
+from btlang.vocabulary.references import ALL, NAMES, Choice, choice_of
+from btlang.vocabulary.value_type import OBJECT, PLACE
+
+PICK_UP = "PickUp"
+"""The id of the command that picks something up and keeps it."""
+_STOP = re.compile(r"[.!?;\n]")
 
 
 def gathered(root: ast.Ast) -> ast.Ast:
@@ -21,6 +28,58 @@ def gathered(root: ast.Ast) -> ast.Ast:
         root = fold(root, ast.parts, lambda node, done: _joined(node, done, _says_it))
     root = fold(root, ast.parts, _with_tours_apart)
     return fold(root, ast.parts, lambda node, done: _joined(node, done, _is_other_case))
+
+
+def with_each_carried(root: ast.Ast) -> ast.Ast:
+    """Return a mission in which each thing of a list is picked up and taken somewhere before the next one.
+
+    `fetch the hammer and the wrench from the shed and lay them both on the table` is a round for each; a full stop ends
+    it. A list without `from the shed` is a round by then.
+    """
+    picked = [node for node in ast.parents_first(root) if isinstance(node, ast.Phrase) and node.entry.id == PICK_UP]
+    return fold(root, ast.parts, _carry_each) if len(picked) > 1 else root
+
+
+def _carry_each(node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
+    if not isinstance(node, ast.Chain) or node.operator not in ("sequence", "and"):
+        return ast.with_parts(node, done)
+    made: list[ast.Ast] = []
+    for item in done:
+        picked = _picked(made[-1]) if made else []
+        choice = set_of(item) if picked else None
+        names = dict(choice.parts).get(NAMES, "").split(";") if choice is not None else []
+        gap = item.span.source.text[made[-1].span.end : item.span.start] if made else ""
+        if choice is None or [name for _, name in picked] != names or _STOP.search(gap):
+            made.append(item)
+            continue
+        span = Span(item.span.source, made[-1].span.start, item.span.end)
+        own = (with_argument(item, choice.text, key) for key, _ in picked)
+        rounds = (ast.Chain("sequence", both, True, span) for both in zip(ast.parts(made[-1]), own, strict=True))
+        made[-1] = ast.Chain("sequence", tuple(rounds), True, span)
+    return made[0] if len(made) == 1 else node.replace(items=tuple(made))
+
+
+def _picked(node: ast.Ast) -> list[tuple[str, str]]:
+    """Return what a list picks up, each with its name; empty for anything else."""
+    if not ast.is_list(node) or not isinstance(node, ast.Chain):
+        return []
+    picked: list[tuple[str, str]] = []
+    for each in node.items:
+        things = each.entry.given(OBJECT, each.arguments) if isinstance(each, ast.Phrase) else []
+        if not isinstance(each, ast.Phrase) or each.entry.id != PICK_UP or len(things) != 1:
+            return []
+        choice = choice_of(things[0])
+        named = (things[0], things[0]) if choice is None else (f"{{{choice.key}}}", dict(choice.parts).get(NAME, ""))
+        picked.append(named)
+    return picked
+
+
+def with_argument(node: ast.Ast, old: str, new: str) -> ast.Ast:
+    """Return a command with another text in its arguments; anything else as it is."""
+    if not isinstance(node, ast.Phrase | ast.Name):
+        return node
+    arguments = tuple((slot, new if text == old else text) for slot, text in node.arguments)
+    return node.replace(arguments=arguments)  # type: ignore[no-any-return]
 
 
 def set_of(node: ast.Ast) -> Choice | None:

@@ -15,7 +15,7 @@ from btlang.text.source import Source
 from btlang.text.words import split
 from btlang.tree import ast
 from btlang.tree.answers import ABOUT_ANSWERS, ASK, asks
-from btlang.tree.round_parts import gathered, is_journey, set_of
+from btlang.tree.round_parts import PICK_UP, gathered, is_journey, set_of, with_argument, with_each_carried
 from btlang.tree.sums import COMPARED, COUNTING
 from btlang.tree.visit import fold
 from btlang.vocabulary.capabilities import TRAVELS
@@ -36,7 +36,8 @@ def with_rounds(mission: ast.Program, vocabulary: Lexicon) -> ast.Program:
     tries = (
         isinstance(node, ast.Retry) or (isinstance(node, ast.Chain) and node.operator == "fallback") for node in nodes
     )
-    if not any(map(_choice_of, nodes)) and not any(tries):
+    picks = [node for node in nodes if isinstance(node, ast.Phrase) and node.entry.id == PICK_UP]
+    if not any(map(_choice_of, nodes)) and not any(tries) and len(picks) < 2:
         return mission
     if mission.facts:
         vocabulary = vocabulary.with_places(tuple(fact.name for fact in ast.all_facts(mission)))
@@ -64,6 +65,7 @@ class _Round(Record):
 
 
 def _with_loops(root: ast.Ast, vocabulary: Lexicon) -> ast.Ast:
+    root = with_each_carried(root)
     if any(map(_choice_of, ast.parents_first(root))):
         root = _chosen_anew(root)
     if any(map(set_of, ast.parents_first(root))):
@@ -99,7 +101,7 @@ def _chosen_anew(root: ast.Ast) -> ast.Ast:
     def renew(node: ast.Ast, done: Sequence[ast.Ast]) -> ast.Ast:
         choice = renewed.get(id(node))
         if choice is not None and isinstance(node, ast.Phrase | ast.Name):
-            return _replace_argument(node, f"{{{choice.key}}}", choice.text)
+            return with_argument(node, f"{{{choice.key}}}", choice.text)
         return ast.with_parts(node, done)
 
     return fold(root, ast.parts, renew)
@@ -142,7 +144,7 @@ def _add_loops(root: ast.Ast, vocabulary: Lexicon) -> ast.Ast:
     def combine(node: ast.Ast, done: list[ast.Ast]) -> ast.Ast:
         choice, own = set_of(node), alone.get(id(node))
         if choice is not None and isinstance(node, ast.Phrase | ast.Name):
-            made: ast.Ast = _replace_argument(node, choice.text, f"{{{choice.key}}}")
+            made: ast.Ast = with_argument(node, choice.text, f"{{{choice.key}}}")
         else:
             made = ast.with_parts(node, done)
         if own is not None:
@@ -328,14 +330,8 @@ def _loop(choice: Choice, body: ast.Ast, vocabulary: Lexicon) -> ast.Ast:
     """Make one round for each name; of a single command with known names the list of all."""
     names = vocabulary.values.likenesses.members(choice)
     if names and isinstance(body, ast.Phrase | ast.Name):
-        each = tuple(_replace_argument(body, f"{{{choice.key}}}", name) for name in names)
+        each = tuple(with_argument(body, f"{{{choice.key}}}", name) for name in names)
         is_search = isinstance(body, ast.Phrase) and body.entry.first and choice.type == PLACE
         operator = "fallback" if is_search else "sequence"
         return each[0] if len(each) == 1 else ast.Chain(operator, each, True, body.span)
     return ast.ForEach(choice.key, choice.type, names or (choice.text,), body, body.span)
-
-
-def _replace_argument(body: ast.Phrase | ast.Name, old: str, new: str) -> ast.Ast:
-    """Return the command with another text in its arguments."""
-    arguments = tuple((slot, new if text == old else text) for slot, text in body.arguments)
-    return body.replace(arguments=arguments)  # type: ignore[no-any-return]

@@ -30,6 +30,7 @@ from btlang.tree.answers import ASK, KEEP_ASKING, asking_verbs, asks
 from btlang.tree.rounds import DAYTIME
 from btlang.tree.sums import COMPARED, COUNTING, asks_for_number
 from btlang.vocabulary.capabilities import MOVES
+from btlang.vocabulary.descriptions import NAME
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.references import choice_of
 from btlang.vocabulary.value_type import OBJECT, PERSON
@@ -308,6 +309,12 @@ def _phrases(nodes: Iterable[ast.Ast]) -> list[ast.Phrase]:
     return [each for each in nodes if isinstance(each, ast.Phrase)]
 
 
+def _names_in(text: str) -> set[str]:
+    """Return the value itself, and of what is chosen the key and the name."""
+    choice = choice_of(text)
+    return {text} if choice is None else {text, f"{{{choice.key}}}", dict(choice.parts).get(NAME, text)}
+
+
 def find_picked_up_only(compilation: Compilation) -> Iterator[Diagnostic]:
     """Report `fetch the cup` where no command behind it does anything with the cup."""
     vocabulary = compilation.vocabulary
@@ -319,11 +326,9 @@ def find_picked_up_only(compilation: Compilation) -> Iterator[Diagnostic]:
             verb, _, rest = phrase.span.text.partition(" ")
             if verb.lower() not in verbs or "\n" in rest:
                 continue
-            text = phrase.arguments[0][1]
-            choice = choice_of(text)
-            names = {text, f"{{{choice.key}}}"} if choice is not None else {text}
+            names = _names_in(phrase.arguments[0][1])
             later = (each for each in phrases if each.span.start > phrase.span.start)
-            if not any(names.intersection(value for _, value in each.arguments) for each in later):
+            if not any(names & _names_in(value) for each in later for _, value in each.arguments):
                 fixed = f"{' '.join(vocabulary.asking['bringing'])} {rest}"
                 yield diagnostic("BT148", phrase.span, words=phrase.span.text, fixed=fixed)
 

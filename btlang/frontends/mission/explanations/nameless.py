@@ -21,7 +21,7 @@ from btlang.vocabulary.value_type import PERSON, PLACE, ValueType
 from btlang.vocabulary.word_tree import find
 
 _MOST_NAMES = 12  # that a message lists
-KIND_NAMES = {"kinds": "kind"}
+KIND_NAMES = {"kinds": "kind", "days": "day"}
 """What messages call types whose names are no words for people."""
 
 
