@@ -30,6 +30,9 @@ _UNKNOWN = "{"
 ODD = ("", "{", "(")
 """How texts begin that are no plain values: of unknown names, references, choices and points."""
 
+_WHERE = {PLACE: "at", DOOR: "near"}
+"""How somebody is described who is met there."""
+
 
 class Mentions:
     """Those of one text; what is wrong with them becomes `problems`."""
@@ -106,8 +109,8 @@ class Mentions:
         if exception and self._named_at and self._context.latest.get(PERSON, "{")[:1] != "{":
             return  # `bring Alice the cup, unless somebody is near. Tell her "Hi"`
         if names_none and (is_somebody or _MEETS in entry.achieves):
-            places = [value for value in match.values if value.type == PLACE and not value.more]
-            parts = tuple(("at", value.text) for value in places if value.text[:1] not in ODD)
+            places = [value for value in match.values if value.type in _WHERE and not value.more]
+            parts = tuple((_WHERE[value.type], value.text) for value in places if value.text[:1] not in ODD)
             self.note_somebody(parts, SPEAKING if entry.id == SOMEBODY_SAYS else "nearest")
 
     def note_somebody(self, parts: tuple[tuple[str, str], ...] = (), how: str = "nearest") -> None:
