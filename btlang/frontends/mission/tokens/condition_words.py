@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
@@ -54,6 +55,9 @@ def asked_there(
     if entry is None or place[:1] == "{" or not (entry.id in THERE or entry.id == _KNOWN):
         return match  # as nearly always
     there, last = vocabulary.entry(THERE.get(entry.id, "")), text.words[match.last - 1]
+    first = bisect_left(text.starts, tokens[-1].end) if tokens else 0
+    if text.words[first + 1] in vocabulary.forms_of_be:  # `if there is a stranger`
+        last = text.words[first] if PLACE in vocabulary.values.pronouns.get(text.words[first], ()) else last
     inside = [context.inside(OBJECT, value.text, place) for value in match.values] if entry.id == _KNOWN else []
     if not any(inside) and (there is None or PLACE not in vocabulary.values.pronouns.get(last, ())):
         return match
