@@ -13,6 +13,7 @@ from btlang.text.words import Words
 from btlang.tree.rounds import DAYTIME
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import SlotValue
+from btlang.vocabulary.value_type import PLACE
 
 _TIME, _DAYS = "time_of_day", "days"
 MIDNIGHT = "00:00"
@@ -135,3 +136,10 @@ def find_midnights(tokens: Sequence[Token], source: Source) -> Iterator[Diagnost
 
 def _problem(span: Span, problem: str, example: str, fix: tuple[Span, str] | None = None) -> Diagnostic:
     return diagnostic("BT160", span, fix=fix, words=span.text, problem=problem, example=example)
+
+
+def lasting(wait: Span, vocabulary: Lexicon) -> Diagnostic:
+    """BT012 for a wait that doesn't say how long, nor that the robot stays there."""
+    there = next((word for word, kinds in vocabulary.values.pronouns.items() if kinds == [PLACE]), "")
+    example = f"{wait.text} {vocabulary.word('for')} {vocabulary.types['duration'].example}, or: {wait.text} {there}"
+    return diagnostic("BT012", wait, words=wait.text, wanted="a duration", example=example)

@@ -128,10 +128,7 @@ def _misfit(
         point = vocabulary.values.point_text("3", "4", "90")
         return diagnostic("BT036", text.span(at, end), example=f"{head} {point}")
     if text.words[at] in _NOT_A_VALUE or _is_connective(text, at, vocabulary):
-        lacking = diagnostic("BT012", text.span(first, at), words=head, wanted=wanted, example=example)
-        ways = (way.partition(" ") for way in vocabulary.asking["staying"])
-        where = next((where.rpartition("/")[2] for verb, _, where in ways if verb == head.lower()), "")
-        return lacking.advising(f"Or, to stay where it is: {head} {where}") if where else lacking
+        return diagnostic("BT012", text.span(first, at), words=head, wanted=wanted, example=example)
     mentioned = context.named(text, at)
     if mentioned is not None and mentioned[0] is not None:
         return _wrong_type(text.span(at, mentioned[1]), mentioned[0], wanted)

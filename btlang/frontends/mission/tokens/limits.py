@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from btlang.diagnostics.diagnostic import diagnostic
+from btlang.frontends.mission.explanations.times import lasting
 from btlang.frontends.mission.token import (
     IN_CONDITIONS,
     JOINTS,
@@ -32,7 +33,6 @@ from btlang.frontends.mission.tokens.settling import (
     achieves,
     asked_about,
     is_presence,
-    lasting,
     misses,
     named_by,
 )

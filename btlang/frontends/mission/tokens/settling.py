@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Container, Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.frontends.mission.explanations.times import lasting
 from btlang.frontends.mission.token import (
     IN_CONDITIONS,
     JOINTS,
@@ -282,12 +283,6 @@ def _is_delivered(said: object) -> bool:
 def _thing_of(said: Called) -> str:
     """The name of the thing that a phrase is about, "" for none, or for one that is chosen."""
     return next((text for text in said.entry.given(OBJECT, said.arguments) if text[:1] != "{"), "")
-
-
-def lasting(wait: Span, vocabulary: Lexicon) -> Diagnostic:
-    """BT012 for a wait that doesn't say how long."""
-    example = f"{wait.text} {vocabulary.word('for')} {vocabulary.types['duration'].example}"
-    return diagnostic("BT012", wait, words=wait.text, wanted="a duration", example=example)
 
 
 def first_word(token: Token, source: Source) -> str:
