@@ -250,8 +250,8 @@ def _unknown_phrase(
     span = text.span(at, end)
     start = Span(text.source, before[-1].start, before[-1].end) if before else span
     may_say = bool(before) and before[-1].kind in ("command", "condition")  # `until Bob says you can go`
-    if may_say and _ends_in_a_bare_text(before[-1]) and start.text[-1].isalnum():
-        verb, _, word = start.text.rpartition(" ")  # no verb is in a text alone: `until I say yes or no more come`
+    verb, _, word = start.text.rpartition(" ")  # none in the second text of `until I say yes or five minutes are gone`
+    if may_say and verb and _ends_in_a_bare_text(before[-1]) and word[-1].isalnum():
         is_thing = at - 1 in text.articles  # `show the visitors around`: no words to say
         gap = "" if span.text[:1] == "'" else " "  # of `it's ok`
         quoted = f'{verb} "{word}{gap}{span.text}"'

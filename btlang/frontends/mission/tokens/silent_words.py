@@ -89,9 +89,7 @@ def without_meaning(
         is_command = follows is not None and follows.meaning.role in _GONE_FOR
         if follows is not None and follows.meaning.role == "check":
             asked = longest(vocabulary.trie, text, follows.last, context)
-            is_command = (
-                asked is None or asked.meaning.entry is None
-            )  # `go check the door`; `go check that C` asks there
+            is_command = asked is None or asked.meaning.entry is None  # but `go check that C` asks there
         joins = text.words[going[1] - 1] in vocabulary.roles["and"]
         if is_command or (joins and follows is None) or find(vocabulary.telling, text.words, going[1]) is not None:
             begin, end = text.starts[at], text.ends[going[1] - 1]

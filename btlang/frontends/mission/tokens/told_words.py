@@ -213,11 +213,8 @@ class ToldWords(SentenceReader):
                 return ""
             is_there = PLACE in kinds  # `if she isn't there, tell me`
             word = next((form for form in denied.get(text.words[at], ()) if " " not in form), text.words[at])
-            word = (
-                happened.get(word)
-                or ("" if is_denied else vocabulary.affirmed.get(word))
-                or (self._written(at) if word == text.words[at] else word)
-            )
+            turned = happened.get(word) or ("" if is_denied else vocabulary.affirmed.get(word))
+            word = turned or (self._written(at) if word == text.words[at] else word)
             words.append(meant[0] if meant and not is_there else word)
         said, of_robot = " ".join(words), self._vocabulary.of_robot
         if of_robot:
