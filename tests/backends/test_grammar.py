@@ -38,6 +38,7 @@ UNKNOWABLE = {
     "BT141": "the zone of a side is said by the name of a place that is one",
     "BT146": "nothing counts before what was counted is asked for",
     "BT149": "nothing brings the robot to who is asked",
+    "BT145": "nothing asks before `if she wants tea`",
     "BT144": "whose answer is meant",
     "BT162": "a place that is avoided and gone to",
     "BT052": "what comes before goes on for ever",
@@ -102,7 +103,7 @@ def test_both_parsers_read_what_the_grammar_makes() -> None:
         assert all(other == first for other in others), text
         assert UNKNOWABLE.keys() >= set(first), text
         found.update(first)
-    for of_mission in ("BT175", "BT149", "BT254", "BT146", "BT139"):
+    for of_mission in ("BT175", "BT149", "BT254", "BT146", "BT139", "BT145"):
         del found[of_mission]  # whether a round may fail, where the robot is, and what it did are no matter of words
     assert sum(found.values()) <= count / 20, found
     wanted = amount(1, 20)
