@@ -93,8 +93,8 @@ def codes(text: str, parser: str, language: str = "en") -> list[str]:
 
 @pytest.mark.long
 def test_both_parsers_read_what_the_grammar_makes() -> None:
-    count = amount(1_000, 10_000)  # each sentence uses the rule that was used least: 920 use every phrase
-    sampler = Sampler(rules_of(), seed=2)
+    count = amount(950, 10_000)  # each sentence uses the rule that was used least: 920 use every phrase
+    sampler = Sampler(rules_of(), seed=11)
     found: Counter[str] = Counter()
     for number in range(count):
         text = sampler.sentence()
