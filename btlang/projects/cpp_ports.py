@@ -16,11 +16,11 @@ from btlang.tree.node import NodeModel, PortModel
 
 _ENDINGS = (".hpp", ".h", ".hh", ".hxx", ".cpp", ".cc", ".cxx")
 _TELLING = (b"Ports(", b"getInput", b"registerNodeType", b"registerBuilder", b"registerSimple", b"registerBehavior",
-            b"registerScriptingEnum", b"RosNodePlugin")  # fmt: skip
+            b"registerScriptingEnum", b"RosNodePlugin", b"ActionNode", b"ConditionNode")  # fmt: skip
 _COMMENT = re.compile(r'"(?:[^"\\\n]|\\.)*"|//[^\n]*|/\*.*?\*/', re.DOTALL)
 _CLASSES = tuple(
     re.compile(  # a pattern that begins with a plain word is found much sooner
-        rf"{word}\s+(?:[A-Z_]+\s+)?(?P<name>\w+)\s*(?:final\s*)?"
+        rf"(?<!enum ){word}\s+(?:[A-Z_]+\s+)?(?P<name>\w+)\s*(?:final\s*)?"
         r"(?::(?!:)\s*(?:(?:public|protected|private|virtual)\s+)*(?P<base>[\w:]+)[^;{()]{0,500})?\{"
     )
     for word in ("class", "struct")
@@ -45,7 +45,9 @@ _KINDS = {"Condition": "Condition", "Action": "Action", "Decorator": "Decorator"
 _INSTANT = "SyncActionNode"
 _REGISTERING = "registerScriptingEnum"
 _ENUM = re.compile(r"registerScriptingEnum\s*\(\s*\"(\w+)\"")
-_ENUMS = re.compile(r"registerScriptingEnums\b|registerScriptingEnum\s*\(\s*[^\s\"]")
+_ENUMS = re.compile(r"registerScriptingEnums\s*<\s*(?:\w+::)*(\w+)\s*>|registerScriptingEnum\s*\(\s*[^\s\"]")
+_ENUM_TYPE = re.compile(r"\benum\s+(?:class\s+|struct\s+)?(\w+)\s*(?::[^{;]*)?\{([^}]*)\}")
+_ENUM_NAME = re.compile(r"(?:^|,)\s*(\w+)")
 
 
 class _Class:
@@ -89,15 +91,22 @@ class CppSources:
 
     @cached_property
     def enums(self) -> tuple[frozenset[str], bool]:
-        """Return the names of enums that scripts may use, and whether these are all: a type may be registered as a
-        whole.
+        """Return the names of enums that scripts may use, and whether these are all that the folders have: sources may
+        be written in another way, and a type that is registered as a whole may be elsewhere.
         """
         names: set[str] = set()
-        is_complete = bool(self.models)
+        types: set[str] = set()
+        has_sources = any(path for folder in self._folders for path in find_files_below(folder, _ENDINGS))
+        is_complete = bool(self._folders and (self.models or not has_sources))
         for text in self._registering_enums:
             names.update(match[1] for match in _ENUM.finditer(text))
-            is_complete = is_complete and _ENUMS.search(text) is None
-        return frozenset(names), is_complete
+            types.update(match[1] or "" for match in _ENUMS.finditer(text))
+        for source in self._sources((b"enum",)) if types else ():
+            for match in _ENUM_TYPE.finditer(_without_comments(source.text)):
+                if match[1] in types:
+                    types.discard(match[1])
+                    names.update(_ENUM_NAME.findall(match[2]))
+        return frozenset(names), is_complete and not types
 
     def is_instant(self, node_id: str) -> bool:
         """Return whether the class of a node says that it ends at once."""
@@ -112,7 +121,7 @@ class CppSources:
         classes: dict[str, _Class] = {}
         registered: dict[str, tuple[str, Span]] = {}
         for source in self._sources():
-            text = _COMMENT.sub(lambda match: match[0] if match[0][0] == '"' else " " * len(match[0]), source.text)
+            text = _without_comments(source.text)
             if _REGISTERING in text:
                 self._registering_enums.append(text)
             for match in _find(_REGISTERED, text):
@@ -127,7 +136,8 @@ class CppSources:
                 found.read(text, head.end(), end, place)
         models = {}
         for name, found in classes.items():
-            if found.ports:
+            base = _line(name, classes)[-1].base
+            if found.ports or ("Node" in base and any(word in base for word in _KINDS)):
                 registered.setdefault(name, (name, found.place))
         for node_id, (name, place) in registered.items():
             line = _line(name, classes)
@@ -139,15 +149,20 @@ class CppSources:
             models[node_id] = NodeModel(kind, node_id, tuple(_ports(line))), line[0].place if line else place
         return models
 
-    def _sources(self) -> Iterator[Source]:
+    def _sources(self, telling: Sequence[bytes] = _TELLING) -> Iterator[Source]:
         for folder in self._folders:
             for path in find_files_below(folder, _ENDINGS):
                 try:
                     data = read_bytes(path)
                 except OSError:
                     continue  # it isn't what the user asked about
-                if any(word in data for word in _TELLING):
+                if any(word in data for word in telling):
                     yield Source(data.decode(errors="replace"), path)
+
+
+def _without_comments(text: str) -> str:
+    """Return a text of C++ with blanks in place of its comments."""
+    return _COMMENT.sub(lambda match: match[0] if match[0][0] == '"' else " " * len(match[0]), text)
 
 
 def _find(patterns: Iterable[re.Pattern[str]], text: str) -> Iterator[re.Match[str]]:
