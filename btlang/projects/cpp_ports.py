@@ -16,7 +16,8 @@ from btlang.tree.node import NodeModel, PortModel
 
 _ENDINGS = (".hpp", ".h", ".hh", ".hxx", ".cpp", ".cc", ".cxx")
 _TELLING = (b"Ports(", b"getInput", b"registerNodeType", b"registerBuilder", b"registerSimple", b"registerBehavior",
-            b"registerScriptingEnum", b"RosNodePlugin", b"ActionNode", b"ConditionNode")  # fmt: skip
+            b"registerScriptingEnum", b"RosNodePlugin", b"ActionNode", b"ConditionNode", b"ControlNode",
+            b"DecoratorNode")  # fmt: skip
 _COMMENT = re.compile(r'"(?:[^"\\\n]|\\.)*"|//[^\n]*|/\*.*?\*/', re.DOTALL)
 _CLASSES = tuple(
     re.compile(  # a pattern that begins with a plain word is found much sooner
@@ -34,6 +35,10 @@ _FALL_BACK = tuple(
     for function in ("getInputOrBlackboard", "deconflictPortAndParamFrame")
 )
 _UNUSED = re.compile(r"([{};]\s*|\bif\s*\(\s*)(?:[\w:]+(?:::|\.|->))?$")
+_TESTED = re.compile(r"\bif\s*\(\s*!\s*(?:[\w:]+(?:::|\.|->))?$")
+_KEPT = re.compile(r"(\w+)\s*=\s*(?:this->)?$")
+_BLOCK = re.compile(r"\s*\)\s*\{([^{}]*)\}")
+_GIVES_UP = re.compile(r"\b(?:throw|return)\b")
 _MOST_BEFORE = 80  # characters of the text before a call
 _REGISTERED = (
     re.compile(r"register\w*\s*<\s*(?P<class>[\w:]+)[^;(\"]{0,300}>\s*\(\s*(?:\w+\s*,\s*)?\"(?P<id>[^\"]+)\""),
@@ -76,9 +81,25 @@ class _Class:
             self.ports.setdefault(name, PortModel(name, _DIRECTIONS[direction], (type or "").strip(), default))
         self.spared.update(match[1] for pattern in _FALL_BACK for match in pattern.finditer(text, start, end))
         for match in _READ.finditer(text, start, end):
-            before = _UNUSED.search(text, max(start - 1, match.start() - _MOST_BEFORE), match.start())
-            goes_on = before is not None and (before[1][0] == "i" or match[2] is not None)
-            (self.spared if goes_on else self.needed).add(match[1])
+            (self.spared if _goes_on(text, start, match) else self.needed).add(match[1])
+
+
+def _goes_on(text: str, start: int, read: re.Match[str]) -> bool:
+    """Return whether a class goes on without the port that it reads: it ignores the result, or has something else where
+    that is none.
+    """
+    least = max(start - 1, read.start() - _MOST_BEFORE)
+    before = _UNUSED.search(text, least, read.start())
+    if before is not None and (before[1][0] == "i" or read[2] is not None):
+        return True
+    at = read.end() if _TESTED.search(text, least, read.start()) else -1
+    if kept := _KEPT.search(text, least, read.start()):
+        test = re.compile(rf"\s*;\s*if\s*\(\s*(!?)\s*{kept[1]}(?=\s*\))").match(text, read.end())
+        if test is not None and not test[1]:
+            return True
+        at = test.end() if test is not None else -1
+    block = _BLOCK.match(text, at) if at >= 0 else None
+    return block is not None and _GIVES_UP.search(block[1]) is None
 
 
 class CppSources:
@@ -142,7 +163,7 @@ class CppSources:
         for node_id, (name, place) in registered.items():
             line = _line(name, classes)
             kind = next((kind for word, kind in _KINDS.items() if line and word in line[-1].base), "")
-            if not line:  # a function
+            if not name:  # a function
                 kind = "Condition" if "SimpleCondition" in place.text else "Action"
             if line and line[-1].base == _INSTANT:
                 self._instant.add(node_id)

@@ -213,3 +213,46 @@ def test_ids_have_no_numbers_in_messages(tmp_path: Path, capsys: pytest.CaptureF
     found = problems(capsys, str(tmp_path))
     assert sorted({problem["code"] for problem in found}) == ["BT126", "BT235"]
     assert not any("(2)" in problem["message"] + problem["hint"] for problem in found)
+
+
+READS = {
+    "if (!getInput<int>(\"n\", n_)) { n_ = 0; }": False,
+    "if (!this->getInput(\"n\", n_)) { throw BT::RuntimeError(\"no n\"); }": True,
+    "if (!getInput(\"n\", n_)) return BT::NodeStatus::FAILURE;": True,
+    "auto given = getInput<int>(\"n\"); if (given) { n_ = given.value(); } else { n_ = 1; }": False,
+    "auto given = getInput<int>(\"n\"); if (!given) { n_ = 1; }": False,
+    "auto given = getInput<int>(\"n\"); if (!given) { throw BT::RuntimeError(\"no n\"); }": True,
+    "n_ = getInput<int>(\"n\").value();": True,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("code", "is_needed"), READS.items())
+def test_what_a_class_does_without_a_port(
+    code: str, is_needed: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    ports = 'static BT::PortsList providedPorts() { return { BT::InputPort<int>("n"), BT::InputPort<int>("m") }; }'
+    source = f"class Count : public BT::SyncActionNode {{ {ports} BT::NodeStatus tick() {{ {code} return run(); }} }};"
+    (tmp_path / "count.hpp").write_text(source, "utf-8")
+    model = '<Action ID="Count"><input_port name="n" type="int"/></Action>'
+    write(tmp_path, "a.xml", TREE.format("Main", "<Count/>"), models=model)
+    assert codes(tmp_path, capsys) == ["BT234"] * is_needed
+
+
+def test_a_class_that_is_elsewhere_may_be_of_any_kind(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "main.cpp").write_text('factory.registerNodeType<robot::FirstNode>("FirstOf");', "utf-8")
+    write(tmp_path, "a.xml", TREE.format("Main", "<FirstOf><Then/><Then/></FirstOf>"), models=DRIVE)
+    assert codes(tmp_path, capsys) == []
+
+
+def test_files_of_other_programs_with_a_root(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    write(tmp_path, "a.xml", TREE.format("Main", "<Then/>"), models=DRIVE)
+    (tmp_path / "plots.xml").write_text("<root><curves><curve>speed</curve></curves></root>", "utf-8")
+    assert codes(tmp_path, capsys) == []
+
+
+def test_variants_of_a_program_have_the_same_ids(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A further file that uses one of the IDs isn't about theirs."""
+    for name in ("red", "blue"):
+        write(tmp_path, f"{name}.xml", *(TREE.format(tree, "<Then/>") for tree in ("Lift", "Lower")), models=DRIVE)
+    write(tmp_path, "green.xml", TREE.format("Green", '<SubTree ID="Lift"/>'))
+    assert codes(tmp_path, capsys, "BT127") == []

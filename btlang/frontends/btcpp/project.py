@@ -218,8 +218,9 @@ class _Nearest:
                 by_file = self._trees[tree_id]
                 first, *others = self._files_near(file, tree_id, self._trees)
                 for path in others:
-                    # which of several folders is installed isn't known here
-                    if os.path.dirname(path) == os.path.dirname(first):
+                    # which of several folders is installed isn't known here, and variants of a program run one by one
+                    is_variant = len(self._files[path].names.keys() & self._files[first].names.keys()) > 1
+                    if os.path.dirname(path) == os.path.dirname(first) and not is_variant:
                         found.setdefault(by_file[path], by_file[first])
         return found
 
