@@ -37,7 +37,14 @@ from btlang.projects.ports import (
     subtree_problems,
     wrong_children,
 )
-from btlang.projects.restarts import INSTANT, conditions_of_others, double_quotes, may_be_repeated, restarted_actions
+from btlang.projects.restarts import (
+    INSTANT,
+    conditions_of_others,
+    double_quotes,
+    may_be_repeated,
+    names_of_version_3,
+    restarted_actions,
+)
 from btlang.projects.unused import (
     count_times,
     keys_read,
@@ -144,7 +151,9 @@ class _Check:
         yield from self._wrong_ports()
         yield from unused_trees(self._project)
         yield from conditions_of_others(self._nodes)
-        yield from double_quotes(node for node in self._nodes if self._dialect(node) == 4)
+        newer = [node for node in self._nodes if self._dialect(node) == 4]
+        yield from double_quotes(newer)
+        yield from names_of_version_3(newer, self._project.models)
         yield from broken_references(self._nodes, {*CATALOGUE, *self._vocabulary.entries, *self._nav2})
         self._read = keys_read(self._nodes, self._outputs)
         yield from restarted_actions(self._nodes, self._sort, self._trees)

@@ -211,9 +211,10 @@ def _find_lacking(uses: DescribedUses, others: Iterable[PortModel]) -> dict[str,
     found: dict[str, list[Node]] = {}
     misspelt: set[str] = set()
     for node in uses.nodes:
-        for name, _ in node.ports:
-            if name in ports or is_no_port(name):
-                continue
+        unknown = [name for name, _ in node.ports if name not in ports and not is_no_port(name)]
+        if not ports and len(unknown) >= _SEVERAL:  # nobody makes up several ports: a palette has the ID alone
+            elsewhere.update(unknown)
+        for name in unknown:
             found.setdefault(name, []).append(node)
             if _near(name, dict(node.ports), ports):
                 misspelt.add(name)

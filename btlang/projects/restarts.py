@@ -1,14 +1,16 @@
-"""Actions that start again at each tick (BT243), and scripts that BehaviorTree.CPP 4.10 refuses or ignores (BT242,
-BT247).
+"""Actions that start again at each tick (BT243), and what BehaviorTree.CPP 4 refuses or ignores: scripts (BT242, BT247)
+and names of version 3 (BT132).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+import re
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 
 from btlang.backends.wording import asks_or_checks, id_words
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.engine.script.tokens import ScriptError, Tokens
+from btlang.frontends.btcpp.spelling import AUTOREMAP, AUTOREMAP_3, SHARED, TO_4
 from btlang.projects.ports import attribute_value, place_of
 from btlang.tree.catalogue import CATALOGUE, ON_SUCCESS, SCRIPT, SUBTREE, port_content
 from btlang.tree.node import Node
@@ -83,6 +85,24 @@ def may_be_repeated(node_id: str, is_instant: bool) -> bool:
     """
     first = id_words(node_id)[0]
     return asks_or_checks(node_id) or first in _PUBLISHING or (first in _SETTING and is_instant)
+
+
+_TAG = re.compile(r"<(\w+)")
+_REGISTERED_AGAIN = frozenset(("SequenceStar",))  # by BehaviorTree.CPP 4, for those who know it
+_ATTRIBUTES_4 = {AUTOREMAP_3: AUTOREMAP, SHARED: AUTOREMAP}
+
+
+def names_of_version_3(nodes: Iterable[Node], described: Container[str]) -> Iterator[Diagnostic]:
+    """Report BT132 for nodes and attributes that format 4 has under another name, unless somebody has such nodes."""
+    for node in nodes:
+        match = _TAG.match(place_of(node).text)
+        tag = match[1] if match is not None else ""
+        if node.id == TO_4.get(tag) and tag not in _REGISTERED_AGAIN and tag not in described:
+            yield diagnostic("BT132", place_of(node), id=tag, reason=f"format 4 calls it {node.id}")
+        for name, _ in node.ports if node.id == SUBTREE else ():
+            if name in _ATTRIBUTES_4:
+                reason = f"format 4 has {_ATTRIBUTES_4[name]} in place of {name}"
+                yield diagnostic("BT132", place_of(node), id=SUBTREE, reason=reason)
 
 
 def double_quotes(nodes: Iterable[Node]) -> Iterator[Diagnostic]:

@@ -256,3 +256,27 @@ def test_variants_of_a_program_have_the_same_ids(tmp_path: Path, capsys: pytest.
         write(tmp_path, f"{name}.xml", *(TREE.format(tree, "<Then/>") for tree in ("Lift", "Lower")), models=DRIVE)
     write(tmp_path, "green.xml", TREE.format("Green", '<SubTree ID="Lift"/>'))
     assert codes(tmp_path, capsys, "BT127") == []
+
+
+def test_a_palette_of_ids_alone_is_out_of_date(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    write(tmp_path, "a.xml", TREE.format("Main", '<Go x="1" y="2"/>'), models='<Action ID="Go" editable="true"/>')
+    assert codes(tmp_path, capsys) == ["BT239"]
+
+
+@pytest.mark.parametrize(
+    ("tree", "models", "reasons"),
+    [
+        ('<SubTreePlus ID="In"/>', "", ["format 4 calls it SubTree"]),
+        ('<SubTree ID="In" __autoremap="1"/>', "", ["format 4 has _autoremap in place of __autoremap"]),
+        ("<FallbackStar><Then/></FallbackStar>", "", ["format 4 calls it Fallback"]),
+        ("<SequenceStar><Then/></SequenceStar>", "", []),
+        ("<FallbackStar><Then/></FallbackStar>", '<Control ID="FallbackStar"/>', []),
+    ],
+)
+def test_names_of_version_3_in_format_4(
+    tree: str, models: str, reasons: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    trees = TREE.format("Main", tree), TREE.format("In", "<Then/>")
+    write(tmp_path, "a.xml", *trees, models=DRIVE + models, attributes='main_tree_to_execute="Main"')
+    found = [each["message"].partition("like this: ")[2].rstrip(".") for each in problems(capsys, str(tmp_path))]
+    assert [reason for reason in found if reason] == reasons
