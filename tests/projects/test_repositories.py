@@ -1,4 +1,4 @@
-"""Three repositories with planted faults: `btc check` finds all of them, and what else it says of them is true.
+"""Four repositories with planted faults: `btc check` finds all of them, and what else it says of them is true.
 
 Their trees were written by somebody who hadn't read the checker. Beside each repository is the list of its faults;
 `others` are findings that were judged to be true. In one of them, IDs contain blanks (BT238), as in the field.
