@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from btlang.backends.checking import accept_anything, bind_placeholder, find_misnamed, tree_problems
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic, sort_diagnostics
+from btlang.engine.instance import blackboard_key
 from btlang.engine.leaves.leaf import LeafBinding
 from btlang.frontends.btcpp.files import NOT_INCLUDED, XmlFiles
 from btlang.frontends.btcpp.models import nav2_models
@@ -18,6 +19,7 @@ from btlang.projects.cpp_ports import CppSources
 from btlang.projects.entries import (
     EntryFlow,
     entries_of,
+    unmade_entries,
     unset_entries,
     unset_enums,
     wrong_constants,
@@ -28,13 +30,21 @@ from btlang.projects.ports import (
     broken_references,
     constant_outputs,
     enum_names,
+    is_no_port,
     misspelt_ports,
     port_problems,
     several_alone,
     subtree_problems,
     wrong_children,
 )
-from btlang.projects.restarts import conditions_of_others, double_quotes, may_be_repeated, restarted_actions
+from btlang.projects.restarts import (
+    INSTANT,
+    conditions_of_others,
+    double_quotes,
+    may_be_repeated,
+    names_of_version_3,
+    restarted_actions,
+)
 from btlang.projects.unused import (
     count_times,
     keys_read,
@@ -73,7 +83,9 @@ def project_problems(
     wrong: dict[tuple[str, int], set[str]] = {}
     for problem in found:
         if problem.is_error and problem.code != "BT132":
-            wrong.setdefault(_place(problem.span), set()).add(problem.code)
+            also = problem.notes if problem.code == "BT127" else ()
+            for place in (problem.span, *(span for span, _ in also)):
+                wrong.setdefault(_place(place), set()).add(problem.code)
     return sort_diagnostics(
         not_allowed(each for each in found if not _follows(each, wrong.get(_place(each.span), set())))
     )
@@ -114,13 +126,15 @@ class _Check:
         self._project = project
         self._version = version
         self._sources = sources
+        self._read: frozenset[str] = frozenset()
         self._outputs_of_models: dict[int, frozenset[str]] = {}
         self._ports_of_models: dict[int, dict[str, PortModel]] = {}
         self._places_of_models: dict[int, set[str]] = {}
         for described in project.described.values():
             for model, place in described:
                 self._places_of_models.setdefault(id(model), set()).add(place.source.name)
-        self._nodes = [node for root in project.trees.values() for node in Tree(root).walk()]
+        self._trees = project.certain_trees()
+        self._nodes = [node for root in self._trees.values() for node in Tree(root).walk()]
         elsewhere = self._ids_from_elsewhere(vocabulary)
         own = {id: known for id, known in vocabulary.entries.items() if id not in elsewhere}
         self._vocabulary = vocabulary.replaced(entries=own)
@@ -137,11 +151,14 @@ class _Check:
         yield from self._wrong_ports()
         yield from unused_trees(self._project)
         yield from conditions_of_others(self._nodes)
-        yield from double_quotes(node for node in self._nodes if self._dialect(node) == 4)
+        newer = [node for node in self._nodes if self._dialect(node) == 4]
+        yield from double_quotes(newer)
+        yield from names_of_version_3(newer, self._project.models)
         yield from broken_references(self._nodes, {*CATALOGUE, *self._vocabulary.entries, *self._nav2})
-        yield from restarted_actions(self._nodes, self._sort)
-        yield from unread_values(self._nodes, self._outputs, keys_read(self._nodes, self._outputs))
-        yield from unread_subtree_ports(self._nodes, self._project.trees)
+        self._read = keys_read(self._nodes, self._outputs)
+        yield from restarted_actions(self._nodes, self._sort, self._trees)
+        yield from unread_values(self._nodes, self._outputs, self._read)
+        yield from unread_subtree_ports(self._nodes, self._trees)
         yield from self._wrong_entries()
         if not self._finite:
             return
@@ -157,8 +174,8 @@ class _Check:
         return {name: root for name, root in self._project.trees.items() if name not in self._project.circular}
 
     def _sort(self, node: Node) -> str:
-        """Return whether a leaf is an "Action" that isn't meant to be done at each tick, a "Condition", or "" if that
-        isn't known: actions of others that have outputs may compute them anew, and what sets a value may set it again.
+        """Return whether a leaf is an "Action" that isn't meant to be done at each tick, or an INSTANT one, a
+        "Condition", or "" if that isn't known: actions of others may compute anew what they set and something reads.
         """
         kind, entry = CATALOGUE.get(node.id), self._vocabulary.entries.get(node.id, (None,))[0]
         if kind is not None:  # scripts and the like are meant to run at each tick
@@ -170,9 +187,12 @@ class _Check:
             return ""
         if model.kind == "Condition":
             return "Condition"
-        if model.kind != "Action" or any(port.direction != "input" for port in model.ports):
+        is_instant = self._sources.is_instant(node.id)
+        may_set = {port.name for port in model.ports if port.direction != "input"}
+        sets = (blackboard_key(name, text) or text for name, text in node.ports if name in may_set)
+        if model.kind != "Action" or may_be_repeated(node.id, is_instant) or not self._read.isdisjoint(sets):
             return ""
-        return "" if may_be_repeated(node.id, self._sources.is_instant) else "Action"
+        return INSTANT if is_instant else "Action"
 
     def _ids_from_elsewhere(self, vocabulary: Lexicon) -> set[str]:
         """Return the ids of leaves that aren't the vocabulary's: their models differ, or their files have others,
@@ -203,10 +223,11 @@ class _Check:
                     yield from several_alone(node)
             elif node.id not in self._vocabulary.entries:
                 model = self._model(node)
-                yield from wrong_children(node, model)
+                for problem in wrong_children(node, model):
+                    if not self._is_other_kind(node, model):
+                        yield problem
                 if model is not None:
-                    if self._dialect(node) == 4:
-                        yield from constant_outputs(node, model)
+                    yield from constant_outputs(node, self._ports(node).values(), self._dialect(node) == 3)
                     described.setdefault(id(model), (model, []))[1].append(node)
         for model, nodes in described.values():
             uses = DescribedUses(model, NOWHERE, tuple(nodes))
@@ -217,9 +238,10 @@ class _Check:
 
     def _wrong_entries(self) -> Iterator[Diagnostic]:
         entries = {name: entries_of(root, self._ports, self._dialect(root) == 3)
-                   for name, root in self._project.trees.items()}  # fmt: skip
+                   for name, root in self._trees.items()}  # fmt: skip
         flow = EntryFlow(entries)
         yield from unset_entries(entries, flow)
+        yield from unmade_entries(entries, flow)
         yield from wrong_constants(entries, flow)
         if any(use.may_be_enum for each in entries.values() for use in each.uses):
             types = {port.type for model in self._project.models.values() for port in model.ports}
@@ -236,7 +258,17 @@ class _Check:
         ports = self._ports_of_models.get(id(model))
         if ports is None:
             ports = self._ports_of_models[id(model)] = {port.name: port for port in model.ports}
-        return ports
+        if all(name in ports or is_no_port(name) for name, _ in node.ports):
+            return ports
+        others = [other for other, _ in self._project.described.get(node.id, ())]
+        if node.id in self._sources.models:
+            others.append(self._sources.models[node.id][0])
+        return {**{port.name: port for other in others for port in other.ports}, **ports}
+
+    def _is_other_kind(self, node: Node, model: NodeModel | None) -> bool:
+        """Return whether C++ says that a node is of another kind than its model, which is out of date."""
+        known, _ = self._sources.models.get(node.id, (None, None))
+        return model is not None and known is not None and known.kind not in ("", model.kind)
 
     def _outputs(self, node: Node) -> frozenset[str]:
         """Return the outputs of a node that a model of the project describes."""
@@ -303,6 +335,8 @@ class _Check:
                 if self._may_be_elsewhere(arguments["name"], problem.span):
                     missing.setdefault(arguments["name"], []).append(problem)
                     continue
+                listed = ((name, self._as_written(text)) for name, text in problem.arguments)
+                problem = problem.replace(arguments=tuple(listed))
             elif self._is_older(problem.span, arguments.get("id", "")):
                 continue
             node = replaced.get(_place(problem.span))
@@ -314,6 +348,12 @@ class _Check:
             yield diagnostic("BT244", found[0].span, name=name, times=count_times(len(found)))
         if self._vocabulary.entries:
             yield from find_misnamed(self._whole(self._project.trees), self._vocabulary)
+
+    def _as_written(self, listed: str) -> str:
+        """Return a list of trees without those of an ID that is in it already, which have a number."""
+        for name, head in self._project.heads.items():
+            listed = listed.replace(f", {name}", "") if name != head.id else listed
+        return listed
 
     def _may_be_included(self, name: str, span: Span) -> bool:
         """Return whether a tree may be in a file that this one, or another one of its program, includes in vain."""

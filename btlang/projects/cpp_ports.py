@@ -16,11 +16,12 @@ from btlang.tree.node import NodeModel, PortModel
 
 _ENDINGS = (".hpp", ".h", ".hh", ".hxx", ".cpp", ".cc", ".cxx")
 _TELLING = (b"Ports(", b"getInput", b"registerNodeType", b"registerBuilder", b"registerSimple", b"registerBehavior",
-            b"registerScriptingEnum", b"RosNodePlugin")  # fmt: skip
+            b"registerScriptingEnum", b"RosNodePlugin", b"ActionNode", b"ConditionNode", b"ControlNode",
+            b"DecoratorNode")  # fmt: skip
 _COMMENT = re.compile(r'"(?:[^"\\\n]|\\.)*"|//[^\n]*|/\*.*?\*/', re.DOTALL)
 _CLASSES = tuple(
     re.compile(  # a pattern that begins with a plain word is found much sooner
-        rf"{word}\s+(?:[A-Z_]+\s+)?(?P<name>\w+)\s*(?:final\s*)?"
+        rf"(?<!enum ){word}\s+(?:[A-Z_]+\s+)?(?P<name>\w+)\s*(?:final\s*)?"
         r"(?::(?!:)\s*(?:(?:public|protected|private|virtual)\s+)*(?P<base>[\w:]+)[^;{()]{0,500})?\{"
     )
     for word in ("class", "struct")
@@ -34,6 +35,10 @@ _FALL_BACK = tuple(
     for function in ("getInputOrBlackboard", "deconflictPortAndParamFrame")
 )
 _UNUSED = re.compile(r"([{};]\s*|\bif\s*\(\s*)(?:[\w:]+(?:::|\.|->))?$")
+_TESTED = re.compile(r"\bif\s*\(\s*!\s*(?:[\w:]+(?:::|\.|->))?$")
+_KEPT = re.compile(r"(\w+)\s*=\s*(?:this->)?$")
+_BLOCK = re.compile(r"\s*\)\s*\{([^{}]*)\}")
+_GIVES_UP = re.compile(r"\b(?:throw|return)\b")
 _MOST_BEFORE = 80  # characters of the text before a call
 _REGISTERED = (
     re.compile(r"register\w*\s*<\s*(?P<class>[\w:]+)[^;(\"]{0,300}>\s*\(\s*(?:\w+\s*,\s*)?\"(?P<id>[^\"]+)\""),
@@ -45,7 +50,9 @@ _KINDS = {"Condition": "Condition", "Action": "Action", "Decorator": "Decorator"
 _INSTANT = "SyncActionNode"
 _REGISTERING = "registerScriptingEnum"
 _ENUM = re.compile(r"registerScriptingEnum\s*\(\s*\"(\w+)\"")
-_ENUMS = re.compile(r"registerScriptingEnums\b|registerScriptingEnum\s*\(\s*[^\s\"]")
+_ENUMS = re.compile(r"registerScriptingEnums\s*<\s*(?:\w+::)*(\w+)\s*>|registerScriptingEnum\s*\(\s*[^\s\"]")
+_ENUM_TYPE = re.compile(r"\benum\s+(?:class\s+|struct\s+)?(\w+)\s*(?::[^{;]*)?\{([^}]*)\}")
+_ENUM_NAME = re.compile(r"(?:^|,)\s*(\w+)")
 
 
 class _Class:
@@ -74,9 +81,25 @@ class _Class:
             self.ports.setdefault(name, PortModel(name, _DIRECTIONS[direction], (type or "").strip(), default))
         self.spared.update(match[1] for pattern in _FALL_BACK for match in pattern.finditer(text, start, end))
         for match in _READ.finditer(text, start, end):
-            before = _UNUSED.search(text, max(start - 1, match.start() - _MOST_BEFORE), match.start())
-            goes_on = before is not None and (before[1][0] == "i" or match[2] is not None)
-            (self.spared if goes_on else self.needed).add(match[1])
+            (self.spared if _goes_on(text, start, match) else self.needed).add(match[1])
+
+
+def _goes_on(text: str, start: int, read: re.Match[str]) -> bool:
+    """Return whether a class goes on without the port that it reads: it ignores the result, or has something else where
+    that is none.
+    """
+    least = max(start - 1, read.start() - _MOST_BEFORE)
+    before = _UNUSED.search(text, least, read.start())
+    if before is not None and (before[1][0] == "i" or read[2] is not None):
+        return True
+    at = read.end() if _TESTED.search(text, least, read.start()) else -1
+    if kept := _KEPT.search(text, least, read.start()):
+        test = re.compile(rf"\s*;\s*if\s*\(\s*(!?)\s*{kept[1]}(?=\s*\))").match(text, read.end())
+        if test is not None and not test[1]:
+            return True
+        at = test.end() if test is not None else -1
+    block = _BLOCK.match(text, at) if at >= 0 else None
+    return block is not None and _GIVES_UP.search(block[1]) is None
 
 
 class CppSources:
@@ -89,15 +112,22 @@ class CppSources:
 
     @cached_property
     def enums(self) -> tuple[frozenset[str], bool]:
-        """Return the names of enums that scripts may use, and whether these are all: a type may be registered as a
-        whole.
+        """Return the names of enums that scripts may use, and whether these are all that the folders have: sources may
+        be written in another way, and a type that is registered as a whole may be elsewhere.
         """
         names: set[str] = set()
-        is_complete = bool(self.models)
+        types: set[str] = set()
+        has_sources = any(path for folder in self._folders for path in find_files_below(folder, _ENDINGS))
+        is_complete = bool(self._folders and (self.models or not has_sources))
         for text in self._registering_enums:
             names.update(match[1] for match in _ENUM.finditer(text))
-            is_complete = is_complete and _ENUMS.search(text) is None
-        return frozenset(names), is_complete
+            types.update(match[1] or "" for match in _ENUMS.finditer(text))
+        for source in self._sources((b"enum",)) if types else ():
+            for match in _ENUM_TYPE.finditer(_without_comments(source.text)):
+                if match[1] in types:
+                    types.discard(match[1])
+                    names.update(_ENUM_NAME.findall(match[2]))
+        return frozenset(names), is_complete and not types
 
     def is_instant(self, node_id: str) -> bool:
         """Return whether the class of a node says that it ends at once."""
@@ -112,7 +142,7 @@ class CppSources:
         classes: dict[str, _Class] = {}
         registered: dict[str, tuple[str, Span]] = {}
         for source in self._sources():
-            text = _COMMENT.sub(lambda match: match[0] if match[0][0] == '"' else " " * len(match[0]), source.text)
+            text = _without_comments(source.text)
             if _REGISTERING in text:
                 self._registering_enums.append(text)
             for match in _find(_REGISTERED, text):
@@ -127,27 +157,33 @@ class CppSources:
                 found.read(text, head.end(), end, place)
         models = {}
         for name, found in classes.items():
-            if found.ports:
+            base = _line(name, classes)[-1].base
+            if found.ports or ("Node" in base and any(word in base for word in _KINDS)):
                 registered.setdefault(name, (name, found.place))
         for node_id, (name, place) in registered.items():
             line = _line(name, classes)
             kind = next((kind for word, kind in _KINDS.items() if line and word in line[-1].base), "")
-            if not line:  # a function
+            if not name:  # a function
                 kind = "Condition" if "SimpleCondition" in place.text else "Action"
             if line and line[-1].base == _INSTANT:
                 self._instant.add(node_id)
             models[node_id] = NodeModel(kind, node_id, tuple(_ports(line))), line[0].place if line else place
         return models
 
-    def _sources(self) -> Iterator[Source]:
+    def _sources(self, telling: Sequence[bytes] = _TELLING) -> Iterator[Source]:
         for folder in self._folders:
             for path in find_files_below(folder, _ENDINGS):
                 try:
                     data = read_bytes(path)
                 except OSError:
                     continue  # it isn't what the user asked about
-                if any(word in data for word in _TELLING):
+                if any(word in data for word in telling):
                     yield Source(data.decode(errors="replace"), path)
+
+
+def _without_comments(text: str) -> str:
+    """Return a text of C++ with blanks in place of its comments."""
+    return _COMMENT.sub(lambda match: match[0] if match[0][0] == '"' else " " * len(match[0]), text)
 
 
 def _find(patterns: Iterable[re.Pattern[str]], text: str) -> Iterator[re.Match[str]]:

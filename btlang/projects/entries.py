@@ -25,13 +25,15 @@ if TYPE_CHECKING:
 
 _ENUM = re.compile(r"[A-Z][A-Z0-9_]+")
 _MOST_PLACES = 3
+_ENUM_HELP = "If it is an enum, register it in C++, and check the folder with that source, too."
 _ISOLATED = "Give it to the SubTree, or set it in this tree, which sees no other entries."
 
 
 class EntryUse(Record):
     """An entry that a port or script of a node names: what it may do with it, and its type, "" if that isn't known.
 
-    For a value that the node sets, the type is NUMBER or TEXT, and `constant` is that value if the node says it.
+    For a value that the node sets, the type is NUMBER or TEXT, and `constant` is that value if the node says it. It
+    `makes` no entry if it is in a script that only changes what is there.
     """
 
     node: Node
@@ -41,6 +43,7 @@ class EntryUse(Record):
     sets: bool = True
     type: str = ""
     constant: str | None = None
+    makes: bool = True
 
     @property
     def may_be_enum(self) -> bool:
@@ -97,7 +100,7 @@ def entries_of(root: Node, ports_of: PortsOf, is_older: bool) -> TreeEntries:
             elif "{" in text:
                 key = blackboard_key(port, text)
                 if key is not None and key[:1] != "@":
-                    (given if node.id == SUBTREE else uses).append(_port_use(node, port, key, ports.get(port)))
+                    (given if node.id == SUBTREE else uses).append(_port_use(node, port, key, _described(port, ports)))
             elif holds:
                 uses.append(EntryUse(node, port, text, reads=False))
                 steps += _set_value(node, port, text)
@@ -116,7 +119,9 @@ def _script_uses(node: Node, port: str, code: str) -> list[EntryUse]:
         uses = {} if blackboard_key(port, code) is not None else find_script_names(code)
     except ScriptError:
         return []
-    return [EntryUse(node, port, name, READS in how, SETS in how) for name, how in uses.items() if name[:1] != "@"]
+    made = {each.key for each in assignments(code) if each.sign == ":="}
+    return [EntryUse(node, port, name, READS in how, SETS in how, makes=name in made)
+            for name, how in uses.items() if name[:1] != "@"]  # fmt: skip
 
 
 def _script_values(node: Node, port: str, code: str) -> Iterator[EntryUse]:
@@ -130,6 +135,14 @@ def _set_value(node: Node, port: str, key: str) -> Iterator[EntryUse]:
     constant = node.port("value")
     if "{" not in constant:
         yield EntryUse(node, port, key, False, True, TEXT, constant)
+
+
+def _described(port: str, ports: Mapping[str, PortModel]) -> PortModel | None:
+    """Return what is said of a port, or of the one of which it is a misspelling."""
+    if port in ports or not ports:
+        return ports.get(port)
+    near = misspelt(port, ports)
+    return ports[near[0]] if near else None
 
 
 def _port_use(node: Node, port: str, key: str, described: PortModel | None) -> EntryUse:
@@ -210,6 +223,31 @@ def _unset(name: str, entries: TreeEntries, flow: EntryFlow, users: Sequence[Nod
             yield _nothing_sets(use, f"Similar: {', '.join(near)}")
 
 
+def unmade_entries(entries: Mapping[str, TreeEntries], flow: EntryFlow) -> Iterator[Diagnostic]:
+    """Report BT241 for what scripts of BehaviorTree.CPP 4 set with `=`, as if it were there, and nothing makes.
+
+    A program may make the entries of a main tree: there only for what nothing else in the tree names.
+    """
+    given: dict[str, set[str]] = {}
+    for each in entries.values():
+        for node in each.subtrees:
+            given.setdefault(node.port("ID"), set()).update(port for port, _ in node.ports)
+    for name, each in entries.items():
+        around = given.get(name, set())
+        if each.is_older or AUTOREMAP in around:
+            continue
+        uses = [*each.uses, *each.given]
+        made = {use.key for use in uses if use.makes} | around
+        for inner in (node.port("ID") for node in each.subtrees if node.port(AUTOREMAP) in TRUE):
+            made |= flow.sets.get(inner, set()) | flow.reads.get(inner, set())
+        for use in uses:
+            if use.key in made or not use.sets or use.reads:
+                continue
+            made.add(use.key)
+            if around or all(other.key != use.key or other is use for other in uses):
+                yield _nothing_sets(use, f"`=` only changes an entry. To make it: {use.key} := ...")
+
+
 def unset_enums(entries: Mapping[str, TreeEntries], enums: Collection[str], are_all: bool) -> Iterator[Diagnostic]:
     """Report BT241 for names such as RED in scripts, unless an entry has that name or it is one of `enums`.
 
@@ -225,9 +263,7 @@ def unset_enums(entries: Mapping[str, TreeEntries], enums: Collection[str], are_
         if use.may_be_enum and use.key not in known:
             near = misspelt(use.key, enums)
             if near or are_all:
-                yield _nothing_sets(
-                    use, f"Similar: {', '.join(near)}" if near else "If it is an enum, register it in C++."
-                )
+                yield _nothing_sets(use, f"Similar: {', '.join(near)}" if near else _ENUM_HELP)
 
 
 def _nothing_sets(use: EntryUse, help: str, notes: tuple[tuple[Span, str], ...] = ()) -> Diagnostic:
@@ -236,7 +272,7 @@ def _nothing_sets(use: EntryUse, help: str, notes: tuple[tuple[Span, str], ...] 
 
 
 def _named(node: Node) -> str:
-    return node.port("ID") if node.id == SUBTREE else node.id
+    return attribute_value(node, "ID").text if node.id == SUBTREE else node.id
 
 
 def wrong_constants(entries: Mapping[str, TreeEntries], flow: EntryFlow) -> Iterator[Diagnostic]:

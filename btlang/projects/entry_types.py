@@ -28,7 +28,9 @@ if TYPE_CHECKING:
     Uses: TypeAlias = dict[str, list[EntryUse]]
     """Those that differ in type or constant, by key."""
 
-_SAME = {"int32_t": "int", "unsigned": "unsigned int", "uint32_t": "unsigned int", "string": "std::string"}
+_POSES = "std::vector<geometry_msgs::msg::PoseStamped>"  # which nav_msgs::msg::Goals replaced in newer versions of Nav2
+_SAME = {"int32_t": "int", "unsigned": "unsigned int", "uint32_t": "unsigned int", "string": "std::string",
+         "nav_msgs::msg::Goals": _POSES}  # fmt: skip
 _SCALARS = ("bool", "double", "float", "int", "unsigned int", "int8_t", "int16_t", "uint8_t", "uint16_t")
 _TEXT = "std::string"
 _MESSAGE = re.compile(r"\w+::msg::\w+")
@@ -187,6 +189,11 @@ def _differ(first: str, later: str) -> bool:
     first, later = _SAME.get(first, first), _SAME.get(later, later)
     if _content(first) == later or _content(later) == first:
         return True
-    if first == later or not (first in _SCALARS or _MESSAGE.fullmatch(first)):
-        return False
-    return later in _SCALARS or (first in _SCALARS and (later == _TEXT or _MESSAGE.fullmatch(later) is not None))
+    if first in (later, _TEXT) or not (_is_plain(first) or _is_plain(later)):
+        return False  # two lists may be one type that is written in two ways
+    return all(type == _TEXT or _is_plain(type) or _LIST.fullmatch(type) for type in (first, later))
+
+
+def _is_plain(type: str) -> bool:
+    """Return whether a type is a number or a message, which is written in one way only."""
+    return type in _SCALARS or _MESSAGE.fullmatch(type) is not None

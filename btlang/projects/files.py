@@ -13,6 +13,10 @@ from btlang.text.source import Source, Span
 
 _ROOT = re.compile(r"\s*(?:<\?.*?\?>\s*|<!--.*?-->\s*|<!DOCTYPE[^>]*>\s*)*<root[\s/>]", re.DOTALL)
 
+_TELLING = re.compile(
+    r"<(?:BehaviorTree|TreeNodesModel|include)\b|BTCPP_format|main_tree_to_execute|<root\s*/?>\s*(?:</|$)"
+)
+
 _IGNORED = frozenset(("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE"))
 """Files in folders that aren't sources: colcon puts them into `build`, `install` and `log`, where copies are."""
 
@@ -62,8 +66,12 @@ def begins_as_tree(source: Source) -> bool:
 
 
 def _may_have_trees(path: str) -> bool:
-    """Return whether a file begins as a tree; what can't be read is reported later."""
+    """Return whether a file begins as a tree, and has what belongs there: other programs have a <root>, too.
+
+    What can't be read is reported later.
+    """
     try:
-        return begins_as_tree(read_source(path))
+        source = read_source(path)
+        return begins_as_tree(source) and _TELLING.search(source.text) is not None
     except MissionError:
         return True

@@ -126,7 +126,7 @@ def port_problems(uses: DescribedUses) -> Iterator[Diagnostic]:
         own = dict(node.ports)
         missing = [port for port in ports if port not in own and port not in optional]
         for name in own:
-            if name in ports or name in lacking or _is_no_port(name):
+            if name in ports or name in lacking or is_no_port(name):
                 continue
             near = _near(name, own, ports)
             fix = suggest_name(attribute_name(node, name), near)
@@ -194,7 +194,8 @@ def broken_references(nodes: Sequence[Node], known: Container[str]) -> Iterator[
             yield diagnostic("BT245", attribute_value(node, port), key=key, port=port, id=node_id)
 
 
-def _is_no_port(name: str) -> bool:
+def is_no_port(name: str) -> bool:
+    """Return whether an attribute is none of the ports that a model lists."""
     return name[:1] == "_" or name == "ID"
 
 
@@ -210,14 +211,20 @@ def _find_lacking(uses: DescribedUses, others: Iterable[PortModel]) -> dict[str,
     found: dict[str, list[Node]] = {}
     misspelt: set[str] = set()
     for node in uses.nodes:
-        for name, _ in node.ports:
-            if name in ports or _is_no_port(name):
-                continue
+        unknown = [name for name, _ in node.ports if name not in ports and not is_no_port(name)]
+        if not ports and len(unknown) >= _SEVERAL:  # nobody makes up several ports: a palette has the ID alone
+            elsewhere.update(unknown)
+        for name in unknown:
             found.setdefault(name, []).append(node)
             if _near(name, dict(node.ports), ports):
                 misspelt.add(name)
-    return {name: nodes for name, nodes in found.items()
-            if name in elsewhere or (len(nodes) >= _SEVERAL and name not in misspelt)}  # fmt: skip
+    lacking = {name: nodes for name, nodes in found.items()
+               if name in elsewhere or (len(nodes) >= _SEVERAL and name not in misspelt)}  # fmt: skip
+    if lacking:  # a model that is out of date may lack others, too
+        for name in found.keys() - lacking - misspelt:
+            if not any(_near(name, dict(node.ports), lacking) for node in found[name]):
+                lacking[name] = found[name]
+    return {name: nodes for name, nodes in found.items() if name in lacking}
 
 
 def _may_be_left_out(port: PortModel, others: Iterable[PortModel], given: Sequence[dict[str, str]]) -> bool:
@@ -273,13 +280,15 @@ def subtree_problems(node: Node, model: NodeModel) -> Iterator[Diagnostic]:
             yield diagnostic("BT132", place_of(node), id=SUBTREE, reason=reason)
 
 
-def constant_outputs(node: Node, model: NodeModel) -> Iterator[Diagnostic]:
+def constant_outputs(node: Node, ports: Iterable[PortModel], is_older: bool) -> Iterator[Diagnostic]:
     """Report BT233 for outputs that name no entry: BehaviorTree.CPP 4 writes them nowhere, but version 3 needs no
-    braces.
+    braces around a name.
     """
-    outputs = {port.name for port in model.ports if port.direction == "output"}
+    outputs = {port.name for port in ports if port.direction == "output"}
     for name, text in node.ports:
         if name in outputs and text.strip() not in ("", "=") and blackboard_key(name, text) is None:
+            if is_older and not _NUMBER.fullmatch(text.strip()):
+                continue
             place = attribute_value(node, name)
             fix = (place, f"{{{text}}}") if text.isidentifier() else None
             yield diagnostic("BT233", place, (), fix, text=text, port=name, id=node.id, wanted="an entry such as {key}")

@@ -81,7 +81,9 @@ def unread_subtree_ports(nodes: Iterable[Node], trees: Mapping[str, Node]) -> It
         for name, _ in node.ports:
             is_named = name == "ID" or name in named[used] or name in _BY_NAV2
             if name[:1] != "_" and _WORD.fullmatch(name) and not is_named:
-                yield diagnostic("BT235", attribute_value(node, name), key=name, port=name, id=used)
+                yield diagnostic(
+                    "BT235", attribute_value(node, name), key=name, port=name, id=attribute_value(node, "ID").text
+                )
 
 
 def _find_names(root: Node, trees: Mapping[str, Node]) -> set[str]:

@@ -1,4 +1,4 @@
-"""Three repositories with planted faults: `btc check` finds all of them, and what else it says of them is true.
+"""Four repositories with planted faults: `btc check` finds all of them, and what else it says of them is true.
 
 Their trees were written by somebody who hadn't read the checker. Beside each repository is the list of its faults;
 `others` are findings that were judged to be true. In one of them, IDs contain blanks (BT238), as in the field.
@@ -208,7 +208,7 @@ def test_types_of_an_entry(
     [
         ("Grip", '<Action ID="Grip"/>', True),
         ("Grip", '<Condition ID="Grip"/>', False),
-        ("Grip", '<Action ID="Grip"><output_port name="pose"/></Action>', False),
+        ("Grip", '<Action ID="Grip"><output_port name="pose"/></Action>', True),
         ("Grip", "", False),
         ("CheckGrip", '<Action ID="CheckGrip"/>', False),
         ("PublishGrip", '<Action ID="PublishGrip"/>', False),
@@ -220,7 +220,7 @@ def test_types_of_an_entry(
 def test_an_action_of_others_that_starts_again(
     action: str, model: str, warns: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Actions with outputs may be there to compute them anew, and what sets a value at once may set it again."""
+    """Outputs that are read may be computed anew, and what sets a value at once may set it again."""
     models = f'{model}<Action ID="Then"/>'
     port = 'return {BT::InputPort<bool>("on")}; } };'
     code = "class %s : public BT::%s { static BT::PortsList providedPorts() { " + port

@@ -5,12 +5,12 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from functools import cache
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
-from btlang.diagnostics.files import MOST_DEEP, TOO_DEEP, included_path, read_included, read_source, real_path
+from btlang.diagnostics.files import MOST_DEEP, TOO_DEEP, included_path, read_included, real_path
 from btlang.frontends.btcpp.file import TreeHead, XmlFile
 from btlang.frontends.btcpp.models import MODEL_KINDS, nav2_models, subtree_defaults
+from btlang.frontends.btcpp.packages import package_of, package_root
 from btlang.frontends.btcpp.scan import Document, scanned
 from btlang.frontends.btcpp.scopes import Scopes
 from btlang.frontends.btcpp.spelling import MODEL, TO_4
@@ -22,7 +22,6 @@ from btlang.tree.visit import in_order_of_use
 _NO_NODES = CATALOGUE.keys() | TO_4.keys() | {"root", "BehaviorTree", MODEL, *MODEL_KINDS}
 """Tags that are no ids of nodes that somebody made."""
 _ID = re.compile(r"""\bID\s*=\s*["']([^"'<>\n]+)["']""")
-_PACKAGE = re.compile(r"<name>\s*([\w-]+)\s*</name>")
 _ROS_FOLDERS = "AMENT_PREFIX_PATH"  # where ROS 2 has its packages
 
 
@@ -233,7 +232,7 @@ class XmlFiles:
             return ""
         paths = {real: real.split(os.sep) for real in self._sources}
         ends_so = (real for real, parts in paths.items() if parts[-len(folders) :] == folders)
-        found = [real for real in ends_so if package in paths[real] or _package_of(os.path.dirname(real)) == package]
+        found = [real for real in ends_so if package in paths[real] or package_of(os.path.dirname(real)) == package]
         return found[0] if len(found) == 1 else ""
 
     def _not_included(self, span: Span, *, path: str, reason: str) -> None:
@@ -253,9 +252,9 @@ def _in_own_package(path: str, package: str, source: Source) -> str:
     """Return the relative path of what the package of a source installs, in the folder of that package, or ""."""
     package, folders = _split_installed(path, package)
     _, real = included_path(".", source)
-    root = _package_root(real) if package and ".." not in folders else ""
+    root = package_root(real) if package and ".." not in folders else ""
     own = os.path.join(root, *folders)
-    if not root or _package_of(root) != package or not os.path.isfile(own):
+    if not root or package_of(root) != package or not os.path.isfile(own):
         return ""
     return os.path.relpath(own, real)
 
@@ -289,28 +288,6 @@ def repeated(heads: Iterable[TreeHead]) -> Iterator[Diagnostic]:
 def same_id(head: TreeHead, first: TreeHead) -> Diagnostic:
     """BT127: a tree has the ID of an earlier one."""
     return diagnostic("BT127", head.span, ((first.span, "the first one"),), name=head.id)
-
-
-@cache
-def _package_root(folder: str) -> str:
-    """The folder of the ROS 2 package in which a folder is, "" if it is in none."""
-    above = os.path.dirname(folder)
-    if os.path.isfile(os.path.join(folder, "package.xml")):
-        return folder
-    return _package_root(above) if above != folder else ""
-
-
-@cache
-def _package_of(folder: str) -> str:
-    """The name of the ROS 2 package in which a folder is, "" if it is in none."""
-    root = _package_root(folder)
-    if not root:
-        return ""
-    try:
-        name = _PACKAGE.search(read_source(os.path.join(root, "package.xml")).text)
-    except MissionError:
-        return ""
-    return name[1] if name is not None else ""
 
 
 def _package_folder(package: str) -> str | None:

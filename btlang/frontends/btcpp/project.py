@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import operator
 import os
 from collections.abc import Collection, Iterable, Iterator, Mapping
+from functools import cache
 
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.diagnostics.files import real_path
 from btlang.frontends.btcpp.file import TreeHead, XmlFile
 from btlang.frontends.btcpp.files import XmlFiles, same_id
+from btlang.frontends.btcpp.packages import are_related
 from btlang.frontends.btcpp.reader import MAIN, empty_file, no_tree
 from btlang.frontends.btcpp.scopes import Scopes
 from btlang.frontends.btcpp.spelling import MAIN_TREE
@@ -16,6 +19,7 @@ from btlang.support.record import Record
 from btlang.text.source import Span
 from btlang.tree.catalogue import SUBTREE
 from btlang.tree.node import Node, NodeModel
+from btlang.tree.visit import fold
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -53,6 +57,30 @@ class XmlProject(Record):
             return self.tree_models.get(node.port("ID"))
         own = self.own_models.get(node.span.source.name, {}) if node.span is not None else {}
         return own.get(node.id) or self.models.get(node.id)
+
+    def certain_trees(self) -> dict[str, Node]:
+        """The trees, in which a SubTree node names none that only has the ID: that of a package on which its own does
+        not depend, which may be another one when the program runs.
+        """
+        files = {name: real_path(head.span.source.name) for name, head in self.heads.items()}
+
+        @cache
+        def is_certain(own: str, used: str) -> bool:
+            return not self.scopes.are_apart(own, used) or are_related(own, used, files.values())
+
+        def named(node: Node) -> Node:
+            used = files.get(node.port("ID")) if node.id == SUBTREE else None
+            if used is None or node.span is None or is_certain(real_path(node.span.source.name), used):
+                return node
+            ports = tuple((name, text) for name, text in node.ports if name != "ID")
+            return node.replace(ports=ports)  # type: ignore[no-any-return]
+
+        def joined(node: Node, inner: list[Node]) -> Node:
+            own = named(node)
+            is_same = all(map(operator.is_, node.children, inner))
+            return own if is_same else own.replace(children=tuple(inner))
+
+        return {name: fold(root, _children, joined) for name, root in self.trees.items()}
 
     def is_joined(self, file: str) -> bool:
         """Whether a file includes another one, or is included."""
@@ -190,8 +218,9 @@ class _Nearest:
                 by_file = self._trees[tree_id]
                 first, *others = self._files_near(file, tree_id, self._trees)
                 for path in others:
-                    # which of several folders is installed isn't known here
-                    if os.path.dirname(path) == os.path.dirname(first):
+                    # which of several folders is installed isn't known here, and variants of a program run one by one
+                    is_variant = len(self._files[path].names.keys() & self._files[first].names.keys()) > 1
+                    if os.path.dirname(path) == os.path.dirname(first) and not is_variant:
                         found.setdefault(by_file[path], by_file[first])
         return found
 
@@ -248,3 +277,7 @@ def _main_of(file: XmlFile, names: dict[str, str]) -> str:
     """The name of the tree that a file starts with, "" where it doesn't say."""
     written = file.attributes.get(MAIN, MAIN_TREE)
     return file.names.get(written) or (names.get(written, "") if MAIN in file.attributes else "")
+
+
+def _children(node: Node) -> tuple[Node, ...]:
+    return node.children
