@@ -139,6 +139,9 @@ def test_the_trail_is_filtered(door: Door, ann: Administrator) -> None:
     door.ask("POST", "/api/login", {"name": "100%_\u00e4", "password": "a wrong one"})
     assert ann.trail("filter=100%25_&limit=1") == ["100%_\u00e4: log in: wrong"]
     assert ann.trail("filter=wrong+nobody+at+all") == []
+    assert ann.trail("failures=true&limit=1") == ["100%_\u00e4: log in: wrong"]
+    assert ann.trail("limit=2")[1] == "ann: log in: ok"
+    assert not any(entry.endswith(": ok") for entry in ann.trail("failures=true"))
     assert len(ann.trail("limit=1")) == 1
     headers = door.log_in("ann")
     for query in ("limit=0", "limit=1001", "limit=x", "limit=\u00b2", f"filter={'x' * 201}"):

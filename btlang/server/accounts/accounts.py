@@ -315,11 +315,14 @@ class Accounts:
             insert(execute, "entry", TrailEntry(self._clock(), user, address, what, outcome))
             execute("DELETE FROM entry WHERE number <= (SELECT max(number) FROM entry) - ?", (MOST_ENTRIES,))
 
-    def entries(self, limit: int = 100, words: str = "") -> list[TrailEntry]:
-        """Return the trail, the newest first; with `words`, the entries in which all of them are."""
+    def entries(self, limit: int = 100, words: str = "", *, only_failures: bool = False) -> list[TrailEntry]:
+        """Return the trail, the newest first: the entries in which all of the `words` are, and `only_failures` if that
+        is wanted, which are those that were refused or had a wrong password.
+        """
         entry = "lower(user || ' ' || address || ' ' || what || ' ' || outcome)"
         wanted = words.split()[:_MOST_WORDS]
-        condition = " AND ".join(["1 = 1", *(f"instr({entry}, lower(?)) > 0" for _ in wanted)])
+        first = "outcome <> 'ok'" if only_failures else "1 = 1"
+        condition = " AND ".join([first, *(f"instr({entry}, lower(?)) > 0" for _ in wanted)])
         return self._all(TrailEntry, "entry", f"{condition} ORDER BY number DESC LIMIT ?", *wanted, limit)
 
     def backup(self, path: str) -> None:

@@ -30,6 +30,7 @@ _WITH: dict[str, Any] = {
 }
 _TRAIL: list[dict[str, Any]] = [
     {"name": "filter", "in": "query", "description": "Words that an entry must have.", "schema": _TEXT},
+    {"name": "failures", "in": "query", "description": "With true, only what failed.", "schema": {"type": "boolean"}},
     {"name": "limit", "in": "query", "description": "The most entries: 100 by default, up to 1000.", "schema": _NUMBER},
 ]
 _NAME: dict[str, Any] = {"name": "name", "in": "path", "required": True, "schema": _TEXT}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from functools import partial
 
 from starlette.requests import Request
 from starlette.responses import Response
@@ -62,7 +63,8 @@ class UserRequests:
             raise AccessError(400, f"'filter' must have at most {_LONGEST_FILTER} characters.")
         if not (limit.isascii() and limit.isdigit() and len(limit) < 5 and 1 <= int(limit) <= MOST_ENTRIES):
             raise AccessError(400, f"'limit' must be a number from 1 to {MOST_ENTRIES}.")
-        entries = await asyncio.to_thread(self._access.accounts.entries, int(limit), words)
+        find = partial(self._access.accounts.entries, only_failures=request.query_params.get("failures") == "true")
+        entries = await asyncio.to_thread(find, int(limit), words)
         return JsonResponse({"ok": True, "entries": [entry.as_dict() for entry in entries]})
 
     async def _confirm(self, request: Request) -> Response:
