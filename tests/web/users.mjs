@@ -145,6 +145,14 @@ await visit(base, async (page, context) => {
   await card("vic").getByRole("combobox").selectOption("viewer");
   await until("give 'vic' the role viewer", ".trail li");
 
+  // Who is no administrator any more sees nothing of it.
+  await page.unroute("**/api/users");
+  await page.route("**/api/users", (route) => route.request().method() === "GET" ? route.fulfill({ status: 403, json: { ok: false, text: "Only administrators may do this.", code: "" } }) : route.continue());
+  await card("vic").getByRole("button", { name: "Log out" }).click();
+  await until("Only administrators may do this.", ".accounts > .problem");
+  assert.equal(await page.$$eval(".users, .trail", (all) => all.length), 0);
+  await page.unroute("**/api/users");
+
   // In Spanish.
   await page.evaluate(() => localStorage.setItem("btlang.language", "es"));
   await page.reload();

@@ -100,27 +100,28 @@ export class Shell {
     sessionStorage.setItem(LATEST, this.robot);
     const accounts = first === "accounts" && this.administers;
     const tab: Screen | null = accounts || first === "write" || first === "runs" ? (first as Screen) : !this.robot ? null : rest[0] === "tasks" ? "tasks" : "watch";
-    this.listen(tab);
-    this.showTabs(tab);
+    const shown = tab === "accounts" ? null : tab; // it isn't about a robot, and others aren't told of it
+    this.listen(shown);
+    this.showTabs(shown);
     this.stop.show();
     const turn = ++this.shown;
     const open = tab ? await OPENERS[tab]() : openRobots;
     if (turn !== this.shown) return;
     this.view?.close();
-    this.presence.look(this.robot, tab && tab !== "accounts" ? tab : "robots");
+    this.presence.look(this.robot, shown ?? "robots");
     this.view = open({ me: this.me, fleet: this.fleet, link: this.link, presence: this.presence, robot: this.robot, path: rest });
     document.title = [this.robot, tab ? t(`tab.${tab}`) : t("robots"), "btlang"].filter(Boolean).join(" · ");
     fill(this.main, this.view.element);
   }
 
-  private listen(tab: Screen | null): void {
+  private listen(tab: Tab | null): void {
     const wanted = tab ? { topics: ALL, rate: 20, language: language(), ...(this.robot ? { robots: [this.robot] } : {}) } : { topics: ["robot", "tasks", "map"], rate: 2 };
     if (this.heard === JSON.stringify(wanted)) return;
     this.heard = JSON.stringify(wanted);
     this.link.subscribe(wanted);
   }
 
-  private showTabs(current: Screen | null): void {
+  private showTabs(current: Tab | null): void {
     fill(this.place, this.robot || t("robots"));
     this.place.setAttribute("aria-label", this.robot ? t("robots.choose", { robot: this.robot }) : t("robots"));
     const addresses: Record<Tab, string> = {

@@ -1,5 +1,5 @@
 // Users, their tokens, and the trail of what people did: the screen of administrators.
-import { request } from "../api";
+import { request, RequestError } from "../api";
 import { fill, h } from "../dom";
 import { addStyle } from "../late_style";
 import { loadMore, more } from "../more_texts";
@@ -53,9 +53,16 @@ class AccountsView implements View {
       if (elements.length !== this.list.children.length || elements.some((each, index) => each !== this.list.children[index])) fill(this.list, ...elements);
       for (const name of [...this.cards.keys()]) if (!users.some((user) => user.name === name)) this.cards.delete(name);
     } catch (error) {
+      if (error instanceof RequestError && error.status === 403) return this.hide(error); // no administrator any more
       this.fail(error as Error);
     }
     await this.trail.refresh();
+  }
+
+  private hide(error: Error): void {
+    this.trail.close();
+    this.element.replaceChildren(this.problem);
+    this.fail(error);
   }
 
   private fail(error: Error): void {

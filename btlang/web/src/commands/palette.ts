@@ -32,7 +32,7 @@ let dialog: HTMLDialogElement | null = null;
 /** Opens the palette, or closes it if it's open. */
 export async function togglePalette(context: PaletteContext): Promise<void> {
   await loadMore();
-  if (dialog) return dialog.close();
+  if (dialog?.isConnected) return dialog.close(); // one that isn't went with the page of a session that ended
   addStyle(style);
   new Palette(commandsOf(context), context);
 }
