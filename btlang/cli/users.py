@@ -81,11 +81,12 @@ def _copy(options: argparse.Namespace, accounts: Accounts) -> None:
 
 def _change(options: argparse.Namespace, accounts: Accounts) -> str:
     """Do what changes something; return what to say."""
+    from btlang.server.accounts.accounts import check_account_name
     from btlang.server.accounts.passwords import hash_password
 
     act, name, item = options.act, options.name, options.item
     if act == "add":
-        _check_name(name)
+        check_account_name(name, act)
         if accounts.user(name) is not None:
             change = f"exists already. For another role: btc user role {shlex.quote(name)} {options.role}"
             raise refusal_error(f"The user '{one_line(name)}'", change)
@@ -109,11 +110,6 @@ def _change(options: argparse.Namespace, accounts: Accounts) -> str:
         accounts.revoke(name, item)
         return f"The token '{one_line(item)}' is no longer valid."
     return accounts.add_token(name, item)
-
-
-def _check_name(name: str) -> None:
-    if not name.strip() or len(name) > 64 or not name.isprintable():
-        raise wrong("add", "a name must have up to 64 characters that can be shown")
 
 
 def _role(role: str, act: str) -> UserRole:

@@ -339,3 +339,20 @@ def test_a_trail_that_is_not_kept_keeps_nobody_out(guard: Guard, monkeypatch: py
     monkeypatch.setattr(guard.accounts, "log", full)
     assert guard.status("bo", PASSWORD) == 200
     assert guard.status("bo", "a wrong password") == 401
+
+
+def test_accounts_are_changed_only_soon_after_the_password_was_given(guard: Guard) -> None:
+    identity, _ = guard.log_in("ann")
+    guard.access.require_fresh(identity)
+    guard.now += 301.0
+    error = refusal(lambda: guard.access.require_fresh(identity))
+    assert (error.status, error.code) == (403, module.CONFIRM)
+    error = refusal(lambda: asyncio.run(guard.access.confirm(identity, "a wrong password", HERE)))
+    assert error.status == 401
+    assert guard.accounts.entries()[0].what == "confirm the password"
+    refusal(lambda: guard.access.require_fresh(identity))
+    asyncio.run(guard.access.confirm(identity, PASSWORD, HERE))
+    guard.access.require_fresh(identity)
+    for _ in range(FREE):  # guessing costs what it costs at the log-in
+        refusal(lambda: asyncio.run(guard.access.confirm(identity, "a wrong password", HERE)))
+    assert refusal(lambda: guard.log_in("ann")).status == 429

@@ -182,6 +182,7 @@ await visit(base, async (page) => {
 
   // Another language, and somebody who leaves.
   await page.click(".user");
+  await page.keyboard.press("ArrowDown"); // the commands come first
   await page.keyboard.press("Enter");
   await until("Zusehen", ".tabs");
   await page.click(".user");

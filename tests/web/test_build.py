@@ -79,12 +79,16 @@ def sentences_of_the_package() -> Iterator[str]:
         yield from (spoken(line) for text in (code.message, code.hint) for line in text.split("\n"))
     for path in (ROOT / "btlang").rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.JoinedStr):
-                yield "".join(
-                    str(part.value) if isinstance(part, ast.Constant) else "{}" for part in node.values
-                ).strip()
-            elif isinstance(node, ast.Constant) and isinstance(node.value, str):
-                yield node.value.strip()
+            yield template(node).strip()
+            if isinstance(node, ast.Call) and ast.unparse(node.func) == "refusal_error":
+                yield f"{template(node.args[0])} {template(node.args[1])}."
+
+
+def template(node: ast.AST) -> str:
+    """A text or an f-string as a template; "" for anything else."""
+    if isinstance(node, ast.JoinedStr):
+        return "".join(str(part.value) if isinstance(part, ast.Constant) else "{}" for part in node.values)
+    return node.value if isinstance(node, ast.Constant) and isinstance(node.value, str) else ""
 
 
 def test_translated_sentences_are_those_of_the_package() -> None:
@@ -103,10 +107,13 @@ def test_translated_sentences_are_those_of_the_package() -> None:
 def test_languages_have_the_same_texts() -> None:
     texts = {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in TEXTS.glob("??.json")}
     assert {"en", "de", "es"} <= texts.keys()
+    texts |= {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in TEXTS.glob("more.??.json")}
+    assert {"more.en", "more.de", "more.es"} <= texts.keys()
     for name, each in texts.items():
-        assert each.keys() == texts["en"].keys(), name
+        english = texts[name[:-2] + "en"]
+        assert each.keys() == english.keys(), name
         for key, text in each.items():
-            assert set(re.findall(r"\{\w+\}", text)) == set(re.findall(r"\{\w+\}", texts["en"][key])), (name, key)
+            assert set(re.findall(r"\{\w+\}", text)) == set(re.findall(r"\{\w+\}", english[key])), (name, key)
 
 
 def test_no_modules_import_each_other() -> None:
@@ -124,7 +131,10 @@ def test_no_modules_import_each_other() -> None:
 
 def test_every_text_is_used() -> None:
     program = "".join(path.read_text(encoding="utf-8") for path in (WEB / "src").rglob("*.ts"))
-    texts = json.loads((TEXTS / "en.json").read_text(encoding="utf-8"))
+    texts = {
+        **json.loads((TEXTS / "en.json").read_text("utf-8")),
+        **json.loads((TEXTS / "more.en.json").read_text("utf-8")),
+    }
     prefixes = set(re.findall(r"`(\w+\.)\$\{", program))  # t(`state.${...}`)
     assert [key for key in texts if f'"{key}"' not in program and not key.startswith(tuple(prefixes))] == []
 

@@ -144,6 +144,18 @@ def test_trees_in_xml_are_edited_in_english(robot: str, tmp_path: Path) -> None:
 
 
 @only_long
+def test_administrators_manage_users(page: Path, tmp_path: Path) -> None:
+    with served("--speed", "4") as address:
+        node(HERE / "users.mjs", address, PASSWORD, str(tmp_path), folder=installed(HERE))
+
+
+@only_long
+def test_commands_by_keys(page: Path, tmp_path: Path) -> None:
+    with served("--speed", "4") as address:
+        node(HERE / "palette.mjs", address, PASSWORD, str(tmp_path), folder=installed(HERE))
+
+
+@only_long
 def test_large_trees(robot: str) -> None:
     """Figures for a quiet machine are in docs/page.md; these bounds also hold on a busy one."""
     figures = json.loads(node(HERE / "figures.mjs", robot, PASSWORD, folder=installed(HERE)))

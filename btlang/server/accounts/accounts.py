@@ -72,6 +72,7 @@ _MOST_IDENTITIES = 10_000
 _NEXT = "generation = generation + 1"
 MOST_ENTRIES = 100_000
 """The limit of the trail."""
+_MOST_WORDS = 8  # by which the trail is filtered
 _NOT_COPIED = ("session",)  # else a restore would bring back one that was logged out
 _STEPS = [
     (
@@ -209,17 +210,15 @@ class Accounts:
 
     def set_role(self, name: str, role: UserRole) -> None:
         """Set the role of a user. Raises MissionError (BT187), also for the last administrator."""
-        if role is not UserRole.ADMINISTRATOR:
-            self._keep_an_administrator(name)
-        self._change(name, f"UPDATE user SET role = ?, {_NEXT} WHERE name = ? RETURNING name", role.value)
+        sql = f"UPDATE user SET role = ?, {_NEXT} WHERE name = ? RETURNING name"
+        self._change(name, sql, role.value, is_needed=role is not UserRole.ADMINISTRATOR)
 
     def remove(self, name: str) -> None:
         """Remove a user, and end all sessions and tokens.
 
         Raises MissionError (BT187), also for the last administrator.
         """
-        self._keep_an_administrator(name)
-        self._change(name, "DELETE FROM user WHERE name = ? RETURNING name")
+        self._change(name, "DELETE FROM user WHERE name = ? RETURNING name", is_needed=True)
         with self.database.transaction() as execute:
             execute("DELETE FROM token WHERE user = ?", (name,))
         self.log_out(name)
@@ -316,9 +315,15 @@ class Accounts:
             insert(execute, "entry", TrailEntry(self._clock(), user, address, what, outcome))
             execute("DELETE FROM entry WHERE number <= (SELECT max(number) FROM entry) - ?", (MOST_ENTRIES,))
 
-    def entries(self, limit: int = 100) -> list[TrailEntry]:
-        """Return the trail, the newest first."""
-        return self._all(TrailEntry, "entry", "1 = 1 ORDER BY number DESC LIMIT ?", limit)
+    def entries(self, limit: int = 100, words: str = "", *, only_failures: bool = False) -> list[TrailEntry]:
+        """Return the trail, the newest first: the entries in which all of the `words` are, and `only_failures` if that
+        is wanted, which are those that were refused or had a wrong password.
+        """
+        entry = "lower(user || ' ' || address || ' ' || what || ' ' || outcome)"
+        wanted = words.split()[:_MOST_WORDS]
+        first = "outcome <> 'ok'" if only_failures else "1 = 1"
+        condition = " AND ".join([first, *(f"instr({entry}, lower(?)) > 0" for _ in wanted)])
+        return self._all(TrailEntry, "entry", f"{condition} ORDER BY number DESC LIMIT ?", *wanted, limit)
 
     def backup(self, path: str) -> None:
         """Write all but the sessions into a new SQLite file for its owner alone, as it is at one moment.
@@ -339,12 +344,11 @@ class Accounts:
         user = self.user(name)
         return None if user is None else Identity(user.name, user.role, id, is_session, user.generation)
 
-    def _keep_an_administrator(self, name: str) -> None:
-        if [user.name for user in self.users() if user.role is UserRole.ADMINISTRATOR] == [name]:
-            raise refusal_error(f"The user '{name}'", "is the only administrator")
-
-    def _change(self, name: str, sql: str, *values: object) -> None:
-        with self.database.transaction() as execute:
+    def _change(self, name: str, sql: str, *values: object, is_needed: bool = False) -> None:
+        """Change a user; where an administrator `is_needed`, not the last one. Raises MissionError (BT187)."""
+        with self.database.transaction(Mode.ALONE) as execute:  # else two at once could remove the last two
+            if is_needed and execute("SELECT name FROM user WHERE role = ?", (UserRole.ADMINISTRATOR,)) == [(name,)]:
+                raise refusal_error(f"The user '{name}'", "is the only administrator")
             if not execute(sql, (*values, name)):
                 raise refusal_error(f"The user '{name}'", "isn't known")
 
@@ -364,6 +368,12 @@ class Accounts:
             return [each.replace(role=UserRole(each.role)) if isinstance(each, User) else each for each in found]
         except (ValueError, TypeError) as error:
             raise store_error(self.database.place, f"it's damaged: a {table} can't be read") from error
+
+
+def check_account_name(name: str, act: str) -> None:
+    """Raise MissionError if a user or a token can't have this name."""
+    if not name.strip() or len(name) > 64 or not name.isprintable():
+        raise messages.wrong(act, "a name must have up to 64 characters that can be shown")
 
 
 def hash_secret(secret: str) -> str:

@@ -8,6 +8,7 @@ import time
 from collections import Counter, OrderedDict
 from contextlib import suppress
 from http.cookies import CookieError, SimpleCookie
+from math import inf
 from urllib.parse import urlsplit
 
 from itsdangerous import BadSignature, Signer
@@ -15,7 +16,7 @@ from starlette.requests import ClientDisconnect, HTTPConnection, Request
 from starlette.responses import Response
 
 from btlang.diagnostics.diagnostic import MissionError
-from btlang.server.accounts.accounts import Accounts, Identity
+from btlang.server.accounts.accounts import Accounts, Identity, User
 from btlang.server.accounts.passwords import BusyError, Throttle, Verifier
 from btlang.server.accounts.signed import Devices, SignedSessions
 from btlang.task.store.database import StoreError
@@ -40,12 +41,18 @@ _MANY = 50  # wrong passwords of strangers for one account, from all addresses t
 _MOST_PAIRS = 10_000  # users with an address at which they have logged in
 
 
-class AccessError(Exception):
-    """A refusal: the HTTP status, a reason in words, and the seconds to wait before the next try."""
+_FRESH = 300.0  # seconds for which a page that knew the password may change accounts
+_MOST_FRESH = 2000
+CONFIRM = "confirm"
+"""The code of a refusal after which a page asks for the password again."""
 
-    def __init__(self, status: int, reason: str, wait: float = 0.0) -> None:
+
+class AccessError(Exception):
+    """A refusal: the HTTP status, a reason in words, the seconds to wait before the next try, and a code for pages."""
+
+    def __init__(self, status: int, reason: str, wait: float = 0.0, code: str = "") -> None:
         super().__init__(reason)
-        self.status, self.reason, self.wait = status, reason, wait
+        self.status, self.reason, self.wait, self.code = status, reason, wait, code
 
 
 class Access:
@@ -61,7 +68,10 @@ class Access:
         self, accounts: Accounts, key: str, cookie: str = COOKIE, clock: Callable[[], float] = time.monotonic
     ) -> None:
         self.accounts, self.cookie, self._clock = accounts, cookie, clock
+        self.device_cookie = f"{cookie}-device"
+        """The name of the cookie of browsers in which somebody has logged in."""
         self._known: dict[str, tuple[Identity, float]] = {}
+        self._fresh: OrderedDict[str, float] = OrderedDict()  # until when, by the ids of sessions
         self._strangers, self._friends = Verifier(), Verifier(1)
         self._signer, self._signed, self._devices = Signer(key, salt="csrf"), SignedSessions(key), Devices(key)
         self._pairs = OrderedDict.fromkeys(accounts.addresses())
@@ -69,6 +79,42 @@ class Access:
 
     async def log_in(self, name: str, password: str, address: str, device: str = "") -> tuple[Identity, str]:
         """Log a user in; return who it is, and the secret for a cookie. `device` is the cookie of the browser.
+
+        Raises AccessError, see `_verify`.
+        """
+        user = await self._verify(name, password, address, device, "log in")
+        self._pairs[name, address] = None
+        if len(self._pairs) > _MOST_PAIRS:
+            self._pairs.popitem(last=False)
+        try:
+            secret = await asyncio.to_thread(self.accounts.log_in, user.name, address)
+        except StoreError:  # the disk is full: nobody may be kept from stopping a robot
+            secret = self._signed.begin(user)
+        await self.note(user.name, address, "log in", "ok")
+        identity = await self._identity(secret)
+        if identity is None:
+            raise AccessError(401, "The name or the password is wrong.")
+        self._make_fresh(identity)
+        return identity, secret
+
+    async def confirm(self, identity: Identity, password: str, address: str, device: str = "") -> None:
+        """Let a session change accounts for some minutes, if the password is right. Raises as `log_in` does."""
+        await self._verify(identity.user, password, address, device, "confirm the password")
+        self._make_fresh(identity)
+
+    def require_fresh(self, identity: Identity) -> None:
+        """Raise AccessError (403) unless the password was given in this session some minutes ago at most."""
+        if self._clock() > self._fresh.get(identity.id, -inf):
+            raise AccessError(403, "Confirm your password first.", code=CONFIRM)
+
+    def _make_fresh(self, identity: Identity) -> None:
+        self._fresh[identity.id] = self._clock() + _FRESH
+        self._fresh.move_to_end(identity.id)
+        if len(self._fresh) > _MOST_FRESH:
+            self._fresh.popitem(last=False)
+
+    async def _verify(self, name: str, password: str, address: str, device: str, what: str) -> User:
+        """Return the user of a name and a password; `what` is what the trail says of a wrong one.
 
         What somebody gets wrong keeps out those alone who can't be told from them: a browser in which the user has
         logged in before has a count of its own, and so has an address. Raises AccessError, an unknown user's after as
@@ -92,24 +138,13 @@ class Access:
                 throttle.forgive(key, 1)
             raise AccessError(503, "Too many people log in at this moment.", 1.0) from None
         if not fits or user is None:
-            await self.note(one_line(name)[:100], address, "log in", "wrong")
+            await self.note(one_line(name)[:100], address, what, "wrong")
             raise AccessError(401, "The name or the password is wrong.")
         # what others got wrong at this address counts on: an account of one's own mustn't make guessing free
         wrong = self._own.right(own[1])
         for throttle, key in counts[1:]:
             throttle.forgive(key, wrong)
-        self._pairs[name, address] = None
-        if len(self._pairs) > _MOST_PAIRS:
-            self._pairs.popitem(last=False)
-        try:
-            secret = await asyncio.to_thread(self.accounts.log_in, user.name, address)
-        except StoreError:  # the disk is full: nobody may be kept from stopping a robot
-            secret = self._signed.begin(user)
-        await self.note(user.name, address, "log in", "ok")
-        identity = await self._identity(secret)
-        if identity is None:
-            raise AccessError(401, "The name or the password is wrong.")
-        return identity, secret
+        return user
 
     def device(self, cookie: str, user: str) -> str:
         """Return the cookie of a browser in which a user has logged in."""

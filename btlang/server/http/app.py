@@ -34,6 +34,7 @@ from btlang.server.http.access import (
 from btlang.server.http.headers import Headers
 from btlang.server.http.openapi import LIBRARY, VERSION, document
 from btlang.server.http.pages import page_routes
+from btlang.server.http.users import UserRequests
 from btlang.server.live.clients import ClientProtocol
 from btlang.server.live.robot_feeds import RobotFeed, RobotFeeds, metrics
 from btlang.server.live.rosbridge import Rosbridge
@@ -78,6 +79,7 @@ class Api:
         self.stop_port = 0
         """The port of the process of the emergency stop, 0 for none."""
         self._fetching = asyncio.Semaphore(_MOST_FETCHING)
+        self.users = UserRequests(self.access, self._who, self.sockets.check)
         self.joins = Joins(Fleet(accounts.database), self.robots, self.access)
 
     def app(self) -> ASGIApp:
@@ -90,6 +92,7 @@ class Api:
             self._route("/api/login", self._log_in, "POST"),
             self._route("/api/logout", self._log_out, "POST"),
             self._route("/api/me", self._me, "GET"),
+            *(self._route(path, do, method) for method, path, do in self.users.routes()),
             self._route("/api/robots", self._robots, "GET"),
             self._route("/api/stop", self._stop, "POST"),
             self._route("/api/commands", self._command, "POST"),
@@ -185,7 +188,7 @@ class Api:
                 return await do(request)
             except AccessError as error:
                 headers = {"retry-after": f"{error.wait + 1:.0f}"} if error.wait else None
-                return JsonResponse({"ok": False, "text": error.reason, "code": ""}, error.status, headers)
+                return JsonResponse({"ok": False, "text": error.reason, "code": error.code}, error.status, headers)
             except StoreError:  # whose text has paths
                 return JsonResponse({"ok": False, "text": UNREADABLE, "code": ""}, 503)
             except MissionError as error:
@@ -205,17 +208,13 @@ class Api:
 
     async def _log_in(self, request: Request) -> Response:
         data = await json_object(request)
-        name, device = text_in(data, "name"), cookie_in(request.headers, self._device_cookie)
+        name, device = text_in(data, "name"), cookie_in(request.headers, self.access.device_cookie)
         identity, secret = await self.access.log_in(name, text_in(data, "password"), address_of(request), device)
         admit(request, identity.user)
         response = JsonResponse(self._describe(identity))
         known = self.access.device(device, identity.user)
-        response.set_cookie(value=known, max_age=_KNOWN_DEVICE, **{**self._cookie, "key": self._device_cookie})
+        response.set_cookie(value=known, max_age=_KNOWN_DEVICE, **{**self._cookie, "key": self.access.device_cookie})
         return self._logged_in(response, secret)
-
-    @property
-    def _device_cookie(self) -> str:
-        return f"{self.access.cookie}-device"
 
     def _logged_in(self, response: Response, secret: str) -> Response:
         response.set_cookie(value=secret, max_age=int(LONGEST), **self._cookie)

@@ -28,6 +28,11 @@ _WITH: dict[str, Any] = {
     "description": "The other recording.",
     "schema": _TEXT,
 }
+_TRAIL: list[dict[str, Any]] = [
+    {"name": "filter", "in": "query", "description": "Words that an entry must have.", "schema": _TEXT},
+    {"name": "failures", "in": "query", "description": "With true, only what failed.", "schema": {"type": "boolean"}},
+    {"name": "limit", "in": "query", "description": "The most entries: 100 by default, up to 1000.", "schema": _NUMBER},
+]
 _NAME: dict[str, Any] = {"name": "name", "in": "path", "required": True, "schema": _TEXT}
 
 
@@ -85,6 +90,13 @@ ROUTES: dict[tuple[str, str], tuple[str, dict[str, Any] | None]] = {
     ("POST", "/api/login"): ("Begins a session.", _object("name", "password", name=_TEXT, password=_TEXT)),
     ("POST", "/api/logout"): ("Ends a session, or all of a user.", _object(everywhere={"type": "boolean"})),
     ("GET", "/api/me"): ("Who asks.", None),
+    ("GET", "/api/users"): ("The users with their roles and tokens, for administrators.", None),
+    ("POST", "/api/users"): (
+        "Changes a user, for administrators; the password must have been given in the last five minutes.",
+        _object("act", "name", **dict.fromkeys(("act", "name", "role", "token"), _TEXT)),
+    ),
+    ("GET", "/api/trail"): ("What people did or tried, the newest first, for administrators.", None),
+    ("POST", "/api/confirm"): ("Confirms the password before users are changed.", _object("password", password=_TEXT)),
     ("GET", "/api/robots"): ("The robots, and whether they are up.", None),
     ("POST", "/api/stop"): ("The emergency stop.", _object(robot=_TEXT, reason=_TEXT)),
     ("POST", "/api/commands"): ("A command for a robot.", {"$ref": "#/components/schemas/Command"}),
@@ -123,6 +135,7 @@ def document() -> dict[str, Any]:
             described["requestBody"] = {"required": True, "content": {"application/json": {"schema": body}}}
         parameters = [_NAME] if "{name}" in path else []
         parameters += [_ROBOT] if path.removesuffix("/{name}") in (*LIBRARY, *_RECORDED, "/api/urdf") else []
+        parameters += _TRAIL if path == "/api/trail" else []
         parameters += [_WITH] if path.startswith("/api/comparisons") else []
         if parameters:
             described["parameters"] = parameters

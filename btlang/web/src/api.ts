@@ -19,7 +19,7 @@ export interface Me {
   screen: string[];
 }
 
-const ROLES = ["viewer", "operator", "editor", "administrator"] as const;
+export const ROLES = ["viewer", "operator", "editor", "administrator"] as const;
 export type Role = (typeof ROLES)[number];
 
 /** Whether somebody has a role, or one that may do more. */

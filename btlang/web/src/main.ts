@@ -2,7 +2,6 @@
 import { address } from "./address";
 import { enter as enterByToken, whoAmI } from "./api";
 import { fill, h } from "./dom";
-import { showLogin } from "./login";
 import { Shell } from "./shell";
 import { language, loadTexts, t } from "./texts";
 import { applyTheme } from "./theme";
@@ -13,7 +12,7 @@ async function start(): Promise<void> {
   applyTheme();
   const token = /^#token=([\w-]+)$/.exec(location.hash)?.[1];
   if (token) return openScreen(token);
-  if (location.pathname === "/login") return showLogin(enter);
+  if (location.pathname === "/login") return showLogin();
   let me;
   try {
     me = await whoAmI();
@@ -23,7 +22,7 @@ async function start(): Promise<void> {
     return;
   }
   if (me) new Shell(me, start);
-  else showLogin(enter);
+  else await showLogin();
 }
 
 /** The only screen of `btc edit` or `btc watch`. */
@@ -35,6 +34,11 @@ async function openScreen(token: string): Promise<void> {
   } catch (error) {
     fill(document.body, h("main", { class: "alone" }, h("p", { role: "alert" }, (error as Error).message)));
   }
+}
+
+/** The log-in comes when it's needed: whoever watches a robot is logged in. */
+async function showLogin(): Promise<void> {
+  (await import("./login")).showLogin(enter);
 }
 
 function enter(): void {

@@ -1,6 +1,6 @@
 // The frame around every screen: robots, tabs, who is logged in, and the emergency stop.
 import { address } from "./address";
-import { logOut, request, type Me } from "./api";
+import { logOut, may, request, type Me } from "./api";
 import { fill, h, openMenu } from "./dom";
 import { Fleet } from "./fleet";
 import { Presence } from "./presence";
@@ -15,11 +15,14 @@ const ALL = ["tree", "tasks", "events", "robot", "map", "components", "body"];
 const TABS = { watch: "tab.watch", tasks: "tab.tasks", write: "tab.write", runs: "tab.runs" } as const;
 const LATEST = "btlang.robot";
 type Tab = keyof typeof TABS;
-const OPENERS: Record<Tab, () => Promise<Open>> = {
+type Screen = Tab | "accounts";
+const IS_MAC = /Mac|iP/.test(navigator.platform);
+const OPENERS: Record<Screen, () => Promise<Open>> = {
   watch: async () => (await import("./watch/watch")).openWatch,
   tasks: async () => (await import("./tasks/tasks")).openTasks,
   write: async () => (await import("./write/write")).openWrite,
   runs: async () => (await import("./look_back/look_back")).openLookBack,
+  accounts: async () => (await import("./accounts/accounts")).accountsOpener(),
 };
 
 /** `again` starts the page once more: for somebody else, or in another language. */
@@ -37,6 +40,11 @@ export class Shell {
   private main = h("main", { tabindex: -1 });
   private cut = h("p", { class: "cut", role: "status" });
   private onRoute = () => void this.route();
+  private onKey = (event: KeyboardEvent) => {
+    if (event.key.toLowerCase() !== "k" || event.shiftKey || event.altKey || !(IS_MAC ? event.metaKey : event.ctrlKey)) return;
+    event.preventDefault();
+    void this.openPalette();
+  };
 
   constructor(
     private me: Me,
@@ -56,11 +64,13 @@ export class Shell {
     const header = h("header", {}, this.place, this.tabs, this.presence.button, user, this.stop.button);
     fill(document.body, h("a", { class: "skip", href: "#main", onclick: (event: Event) => { event.preventDefault(); this.main.focus(); } }, t("skip")), header, this.cut, this.stop.banner, this.main);
     addEventListener("hashchange", this.onRoute);
+    addEventListener("keydown", this.onKey, { capture: true });
     void request("GET", "/api/robots").then(({ robots }) => (robots as { name: string }[]).forEach(({ name }) => this.fleet.get(name)), () => undefined).then(() => this.route());
   }
 
   private close(): void {
     removeEventListener("hashchange", this.onRoute);
+    removeEventListener("keydown", this.onKey, { capture: true });
     this.view?.close();
     this.stop.close();
     this.link.close();
@@ -82,23 +92,25 @@ export class Shell {
     return known.length ? known : [""];
   }
 
-  /** Addresses: #/robots, #/robots/NAME, #/robots/NAME/tasks, #/write/NAME, #/runs/... */
+  /** Addresses: #/robots, #/robots/NAME, #/robots/NAME/tasks, #/write/NAME, #/runs/..., #/accounts */
   private async route(): Promise<void> {
     const [first = "robots", ...rest] = location.hash.slice(2).split("/").filter(Boolean).map(decoded);
     if (first === "robots") this.robot = rest.shift() ?? "";
     else this.robot ||= sessionStorage.getItem(LATEST) || ([...this.fleet.robots.keys()][0] ?? "");
     sessionStorage.setItem(LATEST, this.robot);
-    const tab: Tab | null = first === "write" || first === "runs" ? first : !this.robot ? null : rest[0] === "tasks" ? "tasks" : "watch";
-    this.listen(tab);
-    this.showTabs(tab);
+    const accounts = first === "accounts" && this.administers;
+    const tab: Screen | null = accounts || first === "write" || first === "runs" ? (first as Screen) : !this.robot ? null : rest[0] === "tasks" ? "tasks" : "watch";
+    const shown = tab === "accounts" ? null : tab; // it isn't about a robot, and others aren't told of it
+    this.listen(shown);
+    this.showTabs(shown);
     this.stop.show();
     const turn = ++this.shown;
     const open = tab ? await OPENERS[tab]() : openRobots;
     if (turn !== this.shown) return;
     this.view?.close();
-    this.presence.look(this.robot, tab ?? "robots");
+    this.presence.look(this.robot, shown ?? "robots");
     this.view = open({ me: this.me, fleet: this.fleet, link: this.link, presence: this.presence, robot: this.robot, path: rest });
-    document.title = [this.robot, tab ? t(TABS[tab]) : t("robots"), "btlang"].filter(Boolean).join(" · ");
+    document.title = [this.robot, tab ? t(`tab.${tab}`) : t("robots"), "btlang"].filter(Boolean).join(" · ");
     fill(this.main, this.view.element);
   }
 
@@ -125,10 +137,28 @@ export class Shell {
   private openUserMenu(button: HTMLElement): void {
     const { left, bottom } = button.getBoundingClientRect();
     openMenu(left, bottom + 4, this.me.user, [
+      { label: `${t("commands")} · ${IS_MAC ? "⌘" : "Ctrl+"}K`, run: () => void this.openPalette() },
+      ...(this.administers ? [{ label: t("tab.accounts"), run: () => (location.hash = address("accounts")) }] : []),
       ...languages.filter(([name]) => name !== language()).map(([name, label]) => ({ label, run: () => { setLanguage(name); this.leave(); } })),
       ...THEMES.filter((name) => name !== theme()).map((name) => ({ label: t(`theme.${name}`), run: () => setTheme(name) })),
-      ...(this.me.screen.length ? [] : [{ label: t("logout"), run: () => void logOut().finally(() => this.leave()) }]),
+      ...(this.me.screen.length ? [] : [{ label: t("logout"), run: () => this.logOut() }]),
     ]);
+  }
+
+  private get administers(): boolean {
+    return may(this.me, "administrator") && !this.me.screen.length;
+  }
+
+  private logOut(): void {
+    void logOut().finally(() => this.leave());
+  }
+
+  private async openPalette(): Promise<void> {
+    const { togglePalette } = await import("./commands/palette");
+    await togglePalette({
+      me: this.me, robot: this.robot, robots: [...this.fleet.robots.keys()], stopped: this.stopped(),
+      stop: () => this.stop.press(), again: () => this.leave(), logOut: () => this.logOut(),
+    });
   }
 }
 

@@ -32,7 +32,11 @@ export const KEYS = Object.keys(en) as Key[];
 
 /** A text in the language of the page, with `{name}` filled in. */
 export function t(key: Key, values: Record<string, string | number> = {}): string {
-  const text = texts[key] ?? en[key];
+  return filled(texts[key] ?? en[key], values);
+}
+
+/** A text with `{name}` filled in. */
+export function filled(text: string, values: Record<string, string | number>): string {
   return text.replace(/\{(\w+)\}/g, (whole, name: string) => String(values[name] ?? whole));
 }
 

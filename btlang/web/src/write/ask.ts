@@ -10,19 +10,22 @@ export interface Field {
   options?: { value: string; label: string }[];
   required?: boolean;
   number?: { min: number; max: number };
-  type?: "date" | "time";
+  type?: "date" | "time" | "password";
+  autocomplete?: "current-password";
   shown?: (values: Record<string, string>) => boolean;
 }
 
-/** Asks, and does what is to be done with the answers; what goes wrong with that is said in the dialog, which stays. */
-export function ask(title: string, fields: Field[], does: (values: Record<string, string>) => Promise<string>, verb = t("ok")): void {
+/** Asks, and does what is to be done with the answers; what goes wrong with that is said in the dialog, which stays.
+ *  `why` is said above the fields.
+ */
+export function ask(title: string, fields: Field[], does: (values: Record<string, string>) => Promise<string>, verb = t("ok"), why = ""): HTMLDialogElement {
   const inputs = new Map<string, HTMLInputElement | HTMLSelectElement>();
   const labels = new Map<string, HTMLElement>();
   for (const field of fields) {
     const props = { name: field.name, dir: "auto", required: field.required ?? false };
     const input = field.options
       ? h("select", props, ...field.options.map(({ value, label }) => h("option", { value, selected: value === field.value }, label)))
-      : h("input", { ...props, value: typeof field.value === "string" ? field.value : "", autocomplete: "off", type: field.type, ...(field.number ? { type: "number", ...field.number } : {}) });
+      : h("input", { ...props, value: typeof field.value === "string" ? field.value : "", autocomplete: field.autocomplete ?? "off", type: field.type, ...(field.number ? { type: "number", ...field.number } : {}) });
     inputs.set(field.name, input);
     labels.set(field.name, h("label", {}, field.label, input));
   }
@@ -51,6 +54,7 @@ export function ask(title: string, fields: Field[], does: (values: Record<string
     h(
       "form",
       { class: "ask", onsubmit: (event: Event) => void submit(event), oninput: update },
+      why && h("p", {}, why),
       ...labels.values(),
       problem,
       h("div", { class: "controls" }, h("button", { class: "primary" }, verb), h("button", { type: "button", onclick: () => dialog.close() }, t("cancel"))),
@@ -58,6 +62,7 @@ export function ask(title: string, fields: Field[], does: (values: Record<string
   );
   update();
   inputs.get(fields[0]?.name ?? "")?.focus();
+  return dialog;
 }
 
 /** A dialog with something in it. */

@@ -1,7 +1,9 @@
 // What can be added: the words of the robot by topic, joining forms, and own definitions.
 import { fill, h } from "../dom";
+import { addStyle } from "../late_style";
 import { t } from "../texts";
 import { show } from "./ask";
+import style from "./palette.css" with { type: "text" };
 import type { Reader } from "./understood";
 
 interface Offer {
@@ -14,6 +16,7 @@ interface Offer {
 
 /** Lets somebody choose, or write, a command or a condition; `add` gives what is wrong with it, "" for nothing. */
 export async function choose(reader: Reader, text: string, conditions: boolean, add: (words: string) => Promise<string>): Promise<void> {
+  addStyle(style);
   const answer = await reader.service("palette", text, {});
   const topics = ((answer.topics ?? []) as { topic: string; items: Offer[] }[]).map(({ topic, items }) => ({
     topic,

@@ -1,11 +1,13 @@
 // The tests of a mission: written beside it, run on the server, with what did not hold in the words of both.
 import { fill, h } from "../dom";
+import { addStyle } from "../late_style";
 import type { Film } from "../look_back/player";
 import { t } from "../texts";
 import { Editor, smallest } from "./editor";
 import { SavedMission } from "./saved_mission";
 import { play } from "./play";
 import type { Store } from "./store";
+import style from "./tests.css" with { type: "text" };
 import { problemOf, type Message, type Reader } from "./understood";
 
 /** See btlang/testing/trial.py; null for a test that there was no time left for. */
@@ -69,6 +71,7 @@ export class Tests {
       this.state,
       h("div", { class: "controls" }, h("button", { type: "button", class: "primary", title: "Ctrl+Enter", onclick: () => void this.run() }, t("tests.run")), mayWrite && h("button", { type: "button", title: "Ctrl+S", onclick: () => void this.keep() }, t("tests.keep"))),
     );
+    addStyle(style);
     this.element = h("section", { class: "card tests", hidden: true, "aria-label": t("tests") }, tools, h("div", { class: "halves" }, h("div", { class: "text" }, this.editor.view.dom), h("div", { class: "found", tabindex: 0, role: "region", "aria-label": t("tests.results") }, this.problem, this.results)));
   }
 

@@ -41,11 +41,12 @@ function openList(context: Context): View {
     },
     (error: Error) => fill(list, h("li", { class: "problem" }, error.message)),
   );
-  const begin = (): void =>
+  const begin = (): void => {
     ask(t("write.new"), [{ name: "name", label: t("write.name"), required: true }], async ({ name }) => {
       location.hash = address("write", name ?? "");
       return "";
     });
+  };
   const button = h("button", { type: "button", class: "primary", onclick: begin }, t("write.new"));
   return { element: h("section", { class: "page" }, h("div", { class: "title" }, h("h1", {}, t("tab.write")), may(context.me, "editor") && button), list), close: () => undefined };
 }
