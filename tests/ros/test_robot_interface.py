@@ -7,7 +7,18 @@ from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.ros.robot.interface import interfaces
 from btlang.vocabulary.capabilities import CAPABILITIES, POSTURE
 
-FREE = ("TimeOfDay", "TimeNow", "TodayIs", "Counted", "CallStaff", "RaiseAlarm", "ClearMap", "Count")
+FREE = (
+    "TimeOfDay",
+    "TimeNow",
+    "TodayIs",
+    "Counted",
+    "CallStaff",
+    "RaiseAlarm",
+    "ClearMap",
+    "Count",
+    "CountedNames",
+    "DayOfWeek",
+)
 """They ask the clock of the run or what was counted, or do something that nobody has to take notice of."""
 OF_THE_WORLD = ("DoorOpen", "DoorClosed", "SwitchedOn", "SwitchedOff", "ZoneClosed")
 """They ask about something in the world, which has a topic of its own or is known by the world file."""

@@ -182,6 +182,12 @@ class Token:
         self.role = role
         self.words: range | None = None
 
+    def copy(self) -> Token:
+        """The same token at a second place."""
+        copied = Token(self.kind, self.start, self.end, self.value, self.role)
+        copied.words = self.words
+        return copied
+
     def __repr__(self) -> str:
         return f"{self.kind}({self.role or self.value or ''})"
 

@@ -14,8 +14,8 @@ from btlang.vocabulary.pattern import forms, spelled
 from btlang.vocabulary.value_type import OBJECT, PLACE, TEXT
 from btlang.vocabulary.verbs import canonical
 
-_LONGEST_NAME = 4
-"""The number of words up to which what isn't known may be the name of a command."""
+_LONGEST_NAME, _LONGEST_CLAUSE, _LONGEST_SHOWN = 4, 20, 200
+"""The words up to which what isn't known may be the name of a command, or a clause, and the characters of either."""
 
 
 def nearest_known(words: Iterable[str]) -> str:
@@ -51,9 +51,10 @@ def examples(vocabulary: Lexicon, sort: str) -> str:
 def heard(text: Words, at: int, end: int, _: Sequence[Token], vocabulary: Lexicon) -> str:
     """Return the advice that somebody may say what no sensor reports, "" where the words are no clause."""
     says = next((phrase for entry in vocabulary.entries.get(SOMEBODY_SAYS, ()) for phrase in entry.phrases), "")
-    if not says or end - at < 2 or not all(word[0].isalpha() or word[0] == "'" for word in text.words[at:end]):
-        return ""
     said = Span(text.source, text.begin(at), text.span(at, end).end).text
+    is_clause = 1 < end - at <= _LONGEST_CLAUSE and len(said) <= _LONGEST_SHOWN
+    if not says or not is_clause or not all(word[0].isalpha() or word[0] == "'" for word in text.words[at:end]):
+        return ""
     condition = spelled(forms(says, vocabulary.articles)[0]).replace(f"{{{TEXT}}}", f'"{said}"')
     return f"If somebody is to tell the robot, write: {condition}"
 
@@ -63,6 +64,7 @@ def defined(text: Words, at: int, end: int, before: Sequence[Token], vocabulary:
     words, asks = text.words[at:end], vocabulary.values.texts.asks
     goes_on = bool(before) and before[-1].kind in ("command", "condition")
     is_name = 1 < len(words) <= _LONGEST_NAME and all(word.isalnum() and not asks(word) for word in words)
+    is_name = is_name and sum(map(len, words)) <= _LONGEST_SHOWN
     if goes_on or not is_name or not vocabulary.values.role_words.prepositions.isdisjoint(words):
         return ""
     return f"To teach it, define it first: {text.span(at, end).text} is ..."

@@ -6,7 +6,6 @@ Each becomes the commands that answer it: what is asked is measured, and said.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from copy import copy
 from functools import cached_property
 
 from btlang.diagnostics.diagnostic import diagnostic
@@ -160,7 +159,12 @@ class Questions(CountingQuestions):
         for words in said:
             command = Token("command", start, last, told)
             self._set_text(command, slot, words)
-            tokens += [Token("open", start, start), *map(copy, before), command, Token("close", last, last)]
+            tokens += [
+                Token("open", start, start),
+                *(each.copy() for each in before),
+                command,
+                Token("close", last, last),
+            ]
             tokens += [Token("comma", last, last), Token("otherwise", last, last)] if words is said[0] else []
         tokens.append(Token("close", last, last))
         return end
