@@ -65,12 +65,15 @@ def _picked(node: ast.Ast) -> list[tuple[str, str]]:
         return []
     picked: list[tuple[str, str]] = []
     for each in node.items:
-        things = each.entry.given(OBJECT, each.arguments) if isinstance(each, ast.Phrase) else []
-        if not isinstance(each, ast.Phrase) or each.entry.id != PICK_UP or len(things) != 1:
+        if not isinstance(each, ast.Phrase) or each.entry.id != PICK_UP:
+            return []
+        things = each.entry.given(OBJECT, each.arguments)
+        if len(things) != 1:
             return []
         choice = choice_of(things[0])
-        named = (things[0], things[0]) if choice is None else (f"{{{choice.key}}}", dict(choice.parts).get(NAME, ""))
-        picked.append(named)
+        picked.append(
+            (things[0], things[0]) if choice is None else (f"{{{choice.key}}}", dict(choice.parts).get(NAME, ""))
+        )
     return picked
 
 

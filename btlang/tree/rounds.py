@@ -15,7 +15,7 @@ from btlang.text.source import Source
 from btlang.text.words import split
 from btlang.tree import ast
 from btlang.tree.answers import ABOUT_ANSWERS, ASK, asks
-from btlang.tree.round_parts import PICK_UP, gathered, is_journey, set_of, with_argument, with_each_carried
+from btlang.tree.round_parts import gathered, is_journey, set_of, with_argument, with_each_carried
 from btlang.tree.sums import COMPARED, COUNTING
 from btlang.tree.visit import fold
 from btlang.vocabulary.capabilities import TRAVELS
@@ -36,8 +36,7 @@ def with_rounds(mission: ast.Program, vocabulary: Lexicon) -> ast.Program:
     tries = (
         isinstance(node, ast.Retry) or (isinstance(node, ast.Chain) and node.operator == "fallback") for node in nodes
     )
-    picks = [node for node in nodes if isinstance(node, ast.Phrase) and node.entry.id == PICK_UP]
-    if not any(map(_choice_of, nodes)) and not any(tries) and len(picks) < 2:
+    if not any(map(_choice_of, nodes)) and not any(tries):
         return mission
     if mission.facts:
         vocabulary = vocabulary.with_places(tuple(fact.name for fact in ast.all_facts(mission)))
@@ -65,9 +64,8 @@ class _Round(Record):
 
 
 def _with_loops(root: ast.Ast, vocabulary: Lexicon) -> ast.Ast:
-    root = with_each_carried(root)
     if any(map(_choice_of, ast.parents_first(root))):
-        root = _chosen_anew(root)
+        root = _chosen_anew(with_each_carried(root))
     if any(map(set_of, ast.parents_first(root))):
         root = _add_loops(root, vocabulary)
     return fold(root, ast.parts, lambda node, done: _with_each_tried(node, done, vocabulary))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from functools import cache
 
 from btlang.diagnostics.diagnostic import MissionError
@@ -30,14 +30,18 @@ def package_of(folder: str) -> str:
     return name[1] if name is not None else ""
 
 
-def are_related(file: str, other: str, files: Iterable[str]) -> bool:
+def roots_of(files: Iterable[str]) -> dict[str, str]:
+    """The folders of the packages in which some files are, by their names."""
+    return {package_of(root): root for root in {package_root(os.path.dirname(file)) for file in files} if root}
+
+
+def are_related(file: str, other: str, roots: Mapping[str, str]) -> bool:
     """Whether a file can mean what another one defines: it is in the same package, in none, or in one on which its
-    package depends, perhaps by way of those of other `files`.
+    package depends, perhaps by way of those with other `roots`.
     """
     own, wanted = package_root(os.path.dirname(file)), package_root(os.path.dirname(other))
     if own == wanted or not own or not wanted:
         return True
-    roots = {package_of(root): root for root in {package_root(os.path.dirname(each)) for each in files} if root}
     waiting, done = [own], {own}
     while waiting:
         for name in _DEPENDS.findall(_text(waiting.pop())):

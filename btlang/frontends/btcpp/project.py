@@ -11,7 +11,7 @@ from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.diagnostics.files import real_path
 from btlang.frontends.btcpp.file import TreeHead, XmlFile
 from btlang.frontends.btcpp.files import XmlFiles, same_id
-from btlang.frontends.btcpp.packages import are_related
+from btlang.frontends.btcpp.packages import are_related, roots_of
 from btlang.frontends.btcpp.reader import MAIN, empty_file, no_tree
 from btlang.frontends.btcpp.scopes import Scopes
 from btlang.frontends.btcpp.spelling import MAIN_TREE
@@ -63,10 +63,11 @@ class XmlProject(Record):
         not depend, which may be another one when the program runs.
         """
         files = {name: real_path(head.span.source.name) for name, head in self.heads.items()}
+        roots = roots_of(files.values())
 
         @cache
         def is_certain(own: str, used: str) -> bool:
-            return not self.scopes.are_apart(own, used) or are_related(own, used, files.values())
+            return not self.scopes.are_apart(own, used) or are_related(own, used, roots)
 
         def named(node: Node) -> Node:
             used = files.get(node.port("ID")) if node.id == SUBTREE else None

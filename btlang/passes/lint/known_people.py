@@ -21,8 +21,8 @@ from btlang.vocabulary.pattern import ways
 from btlang.vocabulary.references import choice_of
 from btlang.vocabulary.value_type import PERSON, PLACE
 
-_LIES = (*WHERE, "on")
-"""The same of things."""
+LIES = (*WHERE, "on")
+"""The parts of a description that say where something lies."""
 _MOST_BEFORE = 60  # characters in which the words for a test stand, and an article
 
 
@@ -62,7 +62,7 @@ def _first_checked(nodes: Iterable[ast.Ast], vocabulary: Lexicon) -> Diagnostic 
     """`check whether there is a cup in the lab`, unless the lab has been named before."""
     been = set[str]()
     for phrase in _phrases(nodes):
-        places = [*phrase.entry.given(PLACE, phrase.arguments), *described_places(phrase, _LIES)]
+        places = [*phrase.entry.given(PLACE, phrase.arguments), *described_places(phrase, LIES)]
         span = _with_check(phrase.span, vocabulary) if places and been.isdisjoint(places) else phrase.span
         if span.start < phrase.span.start and phrase.entry.sort == "condition":
             return _from_memory(span, places[0], vocabulary)

@@ -19,7 +19,7 @@ from itertools import pairwise
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
-from btlang.passes.lint.known_people import drives_robot, with_journey_first
+from btlang.passes.lint.known_people import LIES, drives_robot, with_journey_first
 from btlang.passes.lint.other_readings import Readings
 from btlang.passes.lint.two_readings import make_printer, make_warning
 from btlang.text.formatting import joined
@@ -27,6 +27,7 @@ from btlang.text.source import Span
 from btlang.text.time_of_day import seconds_of
 from btlang.tree import ast
 from btlang.tree.answers import ASK, KEEP_ASKING, asking_verbs, asks
+from btlang.tree.round_parts import PICK_UP
 from btlang.tree.rounds import DAYTIME
 from btlang.tree.sums import COMPARED, COUNTING, asks_for_number
 from btlang.vocabulary.capabilities import MOVES
@@ -42,7 +43,7 @@ if TYPE_CHECKING:
 _COUNTED_AGAIN = "every 10 min, count the people. As soon as there are more than 3, wave"
 _SIGHTS = ("SeesPerson", "SeesObject")
 _COUNTED = "count the people. If there are more than 3, wave"
-_ENDLESS, _PICK_UP = "-1", "PickUp"
+_ENDLESS = "-1"
 _PACES = ("every", "every_day", "weekly", "on_days", "at", "until_time")
 """The roles of the words that say when the rounds of a loop begin."""
 _HALF_DAY = 12 * 3600
@@ -227,7 +228,7 @@ def find_distant_questions(compilation: Compilation) -> Iterator[Diagnostic]:
         seen = phrase.entry.given(OBJECT, phrase.arguments) if phrase.entry.id in _SIGHTS else ()
         choice = next(map(choice_of, (*named, *seen)), None)
         parts = dict(choice.parts) if choice is not None else {}
-        there = next((parts[relation] for relation in ("at", "inside", "on") if relation in parts), "")
+        there = next((parts[relation] for relation in LIES if relation in parts), "")
         goal = there or (named[0] if named and named[0] in vocabulary.values.listed(PERSON) else "")
         drives = drives_robot(phrase.entry)
         stays = phrase.entry.sort == "action" and not drives
@@ -321,7 +322,7 @@ def find_picked_up_only(compilation: Compilation) -> Iterator[Diagnostic]:
     verbs = vocabulary.asking["getting"]
     for body in ast.bodies(compilation.mission):
         phrases = _phrases(compilation.syntax(body))
-        by_place = {each.span.start: each for each in reversed(phrases) if each.entry.id == _PICK_UP}  # of a list, one
+        by_place = {each.span.start: each for each in reversed(phrases) if each.entry.id == PICK_UP}  # of a list, one
         for phrase in sorted(by_place.values(), key=lambda each: each.span.start):
             verb, _, rest = phrase.span.text.partition(" ")
             if verb.lower() not in verbs or "\n" in rest:

@@ -26,7 +26,13 @@ _ENTRIES, MOST_ENTRIES = 100, 1000
 """The entries of the trail in an answer: by default, and at most."""
 _LONGEST_FILTER = 200
 _OF_OTHERS = ("role", "password", "logout", "remove")
-_ACTS = ("add", *_OF_OTHERS, "token", "revoke")
+_ACTS = {
+    "add": "add the user '{name}' as {role}", "role": "give '{name}' the role {role}",
+    "password": "set a new password for '{name}'", "logout": "log out '{name}' everywhere",
+    "remove": "remove the user '{name}'", "token": "make the token '{token}' of '{name}'",
+    "revoke": "revoke the token '{token}' of '{name}'",
+}  # fmt: skip
+"""What can be changed, as the trail describes it."""
 
 
 class UserRequests:
@@ -146,16 +152,4 @@ def _change(accounts: Accounts, act: str, name: str, role: UserRole | None, toke
 
 def _describe(act: str, name: str, role: UserRole | None, token: str) -> str:
     """Describe a change for the trail."""
-    if act == "add":
-        return f"add the user '{name}' as {role}"
-    if act == "password":
-        return f"set a new password for '{name}'"
-    if act == "role":
-        return f"give '{name}' the role {role}"
-    if act == "logout":
-        return f"log out '{name}' everywhere"
-    if act == "remove":
-        return f"remove the user '{name}'"
-    if act == "token":
-        return f"make the token '{token}' of '{name}'"
-    return f"revoke the token '{token}' of '{name}'"
+    return _ACTS[act].format(name=name, role=role, token=token)

@@ -48,7 +48,7 @@ def examples(vocabulary: Lexicon, sort: str) -> str:
     return f"I understand for example: {'; '.join(found)}" if found else "'btc words' lists what I know."
 
 
-def heard(text: Words, at: int, end: int, _: Sequence[Token], vocabulary: Lexicon) -> str:
+def heard(text: Words, at: int, end: int, vocabulary: Lexicon) -> str:
     """Return the advice that somebody may say what no sensor reports, "" where the words are no clause."""
     says = next((phrase for entry in vocabulary.entries.get(SOMEBODY_SAYS, ()) for phrase in entry.phrases), "")
     said = Span(text.source, text.begin(at), text.span(at, end).end).text

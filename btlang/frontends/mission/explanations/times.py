@@ -11,6 +11,7 @@ from btlang.frontends.mission.token import Called, Token
 from btlang.text.source import Source, Span
 from btlang.text.words import Words
 from btlang.tree.rounds import DAYTIME
+from btlang.vocabulary.antecedents import pronouns_for
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.match import SlotValue
 from btlang.vocabulary.value_type import PLACE
@@ -140,6 +141,6 @@ def _problem(span: Span, problem: str, example: str, fix: tuple[Span, str] | Non
 
 def lasting(wait: Span, vocabulary: Lexicon) -> Diagnostic:
     """BT012 for a wait that doesn't say how long, nor that the robot stays there."""
-    there = next((word for word, kinds in vocabulary.values.pronouns.items() if kinds == [PLACE]), "")
+    there = "".join(pronouns_for(vocabulary.values.pronouns, PLACE, alone=True)[:1])
     example = f"{wait.text} {vocabulary.word('for')} {vocabulary.types['duration'].example}, or: {wait.text} {there}"
     return diagnostic("BT012", wait, words=wait.text, wanted="a duration", example=example)

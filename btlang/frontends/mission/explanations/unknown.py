@@ -299,7 +299,8 @@ def _unknown_phrase(
     near = dict(inside) | dict(nearest_phrases(tuple(text.words[at:end]), vocabulary, tuple(names))) | dict(inside)
     # what is wrong stands behind a phrase that begins as it is written
     near = {one: words for one, words in near.items() if not written.startswith(f" {one.partition(' {')[0]} ")}
-    further = (heard if kind == "condition" else defined)(text, at, end, before, vocabulary)
+    is_asked = kind == "condition"
+    further = heard(text, at, end, vocabulary) if is_asked else defined(text, at, end, before, vocabulary)
     if not near:  # a value alone, in a list or where the other words are left out: `if Allice or Bob is near`
         values = [name for kind in WORLD if kind in vocabulary.types for name in vocabulary.values.said_names(kind)]
         word = text.words[at]

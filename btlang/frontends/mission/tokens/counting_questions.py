@@ -54,12 +54,8 @@ class CountingQuestions(Answers):
         if not verb or not self._ends(verb + 2) or latest_question(self._tokens) is None:
             return 0
         key = free_key(key_of([*answer.split(), asking["replying"][0]]), self._context.known or ())
-        if command is None:
-            command = Token("command", text.starts[at], text.ends[verb + 1], self._saying_of(f"{{{key}}}"))
-        else:
-            self._set_text(command, slot, f"{{{key}}}")
-        command.role, command.end = f"{COUNTED}|{answer}|{key}", text.ends[verb + 1]
-        self._tokens.append(command)
+        said = self._say_text(at, verb + 2, f"{{{key}}}", command, slot)
+        said.role = f"{COUNTED}|{answer}|{key}"
         return verb + 2
 
     def _say_last_count(self, at: int, end: int, command: Token | None, slot: str) -> int:
@@ -125,15 +121,9 @@ class CountingQuestions(Answers):
             return 0
         there = next(value.text for value in counted.values if value.type == PLACE)
         chosen = choice.replace(parts=(*choice.parts, ("at", there))).text
-        end = self._text.ends[counted.last - 1]
         self._tokens.append(self._calls.token(counted, at))
         self._then(at)
-        if command is None:
-            command = Token("command", self._text.starts[at], end, self._saying_of(chosen))
-        else:
-            self._set_text(command, slot, chosen)
-            command.end = end
-        self._tokens.append(command)
+        self._say_text(at, counted.last, chosen, command, slot)
         return counted.last
 
     def _is_what(self, at: int) -> bool:
@@ -172,6 +162,12 @@ class CountingQuestions(Answers):
 
     def _say(self, at: int, measured: Match, command: Token | None = None, slot: str = "", adds: bool = False) -> None:
         """Remembers what is measured and says it, with a command or the one that says."""
+        key = self._remember(at, measured)
+        self._then(at)
+        self._say_text(at, measured.last, f"{{{key}}}", command, slot, adds)
+
+    def _remember(self, at: int, measured: Match) -> str:
+        """Remembers what is measured, under the key that this returns."""
         entry, text = measured.meaning.entry, self._text
         assert entry is not None
         if entry.id == ANSWER and self._asks_several():
@@ -179,16 +175,20 @@ class CountingQuestions(Answers):
             problem = diagnostic("BT144", words, words=words.text, problem=_OF_SEVERAL, example=EXAMPLE)
             self._calls.problems.append(problem)
         key = self._key(entry)
-        start, end = text.starts[at], text.ends[measured.last - 1]
         remembered = Remembered(key, entry, self._calls.arguments(entry, measured.values))
-        self._tokens.append(Token("command", start, end, remembered))
-        self._then(at)
+        self._tokens.append(Token("command", text.starts[at], text.ends[measured.last - 1], remembered))
+        return key
+
+    def _say_text(self, at: int, last: int, words: str, command: Token | None, slot: str, adds: bool = False) -> Token:
+        """Says a text up to a word, with a command or the one that says; returns that."""
+        end = self._text.ends[last - 1]
         if command is None:
-            command = Token("command", start, end, self._saying_of(f"{{{key}}}"))
+            command = Token("command", self._text.starts[at], end, self._saying_of(words))
         else:
-            self._set_text(command, slot, f"{{{key}}}", adds)
+            self._set_text(command, slot, words, adds)
             command.end = end
         self._tokens.append(command)
+        return command
 
     def _asks_several(self) -> bool:
         """Whether the latest question went to several people: `ask each of them "Tea?", then say what they said`."""

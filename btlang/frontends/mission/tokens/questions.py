@@ -75,32 +75,43 @@ class Questions(CountingQuestions):
 
     def _where(self, at: int, end: int, command: Token | None = None, slot: str = "") -> int:
         """`where is the cup?`, `where the cup is`: looks for it and says where it is."""
+        found = self._search(at, end)
+        if found is None:
+            return 0
+        self._say(at, found[0], command, slot)
+        return found[1]
+
+    def _search(self, at: int, end: int) -> tuple[Match, int] | None:
+        """Looks for what the words behind `where is` name; returns the quantity that is its place, and where they end.
+
+        None where they name nothing, or more than one.
+        """
         measured = self._partial.with_front(
             at, end, self._vocabulary.asking["whereabouts"], self._vocabulary.quantities
         )
         if measured is None or any(value.more or value.group for value in measured.values):
-            return 0
+            return None
         last, inverting = measured.last, self._vocabulary.values.texts.inverting
         if self._text.words[last] in inverting and self._text.words[end - 1] not in inverting:
             last += 1
         if not self._ends(last):
-            return 0
+            return None
         if measured.values:
             search = self._with_front(at, end, "search")
             if search is None or search.last != measured.last:
-                return 0
+                return None
             self._partial.append(search, at)
             self._tokens[-1].role = IMPLIED
             self._then(at)
-        self._say(at, measured, command, slot)
-        return last
+        return measured, last
 
     def _find_where(self, at: int, end: int, command: Token | None = None, slot: str = "") -> int:
         """`find out where the cup is`: looks for it, so that somebody may be told where it is."""
-        last = self._where(at, end) if command is None else 0
-        if last:
-            del self._tokens[-2:]  # what says it
-        return last
+        found = self._search(at, end) if command is None else None
+        if found is None:
+            return 0
+        self._remember(at, found[0])
+        return found[1]
 
     def _inform(self, at: int) -> int:
         """`if the door is open, tell Bob`: tells him what was asked."""
@@ -126,8 +137,7 @@ class Questions(CountingQuestions):
             return 0
         if isinstance(before.value, Remembered):  # `find out where Bob is and tell Alice`
             command = Token("command", self._text.starts[at], self._text.ends[end - 1], told)
-            self._set_text(command, slot, f"{{{before.value.key}}}")
-            self._tokens.append(command)
+            self._say_text(at, end, f"{{{before.value.key}}}", command, slot)
             return end
         counted = COUNT if before.role != NAMED else COUNTED_NAMES
         found = counted if before.value.entry.id in COUNTING else ANSWER
