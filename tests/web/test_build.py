@@ -85,10 +85,10 @@ def sentences_of_the_package() -> Iterator[str]:
 
 
 def template(node: ast.AST) -> str:
-    """A text or an f-string as a template; "" for anything else."""
+    """A text, a text to be formatted or an f-string as a template; "" for anything else."""
     if isinstance(node, ast.JoinedStr):
         return "".join(str(part.value) if isinstance(part, ast.Constant) else "{}" for part in node.values)
-    return node.value if isinstance(node, ast.Constant) and isinstance(node.value, str) else ""
+    return spoken(node.value) if isinstance(node, ast.Constant) and isinstance(node.value, str) else ""
 
 
 def test_translated_sentences_are_those_of_the_package() -> None:
