@@ -63,7 +63,7 @@ class Hand:
 @pytest.fixture
 def short(monkeypatch: pytest.MonkeyPatch) -> None:
     """Servos that are silent aren't waited for that long."""
-    monkeypatch.setattr("btlang.gestures.recording._WAITS", 0.7)
+    monkeypatch.setattr("btlang.gestures.recording._WAITS", 1.5)
 
 
 @pytest.fixture

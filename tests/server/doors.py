@@ -102,8 +102,8 @@ class Door(Program):
         }
         with closing(self.connection()) as connection:
             connection.request(method, path, body, named)
-            answer = connection.getresponse()
-            return Reply(answer.status, dict(answer.getheaders()), answer.read())
+            with connection.getresponse() as answer:  # else its file stays open when the server hangs up within a body
+                return Reply(answer.status, dict(answer.getheaders()), answer.read())
 
     def log_in(self, name: str = "ann", password: str = PASSWORD) -> dict[str, str]:
         """The headers of somebody who is logged in."""

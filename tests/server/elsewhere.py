@@ -40,7 +40,7 @@ class Elsewhere:
         self._thread.start()
 
     def told(self, words: str) -> None:
-        wait_until(lambda: any(words in line for line in self.lines))
+        wait_until(lambda: any(words in line for line in self.lines), 3 * LONG)  # two processes start before that
 
     def dialer(self) -> int:
         """The process that dials."""
