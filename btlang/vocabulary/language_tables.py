@@ -55,8 +55,9 @@ ASKING = (
     "so", "being", "counting_people", "counting_things", "what",
     "causing", "asking_for", "plea_for", "helping", "plea_for_help",
     "speaking", "spoken_of", "still", "motionless", "who", "somebody", "answering", "likewise",
-    "foremost", "numbers", "in_all", "throughout", "postures", "opinions", "supposing", "rooms", "left_there",
-    "sorts_of_people", "remaining", "entering", "turning_to", "ended", "fewer", "having", "putting", "denied",
+    "foremost", "numbers", "in_all", "throughout", "postures", "opinions", "supposing", "rooms",
+    "left_there", "inverted_if", "sorts_of_people", "remaining", "entering", "turning_to", "ended", "fewer", "having",
+    "putting", "denied",
 )  # fmt: skip
 """What the table `asking` of a language may have; without it there are no questions, and no remarks."""
 

@@ -45,6 +45,16 @@ _FREE, _BATTERY, _LOW = "PathClear", "Battery", "BatteryLow"
 def find_asked_once(compilation: Compilation) -> Iterator[Diagnostic]:
     """Search the statements of the mission, of definitions and of blocks."""
     vocabulary = compilation.vocabulary
+    for problem in _find(compilation, vocabulary):
+        front = problem.span.text.split(maxsplit=1)[0]
+        if front.lower() in vocabulary.asking["inverted_if"]:  # its words can't be said behind another word
+            advice = f"To do it each time, begin with '{vocabulary.word('whenever')}' in place of '{front.lower()}'."
+            yield diagnostic("BT068", problem.span, words=dict(problem.arguments)["words"], advice=advice)
+        else:
+            yield problem
+
+
+def _find(compilation: Compilation, vocabulary: Lexicon) -> Iterator[Diagnostic]:
     for body in ast.bodies(compilation.mission):
         before: dict[int, tuple[Sequence[ast.Ast], int]] = {}
         kept: set[int] = set()  # what is done while the robot keeps in somewhere: `stay in the lab, and when C, A`

@@ -5,12 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.frontends.mission.explanations.suggestions import without_slots
 from btlang.frontends.mission.token import Called, Token
 from btlang.text.words import Words
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.pattern import ways
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.value_type import WORLD
 from btlang.vocabulary.word_tree import find, tree_of
+
+_MOST_WAYS = 2
+"""The ways to say a command that are shown: the shortest."""
 
 
 def explain_role(
@@ -33,6 +38,8 @@ def explain_role(
     first = next(word for word, start in enumerate(text.starts) if start >= command.start)
     manner = find(context.manners, text.words, first)
     first = manner[1] if manner is not None else first
-    last = first + 1 + (text.words[first + 1] in words.particles and first + 1 not in text.articles)
+    has_particle = text.words[first + 1] in words.particles and first + 1 not in text.articles
+    last = min(first + 1 + has_particle, at)
     span, verb, entry = text.span(at, end), text.span(first, last), command.value.entry
-    return diagnostic("BT179", span, verb=verb.text, words=span.text, phrase=[*entry.phrases, verb.text][0])
+    taken = ", or: ".join(map(without_slots, [*ways([*entry.phrases, verb.text][:1])][-_MOST_WAYS:]))
+    return diagnostic("BT179", span, verb=verb.text, words=span.text, phrase=taken)

@@ -20,7 +20,12 @@ _LONGEST_NAME, _LONGEST_CLAUSE, _LONGEST_SHOWN = 4, 20, 200
 
 def nearest_known(words: Iterable[str]) -> str:
     """Return the advice that lists what was probably meant."""
-    return "Similar: " + ", ".join(re.sub(r"\{\w+\}", "...", phrase) for phrase in words)
+    return "Similar: " + ", ".join(map(without_slots, words))
+
+
+def without_slots(phrase: str) -> str:
+    """Return a way to say a phrase with dots in the place of its slots."""
+    return re.sub(r"\{\w+\}", "...", phrase)
 
 
 def example_commands(vocabulary: Lexicon) -> list[str]:

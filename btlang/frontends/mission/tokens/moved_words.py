@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from btlang.frontends.mission.tokens.each_and_any import ENDING
+from btlang.frontends.mission.tokens.word_matches import doing, match_of, with_verb
 from btlang.text.words import Words
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.pattern import ways
@@ -41,6 +44,67 @@ def say_opinion_first(text: Words, vocabulary: Lexicon) -> None:
             opinion = words[at : said[1]]
             text.drop(at_end, said[1])
             text.replace(first, [*opinion, words[first]])
+
+
+def say_subject_first(text: Words, vocabulary: Lexicon) -> None:
+    """Say `if` for a condition that begins with its verb: `should the door be open, wave` as `if the door is open`."""
+    words, inverted = text.words, vocabulary.asking["inverted_if"]
+    if text.distinct.isdisjoint(inverted):
+        return  # as nearly always
+    for at in reversed([at for at in range(len(words) - 3) if words[at] in inverted]):
+        end = next(i for i in range(at, len(words)) if words[i] in ENDING or words[i] == ",")
+        begins = at == text.earlier(at)[1] or words[at - 1] in (*vocabulary.joining, ",")
+        if not begins or words[end] != ",":
+            continue  # `should I go?`
+        found = [each for verb in range(at + 2, end) for each in _straight(text, at, verb, end, vocabulary)]
+        _, verb, rest, said = max(found, key=lambda each: each[0], default=(0, at, at, []))
+        if said:
+            text.drop(verb + 1, rest)
+            text.replace(verb, said)
+        text.replace(at, [vocabulary.word("if")])
+
+
+def _straight(
+    text: Words, at: int, verb: int, end: int, vocabulary: Lexicon
+) -> Iterator[tuple[int, int, int, list[str]]]:
+    """Yield how a verb of `should the door be open` is said behind its subject: `is` in the place of `be`.
+
+    With it come the end of the condition that this makes, where its verb is, and what follows.
+    """
+    words, asking, tries = text.words, vocabulary.asking, (vocabulary.trie,)
+    denial = words[verb : verb + 1] if words[verb] in vocabulary.roles["not"] else []
+    base, rest = words[verb + len(denial)], verb + 1
+    if base == asking["being"][0]:
+        forms, rest = asking["asking_be"], rest + len(denial)
+    elif denial:
+        forms = [*asking["doing_theirs"], *asking["doing_ours"]]
+    else:
+        endings = ((end, other) for other, ends in vocabulary.third_person.items() for end in ends)
+        forms = [base.removesuffix(end) + other for end, other in endings if base.endswith(end)] + [base]
+    for form in forms:
+        said = [form, *denial]
+        places = [*range(at, verb), *[verb] * len(said), *range(rest, end)]
+        other = {0: vocabulary.word("if"), **dict(enumerate(said, verb - at))}
+        whole = match_of(text, places, other, tries, vocabulary.context)
+        alone = match_of(
+            text, places[1:], {place - 1: word for place, word in other.items() if place}, tries, vocabulary.context
+        )
+        last = max(whole.last if whole else 0, alone.last + 1 if alone and alone.meaning.role == "condition" else 0)
+        if last > verb - at or base == asking["being"][0]:
+            yield last, verb, rest, said
+
+
+def say_done_in_each(text: Words, vocabulary: Lexicon) -> None:
+    """Join what is done in each place: `go to the lab and the hall, waving in each` as `... and wave in each`."""
+    words, each = text.words, {phrase.split()[0] for phrase in vocabulary.roles["all_names"]}
+    if text.distinct.isdisjoint(each):
+        return  # as nearly always
+    places = {word for phrase in vocabulary.values.role_words.introducing["location"] for word in phrase}
+    for at in reversed([at for at in range(1, len(words) - 3) if words[at - 1] == ","]):
+        match = doing(text, at, vocabulary.doing, (vocabulary.trie,), vocabulary.context)
+        if match is not None and words[match.last] in places and words[match.last + 1] in each:
+            text.replace(at, [with_verb(text, at, vocabulary.doing, vocabulary.trie).words[at]])
+            text.replace(at - 1, vocabulary.roles["and"][:1])
 
 
 def say_time_before_event(text: Words, vocabulary: Lexicon) -> None:

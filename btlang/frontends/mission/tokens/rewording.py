@@ -11,9 +11,11 @@ from btlang.frontends.mission.tokens.days import list_days, say_hour_first
 from btlang.frontends.mission.tokens.each_and_any import ENDING, STOPS, end_of_condition, say_each
 from btlang.frontends.mission.tokens.moved_words import (
     drop_where_it_is,
+    say_done_in_each,
     say_opinion_first,
     say_pace_first,
     say_quantifier_first,
+    say_subject_first,
     say_time_before_event,
 )
 from btlang.frontends.mission.tokens.parted import part_each
@@ -36,10 +38,12 @@ def reworded(text: Words, vocabulary: Lexicon) -> list[Diagnostic]:
     _drop_words_of_turns(text, vocabulary)
     _drop_still(text, vocabulary)
     _join_but(text, vocabulary)
+    say_subject_first(text, vocabulary)
     say_opinion_first(text, vocabulary)
     _say_last_of_all(text, vocabulary)
     _drop_left(text, vocabulary)
     _say_there(text, vocabulary)
+    say_done_in_each(text, vocabulary)
     say_each(text, vocabulary)
     part_each(text, vocabulary)
     list_days(text, vocabulary)
