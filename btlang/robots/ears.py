@@ -97,8 +97,8 @@ class Ears:
 
     def expected(self, now: float) -> Expected:
         """Return what the robot listens for."""
-        texts = (spoken(text) for text, (looked, _, _) in self._looks.items() if now - looked <= _LISTENS)
-        found = Expected(tuple(filter(None, texts)))
+        texts = [spoken(text) for text, (looked, _, _) in self._looks.items() if now - looked <= _LISTENS]
+        found = Expected(tuple(filter(None, texts)), anything="" in texts)
         for each in self._awaited:
             found |= each
         return found

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 ASK, ANSWERED, UNANSWERED = "Ask", "AnswerIs", "NobodyAnswered"
 """The ids of the question, and of the conditions about its answer."""
 PERSON_SAYS, SOMEBODY_SAYS = "PersonSays", "SomebodySays"
+SPEAKS = {PERSON_SAYS: "PersonSpeaks", SOMEBODY_SAYS: "SomebodySpeaks"}
+"""The conditions of the same without certain words."""
 """The ids of the conditions that are true for the moment in which something is said."""
 ABOUT_ANSWERS = frozenset((ANSWERED, UNANSWERED))
 _ONCE = (

@@ -57,7 +57,7 @@ ASKING = (
     "speaking", "spoken_of", "still", "motionless", "who", "somebody", "answering", "likewise",
     "foremost", "numbers", "in_all", "throughout", "postures", "opinions", "supposing", "rooms",
     "left_there", "inverted_if", "sorts_of_people", "remaining", "entering", "turning_to", "ended", "fewer", "having",
-    "putting", "denied",
+    "putting", "denied", "of_voice",
 )  # fmt: skip
 """What the table `asking` of a language may have; without it there are no questions, and no remarks."""
 
@@ -118,7 +118,7 @@ EXPLAINED = (*(role for role in ROLES if role not in _UNEXPLAINED), "compare", "
 SWITCHES = frozenset(("decimal_comma",))
 
 WORD_LISTS = frozenset((
-    "articles", "titles", "plural_pronouns", "further", "politeness",
+    "articles", "titles", "like_contractions", "plural_pronouns", "further", "politeness",
     "unit_joiner", "one_each", "every_second", "quantifiers",
     "halting", "asked_once", "relatives",
     "relative_denials", "particles", "fillers", "speaker", "subjects", "purpose", "determiners", "others",
@@ -293,7 +293,7 @@ def _phrase_problems(kind: str, name: str, phrases: list[str], known: Mapping[st
 
 _LANGUAGE: dict[str, Any] = {
     "language": "", "decimal_comma": False,
-    "articles": [], "titles": [], "plural_pronouns": [], "further": [],
+    "articles": [], "titles": [], "like_contractions": [], "plural_pronouns": [], "further": [],
     "politeness": [], "unit_joiner": [], "one_each": [],
     "every_second": [],
     "quantifiers": [], "halting": [], "asked_once": [], "relatives": [], "relative_denials": [], "relations": {},

@@ -111,6 +111,9 @@ class Lexicon:
         contracted = {
             word for phrase in said for word in re.split(r"[ /]", phrase) if re.fullmatch(r"[a-z]+'[a-z]+", word)
         }
+        bare = {word.replace("'", ""): word for word in (*contracted, *expanded)}
+        for word in bare.keys() - set(language["like_contractions"]):  # `dont`, `theres`
+            (expanded if bare[word] in expanded else spellings)[word] = expanded.get(bare[word], bare[word])
         self.orthography = self.orthography.with_contractions({*contracted, *expanded})
         self._with_names: dict[tuple[object, ...], Lexicon] = {}
         self.values = Values(self._types_of(files, english), language, [noun for file in files for noun in file.nouns])

@@ -85,11 +85,11 @@ def test_a_wrong_ros_table_is_refused_where_it_is_written() -> None:
 
 
 async def nap() -> None:
-    await asyncio.sleep(0.05)
+    await asyncio.sleep(0.5)
 
 
 def doze() -> None:
-    time.sleep(0.05)
+    time.sleep(0.5)
 
 
 @pytest.mark.parametrize(("call", "thread"), [(nap, False), (doze, True)])
@@ -99,7 +99,7 @@ def test_full_speed_waits_for_what_works_beside_the_tick(call: Callable[[], Any]
     began = time.monotonic()
     outcome = btlang.parse_tree(text, keywords=[rest]).run(speed="max")
     assert outcome.succeeded, outcome.why()
-    assert 200.04 < outcome.seconds < 230
+    assert 200.4 < outcome.seconds < 230
     assert time.monotonic() - began < 60
 
 

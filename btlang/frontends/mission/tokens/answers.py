@@ -16,7 +16,7 @@ from btlang.frontends.mission.token import (
     statement_start,
 )
 from btlang.frontends.mission.tokens.addressed_texts import AddressedTexts
-from btlang.frontends.mission.tokens.replies import REPLIES, missing_words, person_in, told_since
+from btlang.frontends.mission.tokens.replies import REPLIES, any_words, missing_words, person_in, told_since
 from btlang.frontends.mission.tokens.sentence_reader import is_answer, is_question, latest_question
 from btlang.frontends.mission.tokens.silent_words import begins
 from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of
@@ -255,6 +255,8 @@ class Answers(AddressedTexts):
         may_ask = is_asked and not (self._is_done_until() or self._speaks_of_another())
         if isinstance(value, Called) and value.entry.id in (PERSON_SAYS, SOMEBODY_SAYS) and may_ask:
             value = token.value = self._answer_of_asked(value)
+        elif isinstance(value, Called):
+            value = token.value = any_words(value, self._text.source.text[token.start : token.end], self._vocabulary)
         if not isinstance(value, Called) or value.entry.id != ANSWERED:
             return
         if may_ask:

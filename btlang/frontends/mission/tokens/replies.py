@@ -9,9 +9,9 @@ from btlang.frontends.mission.token import Called, Token, statement_start
 from btlang.frontends.mission.tokens.addressed_texts import TELL
 from btlang.frontends.mission.tokens.sentence_reader import is_question
 from btlang.text.source import Source, Span
-from btlang.tree.answers import ANSWERED, PERSON_SAYS, SOMEBODY_SAYS
+from btlang.tree.answers import ANSWERED, PERSON_SAYS, SOMEBODY_SAYS, SPEAKS
 from btlang.vocabulary.lexicon import Lexicon
-from btlang.vocabulary.value_type import PERSON
+from btlang.vocabulary.value_type import PERSON, TEXT
 
 REPLIES = (PERSON_SAYS, SOMEBODY_SAYS, ANSWERED)
 """The ids of conditions about what somebody says."""
@@ -37,6 +37,15 @@ def told_since(tokens: Sequence[Token]) -> set[str]:
         if tokens[at].kind == "command" and isinstance(value, Called) and value.entry.id == TELL and not depends:
             found.add(person_in(value))
     return set()
+
+
+def any_words(heard: Called, said: str, vocabulary: Lexicon) -> Called:
+    """Return the condition of `Bob says something`, where nobody is asked: that he says anything at all."""
+    spoken, entry = dict(heard.arguments), vocabulary.entry(SPEAKS.get(heard.entry.id, ""))
+    words = "".join(heard.entry.given(TEXT, heard.arguments))
+    if entry is None or words not in vocabulary.asking["one_doing"] or '"' in said:
+        return heard
+    return Called(entry, tuple((slot.name, spoken[slot.name]) for slot in entry.slots))
 
 
 def missing_words(token: Token, source: Source, vocabulary: Lexicon) -> Iterator[Diagnostic]:

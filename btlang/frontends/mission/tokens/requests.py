@@ -21,6 +21,7 @@ from btlang.vocabulary.value_type import DOOR, OBJECT, PERSON, TEXT
 from btlang.vocabulary.word_tree import find
 
 _EXAMPLE = "hello"
+_HOW, _STANDS = "says how, but not what", "stands for what isn't said"
 _SEES = "perception"
 _OPTIONAL = re.compile(r"\[.*?\]")
 _BETWEEN = frozenset(("semi", "newline", "comma", "then", "and", "stop"))
@@ -60,6 +61,11 @@ class Requests(Questions):
         if (is_pronoun or is_so) and value.last == value.first + 1 and not goes_on and entry.id in (SAY, TELL):
             self._doubt(entry, value.first)  # `say it again`
             return 0
+        if value.last == value.first + 1 and not goes_on and entry.id in (SAY, TELL):
+            asking, is_how = self._vocabulary.asking, word in self._context.manners
+            reason = _HOW if is_how or word in asking["of_voice"] else _STANDS if word in asking["one_doing"] else ""
+            if reason and self._doubt(entry, value.first, reason):
+                return 0
         again = self._phrase(value.first)
         if again is not None and again.meaning.role == "again":
             self._repeat(entry, value, command)

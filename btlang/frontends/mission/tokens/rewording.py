@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Sequence, Set
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.tokens.condition_words import is_denied_by_verb
@@ -429,11 +429,25 @@ def _wait_once(text: Words, vocabulary: Lexicon) -> None:
 
 
 def _drop_commas(text: Words, vocabulary: Lexicon) -> None:
-    """Take out the comma between a word that joins and one before a condition: `wave and, if bumped, nod`."""
+    """Take out the comma between a word that joins and one before a condition: `wave and, if bumped, nod`.
+
+    So is that in `wait in the lab, at most 10 min`, where nothing else ends the time.
+    """
     words, joints = text.words, vocabulary.joining.difference(vocabulary.roles["or"])
+    waits = vocabulary.firsts["wait_up_to"]
     for at in reversed([at for at in range(1, len(words) - 1) if words[at] == ","]):
-        if words[at - 1] in joints and words[at + 1] in vocabulary.before_conditions:
+        joins = words[at - 1] in joints and words[at + 1] in vocabulary.before_conditions
+        if joins or (not waits.isdisjoint(words) and _is_time_waited(text, at, waits, vocabulary)):
             text.drop(at, at + 1)
+
+
+def _is_time_waited(text: Words, at: int, waits: Set[str], vocabulary: Lexicon) -> bool:
+    """Whether what stands behind a comma is how long a robot waits where it is, or somewhere else."""
+    words = text.words
+    first = next((i + 1 for i in reversed(range(at)) if words[i] in (",", *STOPS, *vocabulary.joining)), 0)
+    match = longest(vocabulary.trie, text, at + 1, vocabulary.context)
+    is_time = match is not None and match.meaning.role in ("up_to", "for") and words[match.last][0] in ENDING
+    return words[first] in waits and is_time and vocabulary.firsts["until"].isdisjoint(words[first:at])
 
 
 def _list_ranges(text: Words, vocabulary: Lexicon) -> None:
