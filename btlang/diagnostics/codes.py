@@ -313,6 +313,8 @@ _ALL = (
          "To look there first, write: {fixed}", "note", "from memory"),
     Code("BT255", "'{words}' may be anybody: this world doesn't say who is a {sort}.",
          "Give people their kind in the world file, for example: kind = \"{sort}\"", "note", "anybody"),
+    Code("BT256", "'{words}' takes no time: the robot goes on at once, even if it is still so: {condition}.", "{advice}",
+         "warning", "goes on at once"),
     Code("BT250", "'{sign}' isn't a word.", "Write comparisons in words."),
 )  # fmt: skip
 

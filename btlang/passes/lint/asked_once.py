@@ -86,6 +86,8 @@ def _find(compilation: Compilation, vocabulary: Lexicon) -> Iterator[Diagnostic]
                     warnings = list(_warn(node, before_it, vocabulary))  # `A, and when C, B`
                     between = node.span.source.text[sentence[-1].span.end : node.span.start] if sentence else ""
                     yield from warnings or ([] if "\n" in between else _too_late(node, sentence, vocabulary))
+                elif not sentence and node.body.span.start < node.condition.span.start:
+                    yield from _warn(node, None, vocabulary)  # `wave when Bob comes and nod`, `..., but only if C`
 
 
 def _sentence_before(items: Sequence[ast.Ast], at: int) -> Sequence[ast.Ast]:
@@ -360,8 +362,9 @@ def _warn(node: ast.If, before: ast.Ast | None, vocabulary: Lexicon, is_first: b
         elif node.body.span.text.lower() not in vocabulary.halting and not _is_answered(node):
             word = next(iter(source.text[node.body.span.end : condition.start].lower().split()), "")
             if word in vocabulary.asked_once or _is_event(node.condition, vocabulary):  # `wave when Bob is near`
-                form = f"{node.body.span.text} {{}} {condition.text}"
-                yield _asked_once(node, f"{word} {condition.text}", form, vocabulary)
+                asked_words = source.text[node.body.span.end : condition.end].lstrip()
+                form = f"{node.body.span.text} {{}} {asked_words[len(word) :].lstrip()}"
+                yield _asked_once(node, asked_words, form, vocabulary)
         return
     if _is_answered(node):
         return
@@ -370,7 +373,8 @@ def _warn(node: ast.If, before: ast.Ast | None, vocabulary: Lexicon, is_first: b
     is_watched = before is None and isinstance(asked, ast.Phrase) and asked.entry.id in ON_THE_WAY
     if word.lower() in vocabulary.asked_once or is_watched or _is_event(asked, vocabulary):
         rest = source.text[node.span.start + len(word) : node.span.end].lstrip()
-        yield _asked_once(node, f"{word} {condition.text}", f"{{}} {rest}", vocabulary)
+        words = source.text[node.span.start : condition.end] if word else condition.text
+        yield _asked_once(node, words, f"{{}} {rest}", vocabulary)
 
 
 def _with_reading(node: ast.If, words: str, advice: str, place: Span, fixed: str) -> Diagnostic:

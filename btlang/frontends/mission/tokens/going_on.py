@@ -20,11 +20,16 @@ from btlang.frontends.mission.token import (
     statement_start,
 )
 from btlang.frontends.mission.tokens.rules_inside import ON_WAY
-from btlang.frontends.mission.tokens.sentence_reader import SentenceReader, hears, question_in, searches
+from btlang.frontends.mission.tokens.sentence_reader import (
+    SentenceReader,
+    asks_for_things,
+    hears,
+    question_in,
+    searches,
+)
 from btlang.frontends.mission.tokens.settling import (
     FAILS,
     MEASURES,
-    TURNED,
     WORKS,
     asked_about,
     is_about,
@@ -162,22 +167,12 @@ class GoingOn(SentenceReader):
         if role == "otherwise":
             self._ask_after_all()
         kinds = self._statement(len(self._tokens))[1]
-        if role == FAILS and WORKS in kinds and self._denies_what_worked(words):
+        if role == FAILS and self._denies_before(words, len(self._tokens)):
             return "otherwise"
         if WORKS in kinds if role == FAILS else FAILS in kinds and WORKS not in kinds:
             if role != "otherwise" or not kinds.isdisjoint(FORMS):
                 self._unclear(words)
         return role
-
-    def turns(self, otherwise: Token) -> None:
-        """`A. If that fails, B. Otherwise C`: C is done if A works; see `turn_branches`. Not so in a bracket of B."""
-        kinds = self._statement(len(self._tokens) - 1)[1]
-        if FAILS not in kinds or WORKS in kinds or not kinds.isdisjoint(FORMS):
-            return
-        form = next(at for at in reversed(range(len(self._tokens))) if self._tokens[at].value == FAILS)
-        brackets = [token.kind for token in self._tokens[form:] if token.kind in ("open", "close")]
-        if brackets.count("open") == brackets.count("close"):
-            otherwise.role = TURNED
 
     def _ask_alone(self) -> None:
         """`go to the door and check if it is open. If so, A`: about what is checked, not about the journey."""
@@ -198,20 +193,6 @@ class GoingOn(SentenceReader):
             return False
         asked = self._phrase(at + 1 + (self._text.words[at] in self._vocabulary.roles["and"]))
         return asked is not None and asked.meaning.role == "condition"
-
-    def _doubt_so(self, end: int, at: int) -> None:
-        """BT151 for `go to the lab unless C. If so, A`: if C, or if that worked."""
-        tokens, text = self._tokens, self._text
-        last = run_start(tokens, len(tokens) - 1, JOINTS | STATEMENT_ENDS)
-        first = statement_start(tokens, last)
-        form = next((i for i in range(first, last) if tokens[i].kind in ("if", "unless")), last)
-        asked = next((token for token in tokens[form:last] if token.kind == "condition"), None)
-        if asked is None or tokens[form].start == tokens[form].end:
-            return  # none, or an answer that has been asked about
-        words, condition = text.span(at, end), Span(text.source, asked.start, asked.end).text
-        one = f"{self._vocabulary.word('if')} {condition}, ..."
-        other = f"{self._vocabulary.word('if_works')}, ..."
-        self._calls.problems.append(diagnostic("BT151", words, words=words.text.rstrip(" ,"), one=one, other=other))
 
     def _doubt_silence(self, words: Span) -> None:
         """BT144 for `ask Alice and Bob "Tea?". If they don't answer, A`: whoever is silent, or both."""
@@ -299,6 +280,14 @@ class GoingOn(SentenceReader):
         tokens = self._tokens
         found = (i for i in range(start, len(tokens)) if any(is_about(tokens[i], {each}) for each in meant))
         return next(found, None)
+
+    def _denies_before(self, words: Span, end: int) -> bool:
+        """Whether the words deny what the statement before a token has asked: what worked, or `if you find the cup`."""
+        first, kinds = self._statement(end)
+        if WORKS in kinds:
+            return self._denies_what_worked(words)
+        is_about = not self._searching.isdisjoint(_words(words.text))
+        return is_about and asks_for_things(self._tokens[first:end], self._text.source, self._searching)
 
     def _denies_what_worked(self, words: Span) -> bool:
         """Whether the words deny the latest ones by which the statement asked whether its command worked."""

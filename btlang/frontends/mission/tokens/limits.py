@@ -7,6 +7,7 @@ from collections.abc import Callable
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.explanations.times import lasting
 from btlang.frontends.mission.token import (
+    FORMS,
     IN_CONDITIONS,
     JOINTS,
     STATEMENT_ENDS,
@@ -28,6 +29,7 @@ from btlang.frontends.mission.tokens.settling import (
     HOLDS,
     MEASURES,
     STAYS,
+    TURNED,
     WAITS,
     WORKS,
     achieves,
@@ -54,6 +56,30 @@ _MEETING = ["open", "command", "and", "command", "close"]
 
 class Limits(GoingOn):
     """Those of one text."""
+
+    def _doubt_so(self, end: int, at: int) -> None:
+        """BT151 for `go to the lab unless C. If so, A`: if C, or if that worked."""
+        tokens, text = self._tokens, self._text
+        last = run_start(tokens, len(tokens) - 1, JOINTS | STATEMENT_ENDS)
+        first = statement_start(tokens, last)
+        form = next((i for i in range(first, last) if tokens[i].kind in ("if", "unless")), last)
+        asked = next((token for token in tokens[form:last] if token.kind == "condition"), None)
+        if asked is None or tokens[form].start == tokens[form].end:
+            return  # none, or an answer that has been asked about
+        words, condition = text.span(at, end), Span(text.source, asked.start, asked.end).text
+        one = f"{self._vocabulary.word('if')} {condition}, ..."
+        other = f"{self._vocabulary.word('if_works')}, ..."
+        self._calls.problems.append(diagnostic("BT151", words, words=words.text.rstrip(" ,"), one=one, other=other))
+
+    def turns(self, otherwise: Token) -> None:
+        """`A. If that fails, B. Otherwise C`: C is done if A works; see `turn_branches`. Not so in a bracket of B."""
+        kinds = self._statement(len(self._tokens) - 1)[1]
+        if FAILS not in kinds or WORKS in kinds or not kinds.isdisjoint(FORMS):
+            return
+        form = next(at for at in reversed(range(len(self._tokens))) if self._tokens[at].value == FAILS)
+        brackets = [token.kind for token in self._tokens[form:] if token.kind in ("open", "close")]
+        if brackets.count("open") == brackets.count("close"):
+            otherwise.role = TURNED
 
     def _limit_before(self, end: int, role: str) -> int:
         """`if you find him within 60 s, A`, `if that doesn't work after two attempts, A`: of the command before."""

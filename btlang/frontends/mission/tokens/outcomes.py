@@ -91,9 +91,8 @@ class Outcomes(Limits):
                 self._doubt_so(match.last, at)
         if role == FAILS and not self._searching.isdisjoint(self._text.words[at : match.last]):
             self._ask_after_all()  # `when you have found it, A, and if it's nowhere, B`
-        if role == FAILS and WORKS in self._statement(len(tokens) - 1)[1]:
-            if self._denies_what_worked(self._text.span(at, match.last)):
-                role = "otherwise"  # `if you find it, A, and if you can't find it, B`
+        if role == FAILS and self._denies_before(self._text.span(at, match.last), len(tokens) - 1):
+            role = "otherwise"  # `if you find it, A, and if you can't find it, B`
         if role in (FAILS, ONE_FAILS, "if_unanswered", "otherwise"):
             token.kind = "or" if role != "otherwise" else role
             token.value = FAILS if said != "otherwise" else None

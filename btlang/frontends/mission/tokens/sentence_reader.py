@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 
 from btlang.frontends.mission.token import Called, Listed, Token, constraint_of, drives
 from btlang.frontends.mission.tokens.calls import Calls
 from btlang.frontends.mission.tokens.partial_commands import PartialCommands
+from btlang.text.source import Source
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.tree.answers import ANSWERED, ASK
 from btlang.vocabulary.capabilities import HEARS
@@ -100,6 +101,13 @@ def is_answer(token: Token) -> bool:
 def searches(token: Token) -> bool:
     """Whether a command looks for something in one place after the other."""
     return isinstance(token.value, Called | Listed) and token.value.entry.first
+
+
+def asks_for_things(tokens: Sequence[Token], source: Source, finding: Set[str]) -> bool:
+    """Whether the latest condition of a statement asks whether something is found, which nothing looks for."""
+    asked = next((at for at in reversed(range(len(tokens))) if tokens[at].kind == "condition"), len(tokens))
+    words = (word for token in tokens[asked : asked + 1] for word in source.text[token.start : token.end].split())
+    return not finding.isdisjoint(map(str.lower, words)) and not any(map(searches, tokens))
 
 
 def question_in(command: Token | None) -> str:

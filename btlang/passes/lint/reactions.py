@@ -1,0 +1,57 @@
+"""Lint BT256: rules that stop the robot, which goes on at once: `whenever somebody is near, stop`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.passes.compilation import Compilation
+from btlang.text.source import Span
+from btlang.tree import ast
+from btlang.vocabulary.capabilities import HEARS
+from btlang.vocabulary.lexicon import Lexicon
+
+_STOP = "Stop"
+
+
+def find_short_stops(compilation: Compilation) -> Iterator[Diagnostic]:
+    """Report the rules beside other commands whose reaction ends with a stop, which takes no time."""
+    for body in ast.bodies(compilation.mission):
+        for node in compilation.syntax(body):
+            items = node.items if isinstance(node, ast.Chain) and node.operator == "sequence" else ()
+            rules = [item for item in items if isinstance(item, ast.Whenever)]
+            if len(rules) < len(items):
+                stops = ((rule, _last(rule.body)) for rule in rules)
+                yield from (_goes_on(rule, stop.span, compilation.vocabulary) for rule, stop in stops if _stops(stop))
+
+
+def _last(reaction: ast.Ast) -> ast.Ast:
+    while isinstance(reaction, ast.Chain) and reaction.operator == "sequence":
+        reaction = reaction.items[-1]
+    return reaction
+
+
+def _stops(done: ast.Ast) -> bool:
+    return isinstance(done, ast.Nothing) or (isinstance(done, ast.Phrase) and done.entry.id == _STOP)
+
+
+def _goes_on(rule: ast.Whenever, stop: Span, vocabulary: Lexicon) -> Diagnostic:
+    condition, asked = rule.condition.span, rule.condition
+    is_heard = isinstance(asked, ast.Phrase) and HEARS in asked.entry.needs  # what was said isn't so for long
+    ended = "" if is_heard else _denied(condition.text, vocabulary)
+    whenever, joint, wait = (vocabulary.word(role) for role in ("whenever", "and", "wait_until"))
+    fixed = f"{whenever} {condition.text}, {rule.body.span.text} {joint} {wait} {ended or '...'}"
+    advice = f"To stand still {'as long as it is so' if ended else 'until something else is so'}, write: {fixed}"
+    problem = diagnostic("BT256", rule.span, words=stop.text, condition=condition.text, advice=advice)
+    return problem.replace(readings=((rule.span, fixed),)) if ended else problem
+
+
+def _denied(condition: str, vocabulary: Lexicon) -> str:
+    """Return a condition's words for when it is no longer true, "" where they can't be made of its own."""
+    first, _, rest = condition.partition(" ")
+    nobody = vocabulary.negative_subjects.get(first.lower(), ())
+    if nobody:
+        return f"{nobody[0]} {rest}"
+    words = condition.split()
+    at = next((at for at, word in enumerate(words) if word.lower() in vocabulary.negations), 0)
+    return " ".join((*words[:at], vocabulary.negations[words[at].lower()][0], *words[at + 1 :])) if at else ""
