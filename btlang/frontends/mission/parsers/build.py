@@ -208,10 +208,14 @@ class Builder:
         kind, amount = token.role, _amount(token)
         if kind in ("repeat", "count"):
             return Repeat(amount or "-1", body, span)
+        if kind == "retry" and type(body) is Every and not body.rounds and _is_behind(body):
+            return Retry(amount or "-1", body.body, body.seconds, span)  # `try to A every 10 s, up to 3 times`
         if kind == "retry":
             return Retry(amount or "-1", body, "", span)
         if kind == "if_possible":
             return Try(body, None, span)
+        if kind == "every" and type(body) is Retry and not body.pause and body.span.end <= token.start:
+            return Retry(body.attempts, body.body, amount, span)  # `try to A up to 3 times, every 10 s`
         if kind == "every":
             return Every(amount, body, "", span)
         if kind in ("at", "every_day"):
@@ -252,7 +256,8 @@ class Builder:
         if kind == "provided":
             return Provided(condition, body, span)
         if kind in ("if", "unless"):
-            return If(kind == "unless", condition, body, otherwise, span)
+            node = If(kind == "unless", condition, body, otherwise, span)
+            return _with_both(node, body) if otherwise is not None and type(body) is If else node
         return While(kind == "until", condition, body, otherwise, span)
 
     def test(self, opener: Token, condition: Ast, end: int) -> Ast:
@@ -262,6 +267,20 @@ class Builder:
             return Check(condition, span)
         waiting = WaitUntil(condition, span)
         return UpTo(_amount(opener), waiting, span) if opener.role == "wait_up_to" else waiting
+
+
+def _is_behind(form: Every) -> bool:
+    """Whether the words of a form stand behind its command."""
+    return form.span.start == form.body.span.start
+
+
+def _with_both(outer: If, inner: If) -> If:
+    """`if A, X, but only if B. Otherwise Y`: what comes otherwise is done if either condition isn't so."""
+    if inner.otherwise is not None or inner.span.end > outer.condition.span.start:
+        return outer
+    asked = [Not(each.condition, each.condition.span) if each.negated else each.condition for each in (inner, outer)]
+    both = Chain("all", tuple(asked), False, Span(outer.span.source, asked[0].span.start, asked[1].span.end))
+    return If(False, both, inner.body, outer.otherwise, outer.span)
 
 
 def _outlasts(body: Ast, pace: object) -> bool:

@@ -341,13 +341,15 @@ class Answers(AddressedTexts):
         return next(iter(pronouns_for(self._vocabulary.values.pronouns, PERSON, alone=True)), "")
 
     def _silent(self, token: Token, words: str) -> None:
-        """Makes `she says nothing` and `she doesn't say anything` the condition that nobody has answered."""
+        """Makes `she says nothing` and `she doesn't say anything` silence, and `she wants nothing` a no."""
         entry, asking = self._vocabulary.entry(UNANSWERED), self._vocabulary.asking
-        if entry is None or words.lower() not in (*asking["silence"], *asking["any_answer"]):
+        said, value = self._text.source.text[token.start : token.end].lower(), token.value
+        if entry is None or said[-1] == '"' or words.lower() not in (*asking["silence"], *asking["any_answer"]):
             return
-        if self._text.source.text[token.end - 1] == '"':
-            return
-        token.value = Called(entry, ())
+        if isinstance(value, Called) and set(asking["replying"]).isdisjoint(said.split()):
+            token.value = Called(value.entry, tuple((name, asking["answers"][1]) for name, _ in value.arguments))
+        else:
+            token.value = Called(entry, ())
         if words.lower() in asking["silence"]:
             return
         if self._tokens and self._tokens[-1].kind == "not":
