@@ -10,7 +10,7 @@ from importlib.resources import files
 from inspect import isgenerator
 from typing import Protocol
 
-from btlang.actions.common import DrivingRobot, Watch
+from btlang.actions.common import DrivingRobot, Watch, compares
 from btlang.actions.motion import Steps
 from btlang.actions.speech import PresentingRobot, say
 from btlang.engine.leaves.leaf import ActionFailed, Failed, Unknown
@@ -20,6 +20,8 @@ from btlang.robots.robot import Conversing, Listening, RobotError
 from btlang.robots.worlds.world import said
 from btlang.speech.marks import without_marks
 from btlang.speech.recogniser import Expected, spoken
+from btlang.text.source import Source
+from btlang.text.words import split
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -61,6 +63,33 @@ def answer_is(robot: Listening, text: str) -> bool | Failed:
     if not answer:
         return Failed(lambda: "nobody has answered")
     return holds(answer, text) or Failed(lambda: f'the answer was "{answer}"')
+
+
+def answer_number(
+    robot: Listening,
+    at_least: float | None = None,
+    above: float | None = None,
+    at_most: float | None = None,
+    below: float | None = None,
+) -> bool | Failed:
+    """Return whether the first number in the last answer is as a limit says. Fails if there is none."""
+    heard = robot.ears.answer
+    if not heard:
+        return Failed(lambda: "nobody has answered")
+    found = _number_in(heard)
+    if found is None:
+        raise ActionFailed(f'there is no number in the answer "{heard}"')
+    return compares(found, below, above, at_least, at_most, None) or Failed(lambda: f'the answer was "{heard}"')
+
+
+def _number_in(answer: str) -> float | None:
+    """Return the first number of an answer, in figures or in English words."""
+    from btlang.vocabulary.load import load_vocabulary  # hardly ever
+
+    vocabulary = load_vocabulary()
+    text = split(Source(answer), vocabulary.orthography)
+    read = (vocabulary.values.number(text, at) for at in range(len(text.words)))
+    return next((number for number, _ in filter(None, read)), None)
 
 
 def nobody_answered(robot: Listening) -> bool | Failed:

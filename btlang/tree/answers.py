@@ -27,7 +27,7 @@ PERSON_SAYS, SOMEBODY_SAYS = "PersonSays", "SomebodySays"
 SPEAKS = {PERSON_SAYS: "PersonSpeaks", SOMEBODY_SAYS: "SomebodySpeaks"}
 """The conditions of the same without certain words."""
 """The ids of the conditions that are true for the moment in which something is said."""
-ABOUT_ANSWERS = frozenset((ANSWERED, UNANSWERED))
+ABOUT_ANSWERS = frozenset((ANSWERED, UNANSWERED, "AnswerNumber"))
 _ONCE = (
     ast.Retry, ast.Try, ast.Within, ast.ByTime, ast.UpTo, ast.StopWhen, ast.Constrained, ast.Delay, ast.Provided,
     ast.Named, ast.Chain,
