@@ -315,6 +315,8 @@ _ALL = (
          "Give people their kind in the world file, for example: kind = \"{sort}\"", "note", "anybody"),
     Code("BT256", "'{words}' takes no time: the robot goes on at once, even if it is still so: {condition}.", "{advice}",
          "warning", "goes on at once"),
+    Code("BT257", "'{words}' ends the mission here as failed.",
+         "Only the end of its text ends it well: put what may be left out behind 'otherwise'.", "note", "ends as failed"),
     Code("BT250", "'{sign}' isn't a word.", "Write comparisons in words."),
 )  # fmt: skip
 

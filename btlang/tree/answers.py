@@ -6,7 +6,7 @@ would be asked where nobody has answered.
 
 from __future__ import annotations
 
-from collections.abc import Container, Sequence
+from collections.abc import Container, Iterator, Sequence
 from itertools import pairwise
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
@@ -23,10 +23,13 @@ if TYPE_CHECKING:
 
 ASK, ANSWERED, UNANSWERED = "Ask", "AnswerIs", "NobodyAnswered"
 """The ids of the question, and of the conditions about its answer."""
+ANSWER = "Answer"
+"""The id of the quantity that is the answer."""
 PERSON_SAYS, SOMEBODY_SAYS = "PersonSays", "SomebodySays"
+"""The ids of the conditions that are true for the moment in which something is said."""
 SPEAKS = {PERSON_SAYS: "PersonSpeaks", SOMEBODY_SAYS: "SomebodySpeaks"}
 """The conditions of the same without certain words."""
-"""The ids of the conditions that are true for the moment in which something is said."""
+_LAST_ONLY = "only the answer of who was asked last is known by then; go to each, ask them, and tell it then"
 ABOUT_ANSWERS = frozenset((ANSWERED, UNANSWERED, "AnswerNumber"))
 _ONCE = (
     ast.Retry, ast.Try, ast.Within, ast.ByTime, ast.UpTo, ast.StopWhen, ast.Constrained, ast.Delay, ast.Provided,
@@ -44,10 +47,13 @@ def asking_verbs(vocabulary: Lexicon) -> frozenset[str]:
 
 
 def with_answers(mission: ast.Program) -> tuple[ast.Program, list[Diagnostic]]:
-    """Return the mission with dependent commands where somebody asks, and what is wrong with it (BT144)."""
+    """Return the mission with dependent commands where somebody asks, and what is wrong with it (BT144, BT049)."""
     problems: list[Diagnostic] = []
 
     def body(root: ast.Ast) -> ast.Ast:
+        nodes = ast.parents_first(root)
+        if any(map(_is_told, nodes)):
+            problems.extend(told for node in nodes if isinstance(node, ast.Chain) for told in _lost_answers(node))
         if not asks(root):
             return root
         return fold(
@@ -63,6 +69,19 @@ def with_answers(mission: ast.Program) -> tuple[ast.Program, list[Diagnostic]]:
 def asks(node: ast.Ast, ids: Container[str] = ABOUT_ANSWERS) -> bool:
     """Whether a condition of these, by default one about an answer, is in a node."""
     return any(isinstance(each, ast.Phrase) and each.entry.id in ids for each in ast.parents_first(node))
+
+
+def _is_told(node: ast.Ast) -> bool:
+    """Whether the answer is asked for, to say it."""
+    return isinstance(node, ast.Remember) and node.entry.id == ANSWER
+
+
+def _lost_answers(chain: ast.Chain) -> Iterator[Diagnostic]:
+    """Yield BT049 for an answer that is asked for behind several questions, of which only the last one's is known."""
+    for before, item in pairwise(chain.items) if chain.operator in ("sequence", "and") else ():
+        is_several = isinstance(before, ast.ForEach) or (isinstance(before, ast.Chain) and ast.is_list(before))
+        if _is_told(item) and is_several and asks(before, (ASK,)):
+            yield diagnostic("BT049", item.span, words=item.span.text, reason=_LAST_ONLY)
 
 
 def _depends(node: ast.Ast) -> bool:

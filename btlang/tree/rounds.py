@@ -14,7 +14,7 @@ from btlang.support.record import Record
 from btlang.text.source import Source
 from btlang.text.words import split
 from btlang.tree import ast
-from btlang.tree.answers import ABOUT_ANSWERS, ASK, asks
+from btlang.tree.answers import ABOUT_ANSWERS, ANSWER, ASK, asks
 from btlang.tree.round_parts import gathered, is_journey, set_of, with_argument, with_each_carried
 from btlang.tree.sums import COMPARED, COUNTING
 from btlang.tree.visit import fold
@@ -260,6 +260,9 @@ def _goes_along(chain: ast.Chain, first: int, last: int, choice: Choice, vocabul
             if tells and isinstance(chain.items[last + 1], ast.Wait):
                 break  # `tell everyone "Bye", wait 1 min and dock`
             last += 1
+        told = chain.items[last]
+        if isinstance(told, ast.Remember) and told.entry.id == ANSWER and last + 1 < len(chain.items):
+            last += 1  # `ask each of them what they want and tell Bob`: each answer
     return last
 
 

@@ -1,10 +1,11 @@
-"""Lint BT256: rules that stop the robot, which goes on at once: `whenever somebody is near, stop`."""
+"""Lints on what rules do: stops that take no time (BT256), and conditions behind rules, which may be part of them."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import pairwise
 
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic, two_readings
 from btlang.passes.compilation import Compilation
 from btlang.text.source import Span
 from btlang.tree import ast
@@ -55,3 +56,23 @@ def _denied(condition: str, vocabulary: Lexicon) -> str:
     words = condition.split()
     at = next((at for at, word in enumerate(words) if word.lower() in vocabulary.negations), 0)
     return " ".join((*words[:at], vocabulary.negations[words[at].lower()][0], *words[at + 1 :])) if at else ""
+
+
+def find_conditions_behind_rules(compilation: Compilation) -> Iterator[Diagnostic]:
+    """Report `whenever C, A. If D, B` in one line: B may be done at the start, or each time that A was done."""
+    for body in ast.bodies(compilation.mission):
+        for node in compilation.syntax(body):
+            items = node.items if isinstance(node, ast.Chain) and node.operator == "sequence" else ()
+            for rule, form in pairwise(items):
+                if isinstance(rule, ast.Whenever) and isinstance(form, ast.If) and _may_belong(rule, form):
+                    whole = Span(rule.span.source, rule.span.start, form.span.end)
+                    done, then = form.span.text, compilation.vocabulary.word("then")
+                    other = f"{rule.span.text}, {then} {done[:1].lower()}{done[1:]}"
+                    yield two_readings(whole, f"{rule.span.text}.\n{done}", other)
+
+
+def _may_belong(rule: ast.Whenever, form: ast.If) -> bool:
+    """Whether a condition stands right behind a rule, in a sentence of its own."""
+    between = rule.span.source.text[rule.span.end : form.span.start]
+    is_front = rule.condition.span.start < rule.body.span.start and form.condition.span.start < form.body.span.start
+    return is_front and between.strip() == "." and "\n" not in between

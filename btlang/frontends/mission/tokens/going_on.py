@@ -345,6 +345,9 @@ class GoingOn(SentenceReader):
             del tokens[run_start(tokens, len(tokens), JOINTS) :]
         else:
             tokens.append(Token("fail", self._text.starts[at], self._text.ends[found[1] - 1]))
+            if self._text.words[at] in self._vocabulary.asking["ending_well"]:
+                said = self._text.span(at, found[1])
+                self._calls.problems.append(diagnostic("BT257", said, words=said.text))
         return found[1]
 
     def _goes_on(self, end: int) -> bool:
