@@ -11,8 +11,9 @@ from btlang.text.words import Words
 from btlang.tree.answers import SOMEBODY_SAYS
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.pattern import forms, spelled
-from btlang.vocabulary.value_type import OBJECT, PLACE, TEXT
+from btlang.vocabulary.value_type import OBJECT, PERSON, PLACE, TEXT
 from btlang.vocabulary.verbs import canonical
+from btlang.vocabulary.word_tree import find
 
 _LONGEST_NAME, _LONGEST_CLAUSE, _LONGEST_SHOWN = 4, 20, 200
 """The words up to which what isn't known may be the name of a command, or a clause, and the characters of either."""
@@ -58,18 +59,26 @@ def heard(text: Words, at: int, end: int, vocabulary: Lexicon) -> str:
     says = next((phrase for entry in vocabulary.entries.get(SOMEBODY_SAYS, ()) for phrase in entry.phrases), "")
     said = Span(text.source, text.begin(at), text.span(at, end).end).text
     is_clause = 1 < end - at <= _LONGEST_CLAUSE and len(said) <= _LONGEST_SHOWN
-    if not says or not is_clause or not all(word[0].isalpha() or word[0] == "'" for word in text.words[at:end]):
+    texts, people = vocabulary.values.texts, vocabulary.values.names_tree(PERSON)
+    is_of_person = text.words[at] in texts.of_persons or find(people, text.words, at) is not None
+    if (
+        not says
+        or not is_clause
+        or is_of_person
+        or not all(word[0].isalpha() or word[0] == "'" for word in text.words[at:end])
+    ):
         return ""
     condition = spelled(forms(says, vocabulary.articles)[0]).replace(f"{{{TEXT}}}", f'"{said}"')
-    return f"If somebody is to tell the robot, write: {condition}"
+    return f"If the robot is only to listen for somebody who says so, write: {condition}"
 
 
 def defined(text: Words, at: int, end: int, before: Sequence[Token], vocabulary: Lexicon) -> str:
     """Return the advice to define words as a command, "" where they hardly name what is done."""
-    words, asks = text.words[at:end], vocabulary.values.texts.asks
+    words, texts = text.words[at:end], vocabulary.values.texts
     goes_on = bool(before) and before[-1].kind in ("command", "condition")
-    is_name = 1 < len(words) <= _LONGEST_NAME and all(word.isalnum() and not asks(word) for word in words)
-    is_name = is_name and sum(map(len, words)) <= _LONGEST_SHOWN
+    is_name = 1 < len(words) <= _LONGEST_NAME and all(word.isalnum() and not texts.asks(word) for word in words)
+    states = not texts.of_persons.isdisjoint(words[:1]) or not texts.inverting.isdisjoint(words)
+    is_name = is_name and not states and sum(map(len, words)) <= _LONGEST_SHOWN
     if goes_on or not is_name or not vocabulary.values.role_words.prepositions.isdisjoint(words):
         return ""
     return f"To teach it, define it first: {text.span(at, end).text} is ..."

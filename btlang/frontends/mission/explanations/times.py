@@ -19,7 +19,7 @@ from btlang.vocabulary.value_type import PLACE
 _TIME, _DAYS = "time_of_day", "days"
 MIDNIGHT = "00:00"
 """Where a day begins."""
-_NOWHERE = "is a time of day, and none can stand here"
+_NOWHERE = "is a time of day, and fits nothing that I understood around it"
 _SENTENCE_END = re.compile(r"[.!?;](?=\s)|\n")
 _USUAL = "6:30 pm, or 18:30"
 _BESIDE_MARK = re.compile(r"(?<=\d)\s*[:.]\s*(?=\d)")
