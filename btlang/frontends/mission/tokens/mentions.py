@@ -106,7 +106,7 @@ class Mentions:
         names_none = all(slot.type != PERSON for slot in entry.slots)
         is_somebody = entry.phrases and not somebody.isdisjoint(entry.phrases[0].split())
         exception = self._vocabulary.word("unless") in self._text.words[self._named_at : match.last]
-        if exception and self._named_at and self._context.latest.get(PERSON, "{")[:1] != "{":
+        if exception and self._named_at and PERSON in self._context.latest:
             return  # `bring Alice the cup, unless somebody is near. Tell her "Hi"`
         if names_none and (is_somebody or _MEETS in entry.achieves):
             places = [value for value in match.values if value.type in _WHERE and not value.more]
@@ -203,7 +203,8 @@ class Mentions:
             if value.type in (OBJECT, PERSON):
                 self._note_kind(value.type, latest, choice, is_one=not (value.more or value.group))
             if value.type == PERSON:
-                self._named_at = value.last if match.meaning.role == "command" else 0
+                is_named = latest[:1] != "{" or (choice is not None and NAME in dict(choice.parts))
+                self._named_at = value.last if match.meaning.role == "command" and is_named else 0
             asks = "" if entry is None or value.type != TEXT else entry.id
             if asks == ANSWERED or (asks == ASK and OBJECT not in self._context.latest):  # `if he wants the cup`
                 self.note_asked(split(Source(latest), self._vocabulary.orthography).words)
