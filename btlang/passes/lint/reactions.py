@@ -1,4 +1,4 @@
-"""Lints on what rules do: stops that take no time (BT256), and conditions behind rules, which may be part of them."""
+"""Lints on how far rules and conditions reach: stops that take no time (BT256), and what stands behind either."""
 
 from __future__ import annotations
 
@@ -76,3 +76,25 @@ def _may_belong(rule: ast.Whenever, form: ast.If) -> bool:
     between = rule.span.source.text[rule.span.end : form.span.start]
     is_front = rule.condition.span.start < rule.body.span.start and form.condition.span.start < form.body.span.start
     return is_front and between.strip() == "." and "\n" not in between
+
+
+def find_commands_behind_conditions(compilation: Compilation) -> Iterator[Diagnostic]:
+    """Report `A if C and B` without a comma: B may be done in any case, or only if C."""
+    word = compilation.vocabulary.word
+    joint = word("and")
+    for body in ast.bodies(compilation.mission):
+        for node in compilation.syntax(body):
+            items = node.items if isinstance(node, ast.Chain) else ()
+            for form, behind in pairwise(items):
+                between = form.span.source.text[form.span.end : behind.span.start].strip()
+                if isinstance(form, ast.If) and _is_behind(form) and between == joint:
+                    asked, done = form.condition.span, behind.span.text
+                    opener = form.span.source.text[form.body.span.end : asked.start].strip()
+                    whole = Span(asked.source, form.span.start, behind.span.end)
+                    other = f"{opener} {asked.text}, {form.body.span.text} {joint} {done}"
+                    yield two_readings(whole, f"{form.span.text}, {joint} {done}", other)
+
+
+def _is_behind(form: ast.If) -> bool:
+    """Whether a condition without an alternative stands behind its command."""
+    return form.otherwise is None and form.body.span.end <= form.condition.span.start
