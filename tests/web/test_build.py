@@ -159,3 +159,24 @@ def test_archives_carry_the_page_and_no_packages(page: Path, tmp_path: Path, mon
     built = {f"btlang/web/dist/{path.relative_to(page).as_posix()}" for path in page.rglob("*") if path.is_file()}
     assert set(names) == built
     assert not list(source.rglob("node_modules"))
+
+
+@only_long
+def test_wheels_build_reproducibly(tmp_path: Path) -> None:
+    """The same sources in two folders make the same bytes."""
+    wheels = []
+    for name in ("one", "other"):
+        subprocess.run(["git", "clone", "--quiet", str(ROOT), str(tmp_path / name)], check=True, timeout=LONG)
+        command = [
+            sys.executable,
+            "-m",
+            "build",
+            "--wheel",
+            "--outdir",
+            str(tmp_path / f"{name}.dist"),
+            str(tmp_path / name),
+        ]
+        subprocess.run(command, check=True, capture_output=True, timeout=LONG)
+        wheels += [wheel.read_bytes() for wheel in (tmp_path / f"{name}.dist").glob("*.whl")]
+    assert len(wheels) == 2
+    assert wheels[0] == wheels[1]
