@@ -45,7 +45,7 @@ def explain_fragment(
     if not found:
         return None
     span, whole = text.span(at, end), _with_article(text, at, end)
-    inside = [each for each in found if each[0].before and any(isinstance(part, str) for part in each[0].said)]
+    inside = [each for each in found if each[0].before and _is_telling(each[0])]
     if inside:
         place = max(place for _, place in inside)
         fewest = min(len(gap.missing) for gap, other in inside if other == place)
@@ -56,6 +56,9 @@ def explain_fragment(
         listed = joined([f"'{words}'" for words in wanted], "or")
         examples = (f"{head} {words} {rest}".strip() for words in wanted)
         return diagnostic("BT012", text.span(at, place), words=head, wanted=listed, example=", or: ".join(examples))
+    found = [each for each in found if not each[0].before]
+    if not found:
+        return None
     ways = Counter(gap.entry.id for gap, _ in found)  # what can be said in most ways is what people say most
     gaps = [gap for gap, _ in found]
     of_entry = {each: [gap.missing for gap in gaps if gap.entry.id == each] for each in ways}
@@ -64,6 +67,12 @@ def explain_fragment(
     example = ", or: ".join(f"{' '.join(shortest[node_id])} {whole.text}" for node_id in offered)
     is_value = all(not isinstance(part, str) for part in found[0][0].said)
     return diagnostic("BT019" if is_value else "BT154", span, words=span.text, example=example)
+
+
+def _is_telling(gap: _Gap) -> bool:
+    """Whether what is left of a phrase hardly belongs to another one: `pick the cup`, but not `back` of `back up`."""
+    words = sum(isinstance(part, str) for part in gap.said)
+    return 0 < words < len(gap.said) or words > len(gap.missing)
 
 
 def stopped(span: Span, vocabulary: Lexicon) -> Diagnostic:
