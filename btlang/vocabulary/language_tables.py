@@ -57,7 +57,7 @@ ASKING = (
     "speaking", "spoken_of", "still", "motionless", "who", "somebody", "answering", "likewise",
     "foremost", "numbers", "in_all", "throughout", "postures", "opinions", "supposing", "rooms",
     "left_there", "inverted_if", "sorts_of_people", "remaining", "entering", "turning_to", "ended", "fewer", "having",
-    "putting", "denied", "of_voice", "ending_well",
+    "putting", "denied", "of_voice", "ending_well", "unsaid",
 )  # fmt: skip
 """What the table `asking` of a language may have; without it there are no questions, and no remarks."""
 

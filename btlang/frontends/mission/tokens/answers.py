@@ -346,10 +346,9 @@ class Answers(AddressedTexts):
         said, value = self._text.source.text[token.start : token.end].lower(), token.value
         if entry is None or said[-1] == '"' or words.lower() not in (*asking["silence"], *asking["any_answer"]):
             return
+        token.value = Called(entry, ())
         if isinstance(value, Called) and set(asking["replying"]).isdisjoint(said.split()):
             token.value = Called(value.entry, tuple((name, asking["answers"][1]) for name, _ in value.arguments))
-        else:
-            token.value = Called(entry, ())
         if words.lower() in asking["silence"]:
             return
         if self._tokens and self._tokens[-1].kind == "not":

@@ -43,7 +43,7 @@ def any_words(heard: Called, said: str, vocabulary: Lexicon) -> Called:
     """Return the condition of `Bob says something`, where nobody is asked: that he says anything at all."""
     spoken, entry = dict(heard.arguments), vocabulary.entry(SPEAKS.get(heard.entry.id, ""))
     words = "".join(heard.entry.given(TEXT, heard.arguments))
-    if entry is None or words not in vocabulary.asking["one_doing"] or '"' in said:
+    if entry is None or words not in vocabulary.asking["unsaid"] or '"' in said:
         return heard
     return Called(entry, tuple((slot.name, spoken[slot.name]) for slot in entry.slots))
 

@@ -63,7 +63,7 @@ class Requests(Questions):
             return 0
         if value.last == value.first + 1 and not goes_on and entry.id in (SAY, TELL):
             asking, is_how = self._vocabulary.asking, word in self._context.manners
-            reason = _HOW if is_how or word in asking["of_voice"] else _STANDS if word in asking["one_doing"] else ""
+            reason = _HOW if is_how or word in asking["of_voice"] else _STANDS if word in asking["unsaid"] else ""
             if reason and self._doubt(entry, value.first, reason):
                 return 0
         again = self._phrase(value.first)
