@@ -238,7 +238,8 @@ def array(values: Any, dtype: type | None = None) -> ndarray:
     if isinstance(values, ndarray):
         return values.copy()
     rows = list(values)
-    flat, shape = rows, (len(rows),)
+    flat: list[Any] = rows
+    shape: Shape = (len(rows),)
     if rows and isinstance(rows[0], ndarray | list | tuple):
         inner = [each if isinstance(each, ndarray) else array(each) for each in rows]
         flat, shape = [each for row in inner for each in row.flat], (len(rows), *inner[0].shape)
