@@ -60,7 +60,8 @@ class Playground:
     def advance(self, seconds: float, patience: float) -> str:
         """Let so many seconds of the mission pass, but not many more than `patience` seconds of real time.
 
-        `passed` are the seconds that did, `news` the messages of a Feed about them. Once it's `over`, `ended` says how.
+        `passed` are the seconds that did, `seconds` those since the beginning, and `news` the messages of a Feed about
+        them. Once it's `over`, `ended` says how, and `why` it failed.
         """
         return _answer(lambda: {} if self._run is None else self._run.advance(seconds, patience))
 
@@ -106,7 +107,7 @@ class _HouseRun:
             if perf_counter() >= end:
                 break
         if status == Status.RUNNING:
-            return {"news": self.news(), "over": False, "passed": run.seconds - began}
+            return {"news": self.news(), "over": False, "passed": run.seconds - began, "seconds": run.seconds}
         return self._ended(str(run.outcome), run.why())
 
     def hear(self, text: str) -> dict[str, Any]:
