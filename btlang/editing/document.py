@@ -41,7 +41,7 @@ def _summary(read: TextReading) -> dict[str, Any]:
     return {"ok": ok, "sort": read.sort, "messages": messages(read.problems, read.source)}
 
 
-def document(source: Source, words: RobotWords, with_english: bool = False) -> dict[str, Any]:
+def document(source: Source, words: RobotWords) -> dict[str, Any]:
     """Return what is shown of a text, which may be anything. Offsets are characters.
 
     - `ok`: whether it compiles; `sort`: "english", "xml" or "json"; `messages`: see btlang.editing.document.
@@ -52,8 +52,7 @@ def document(source: Source, words: RobotWords, with_english: bool = False) -> d
     One that can be changed (btlang.editing.edits) has the number of its `kind`;
     - `kinds`: of each the `sort`, "command" or "condition", the `edits` that may be done, and the `values`: name, type
     and words of each;
-    - `outline`: see btlang.editing.document;
-    - `english`: how btlang would write it, with `with_english`.
+    - `outline`: see btlang.editing.document.
     """
     with gc_paused:
         kept = _kept.pop() if _kept else None
@@ -63,8 +62,7 @@ def document(source: Source, words: RobotWords, with_english: bool = False) -> d
             return _summary(read)
         nodes = _nodes(mission, read.source)
         kinds = [] if mission.syntax is None else _kinds(nodes, mission, mission.syntax, read.origins)
-        english = {"english": str(mission.to("english"))} if with_english else {}
-        return {**_summary(read), "nodes": nodes, "kinds": kinds, "outline": outline(mission, read.source), **english}
+        return {**_summary(read), "nodes": nodes, "kinds": kinds, "outline": outline(mission, read.source)}
 
 
 def _nodes(mission: Mission, source: Source) -> list[dict[str, Any]]:

@@ -28,7 +28,8 @@ def pack(folder: str, home: str, archive: str) -> None:
 
     playground = Playground()
     for text in _WARM_UP:
-        playground.read(text)
+        playground.ask("document", text)
+        playground.ask("english", text)
     playground.begin(_WARM_UP[0])
     with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as packed:
         for root in (folder, home):

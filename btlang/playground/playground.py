@@ -8,7 +8,7 @@ from time import perf_counter
 
 from btlang.api import Mission
 from btlang.diagnostics.diagnostic import MissionError
-from btlang.editing.document import document, messages
+from btlang.editing.document import messages
 from btlang.editing.queries import DOES, PLACES, answer_of, in_units
 from btlang.editing.words import RobotWords
 from btlang.engine.leaves.leaf import describe_exception
@@ -44,10 +44,6 @@ class Playground:
     def house(self) -> str:
         """Return the map of the house and where the robot stands, as the messages of a Feed."""
         return _answer(lambda: {"news": _first_news()})
-
-    def read(self, text: str) -> str:
-        """Return all that is shown of a text: see btlang.editing.document."""
-        return _answer(lambda: _read(text))
 
     def ask(self, kind: str, text: str, arguments: str = "{}") -> str:
         """Return what is asked of a text: see btlang.editing.queries. The arguments are JSON; places are UTF-16."""
@@ -135,10 +131,6 @@ def _first_news() -> list[dict[str, Any]]:
 
 def _robot_state() -> dict[str, Any]:
     return {"stopped": "", "paused": False, "hindrance": "", "visitors": False, "talks": False}
-
-
-def _read(text: str) -> dict[str, Any]:
-    return in_units(document(_source(text), _WORDS, with_english=True), text)
 
 
 def _query(kind: str, text: str, arguments: dict[str, Any]) -> dict[str, Any]:

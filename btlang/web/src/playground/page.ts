@@ -1,7 +1,7 @@
 // The page *Try it* of the site: a mission, how btlang reads it, its tree, and a run of it in the simulated house.
 import { fill, h, oncePerFrame, set } from "../dom";
 import { Robot, running, type Run } from "../fleet";
-import { filled } from "../texts";
+import { filled, t } from "../texts";
 import en from "../texts/playground.en.json";
 import { applyTheme, setTheme } from "../theme";
 import { nodesOf } from "../tree/items";
@@ -11,6 +11,7 @@ import { MapView } from "../watch/map";
 import { Question } from "../watch/question";
 import { Speech } from "../watch/speech";
 import { nodeAt, pieces } from "../watch/words";
+import { show } from "../write/ask";
 import { Editor } from "../write/editor";
 import { messageList } from "../write/message_list";
 import type { Message, SaidNode } from "../write/understood";
@@ -22,22 +23,24 @@ type Key = keyof typeof en;
 
 const SPEEDS = [1, 2, 4, 8, 1000] as const; // the last one is as fast as the computer can
 const DEBOUNCE = 20; // milliseconds without a key until a text is read
+const PAUSE = 150; // milliseconds after that until it's printed
 const SITE = document.querySelector<HTMLMetaElement>("meta[name=site]")?.content ?? "./";
 
 /** A text of the playground. All of it is in English, as the site is. */
-const t = (key: Key, values: Record<string, string | number> = {}): string => filled(en[key], values);
+const own = (key: Key, values: Record<string, string | number> = {}): string => filled(en[key], values);
 
 class TryIt {
+  private about = document.querySelector<HTMLTemplateElement>("#help")?.content ?? document.createDocumentFragment();
   private robot = new Robot("house");
   private status = h("p", { class: "state", role: "status" });
   private problem = h("p", { class: "problem", role: "alert" });
-  private start = h("button", { type: "button", class: "primary", title: "Ctrl+Enter", disabled: true, onclick: () => void this.run() }, t("run"));
-  private stop = h("button", { type: "button", class: "halt", disabled: true, onclick: () => void this.halt() }, t("stop"));
-  private speed = h("select", { "aria-label": t("speed") }, ...SPEEDS.map((each) => h("option", { value: each, selected: each === 2 }, each > 8 ? t("speed.most") : `${each} ×`)));
-  private choice = h("select", { "aria-label": t("examples") }, h("option", { value: "" }, t("examples")), ...examples.map(([name], index) => h("option", { value: index }, name!)));
-  private messages = h("ul", { class: "messages", "aria-label": t("messages"), tabindex: 0 });
-  private reading = h("pre", { class: "film-text", lang: "en", tabindex: 0, "aria-label": t("reading") });
-  private tree = new TreeView({ label: "Behavior tree", select: (node) => this.selected(node) });
+  private start = h("button", { type: "button", class: "primary", title: "Ctrl+Enter", disabled: true, onclick: () => void this.run() }, own("run"));
+  private stop = h("button", { type: "button", class: "halt", disabled: true, onclick: () => void this.halt() }, own("stop"));
+  private speed = h("select", { "aria-label": own("speed") }, ...SPEEDS.map((each) => h("option", { value: each, selected: each === 2 }, each > 8 ? own("speed.most") : `${each} ×`)));
+  private choice = h("select", { "aria-label": own("examples") }, h("option", { value: "" }, own("examples")), ...examples.map(([name], index) => h("option", { value: index }, name!)));
+  private messages = h("ul", { class: "messages", "aria-label": own("messages"), tabindex: 0 });
+  private reading = h("pre", { class: "film-text", lang: "en", tabindex: 0, "aria-label": own("reading") });
+  private tree = new TreeView({ label: t("watch.tree"), select: (node) => this.selected(node) });
   private map = new MapView(() => this.robot);
   private speech = new Speech();
   private question = new Question((text) => this.python.ask("hear", text).then((answer) => this.take(answer.news)));
@@ -54,8 +57,8 @@ class TryIt {
   private draw = oncePerFrame(() => this.show());
 
   constructor() {
-    this.editor = new Editor("", "Mission", {
-      reader: { service: (kind, text, more) => (this.ready ? this.python.ask("ask", kind, text, JSON.stringify(more)) : Promise.resolve({})) },
+    this.editor = new Editor("", t("write.text"), {
+      reader: { service: (kind, text, more) => (this.ready ? this.ask(kind, text, more) : Promise.resolve({})) },
       readOnly: false,
       changed: () => this.changed(),
       moved: (at) => this.moved(at),
@@ -69,7 +72,7 @@ class TryIt {
     this.python = new Python(new URL("./worker.js", import.meta.url), {
       stage: (stage) => this.stage(stage),
       run: (run) => this.advance(run),
-      failed: (why) => this.fail(location.protocol === "file:" ? t("file") : t("failed", { why })),
+      failed: (why) => this.fail(location.protocol === "file:" ? own("file") : own("failed", { why })),
       hung: (does) => this.hung(does === "stop" || does === "begin"),
     });
     void this.open();
@@ -79,31 +82,31 @@ class TryIt {
     return h(
       "header",
       {},
-      h("h1", {}, t("title")),
+      h("h1", {}, own("title")),
       this.choice,
       h("div", { class: "controls" }, this.start, this.stop, this.speed),
       this.status,
-      h("div", { class: "controls others" }, h("button", { type: "button", onclick: () => void this.share() }, t("share")), h("button", { type: "button", title: t("theme"), "aria-label": t("theme"), onclick: () => setTheme(document.documentElement.dataset["theme"] === "dark" ? "light" : "dark") }, "◐"), h("a", { class: "button", href: SITE }, t("docs"))),
+      h("div", { class: "controls others" }, h("button", { type: "button", onclick: () => void this.share() }, own("share")), h("button", { type: "button", onclick: () => this.help() }, own("help")), h("button", { type: "button", title: own("theme"), "aria-label": own("theme"), onclick: () => setTheme(document.documentElement.dataset["theme"] === "dark" ? "light" : "dark") }, "◐"), h("a", { class: "button", href: SITE }, own("docs"))),
     );
   }
 
   private body(): HTMLElement {
     const text = h("section", { class: "card stage text-card" }, h("div", { class: "text" }, this.editor.view.dom), this.problem, this.messages);
-    const reading = h("details", { class: "card reading", open: true }, h("summary", {}, t("reading")), this.reading);
-    const place = h("section", { class: "card place", "aria-label": t("house") }, this.map.canvas, this.speech.element, this.question.element);
+    const reading = h("details", { class: "card reading", open: true }, h("summary", {}, own("reading")), this.reading);
+    const place = h("section", { class: "card place", "aria-label": own("house") }, this.map.canvas, this.speech.element, this.question.element);
     return h(
       "main",
       { class: "try" },
       h("div", { class: "column" }, text, reading),
       h("section", { class: "card stage trunk" }, this.tree.element),
-      h("div", { class: "column" }, place, h("section", { class: "card events" }, h("h2", {}, "What happens"), this.log.element)),
+      h("div", { class: "column" }, place, h("section", { class: "card events" }, h("h2", {}, own("log")), this.log.element)),
     );
   }
 
   /** The mission of the address, else the first example; it only runs when somebody clicks. */
   private async open(): Promise<void> {
     const text = await textOf(location.hash);
-    if (text === null) this.fail(t("shared.unread"));
+    if (text === null) this.fail(own("shared.unread"));
     if (text || !this.editor.text) this.begin(text || examples[0]![1]!);
   }
 
@@ -114,7 +117,7 @@ class TryIt {
   }
 
   private stage(stage: "python" | "words" | "ready"): void {
-    fill(this.status, t(`stage.${stage}`));
+    fill(this.status, own(`stage.${stage}`));
     this.ready = stage === "ready";
     set(this.start, { disabled: !this.ready });
     if (!this.ready) return;
@@ -129,6 +132,7 @@ class TryIt {
   private changed(): void {
     this.choice.value = "";
     this.unread = true;
+    if (this.ready && !this.running) this.say(own("stage.ready"), "");
     this.tree.element.ariaBusy = "true";
     clearTimeout(this.timer);
     this.timer = window.setTimeout(() => void this.read(), DEBOUNCE);
@@ -140,7 +144,7 @@ class TryIt {
     this.busy = true;
     this.unread = false;
     const { text } = this.editor;
-    const answer = await this.python.ask("read", text);
+    const answer = await this.ask("document", text);
     this.busy = false;
     if (text === this.editor.text) this.understand(text, answer);
     if (this.unread) void this.read();
@@ -150,9 +154,8 @@ class TryIt {
     this.fail(answer.problem ?? "");
     const messages: Message[] = text.trim() ? (answer.messages ?? []) : [];
     this.editor.tell(messages);
-    fill(this.messages, ...(text.trim() && !answer.problem ? messageList(messages, this.editor) : [h("li", { class: "fine" }, answer.problem ? "" : t("empty"))]));
-    fill(this.reading, answer.english ?? "");
-    this.tree.element.classList.toggle("stale", !answer.nodes);
+    fill(this.messages, ...(text.trim() && !answer.problem ? messageList(messages, this.editor) : [h("li", { class: "fine" }, answer.problem ? "" : own("empty"))]));
+    for (const element of [this.tree.element, this.reading]) element.classList.toggle("stale", !answer.nodes);
     this.tree.element.ariaBusy = "false";
     if (!answer.nodes) return;
     this.nodes = answer.nodes.map((node: any) => ({ ...node, ...answer.kinds[node.kind] }));
@@ -160,6 +163,18 @@ class TryIt {
     this.editor.light([]);
     this.tree.setNodes(this.nodes, true);
     this.moved(this.editor.view.state.selection.main.head);
+    this.timer = window.setTimeout(() => void this.print(text), PAUSE);
+  }
+
+  /** Shows the text as btlang would write it, once nobody types: it takes longer than the tree. */
+  private async print(text: string): Promise<void> {
+    const answer = await this.ask("english", text);
+    if (answer.ok && text === this.editor.text) fill(this.reading, answer.text);
+  }
+
+  /** An answer about a text; see btlang/editing/queries.py. */
+  private ask(kind: string, text: string, more: object = {}): Promise<any> {
+    return this.python.ask("ask", kind, text, JSON.stringify(more));
   }
 
   /** The caret shows the node: the smallest that is said there. */
@@ -202,7 +217,7 @@ class TryIt {
     this.take(run.news ?? []);
     if (run.problem) this.fail(run.problem);
     if (!run.over && !run.problem) {
-      return this.say(t("running", { seconds: Math.floor(run.seconds) }), "");
+      return this.say(own("running", { seconds: Math.floor(run.seconds) }), "");
     }
     this.going(false);
     this.editor.light([]);
@@ -250,17 +265,22 @@ class TryIt {
   private hung(isRun: boolean): void {
     this.going(false);
     this.busy = false;
-    this.fail(t(isRun ? "hung.stop" : "hung.text"));
+    this.fail(own(isRun ? "hung.stop" : "hung.text"));
   }
 
   // -- the rest
 
   private async share(): Promise<void> {
     const fragment = await fragmentOf(this.editor.text);
-    if (!fragment) return this.fail(t("shared.too_long", { most: MOST }));
+    if (!fragment) return this.fail(own("shared.too_long", { most: MOST }));
     history.replaceState(null, "", fragment);
     const copied = await navigator.clipboard?.writeText(location.href).then(() => true, () => false);
-    this.say(t(copied ? "shared" : "shared.by_hand"), "");
+    this.say(own(copied ? "shared" : "shared.by_hand"), "");
+  }
+
+  /** What the site says about the page: its own markup, which is in the page since it was built. */
+  private help(): void {
+    const dialog = show(own("help"), h("div", { class: "help" }, this.about.cloneNode(true)), h("div", { class: "controls" }, h("button", { type: "button", class: "primary", onclick: () => dialog.close() }, t("close"))));
   }
 
   private say(words: string, kind: string): void {

@@ -4,7 +4,7 @@ import type { loadPyodide, PyodideInterface } from "pyodide";
 /** What is done for the page: a method of Playground (btlang/playground/playground.py), or the speed of the run. */
 export interface Request {
   id: number;
-  does: "house" | "read" | "ask" | "begin" | "hear" | "stop" | "speed";
+  does: "house" | "ask" | "begin" | "hear" | "stop" | "speed";
   given: unknown[];
 }
 
@@ -43,7 +43,7 @@ from btlang.playground import prepare
 prepare("${HOME}")
 from btlang.playground.playground import Playground
 playground = Playground()
-playground.read("wave")
+playground.ask("document", "wave")
 playground
 `) as Playground;
 }
