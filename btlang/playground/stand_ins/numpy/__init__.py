@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 __all__ = ["inf", "nan"]
 float64, int64, bool_ = float, int, bool
+is_stand_in = True
+"""What is done for many entries at a time is slow here: see btlang/robots/worlds/scan.py."""
 
 
 def _divide(one: float, other: float) -> float:
@@ -37,7 +39,7 @@ def _operator(do: Callable[[Any, Any], Any]) -> Any:
 class ndarray:
     """An array of up to three dimensions. `flat` are its entries, the last index changes fastest."""
 
-    __slots__ = ("flags", "flat", "shape")
+    __slots__ = ("__weakref__", "flags", "flat", "shape")
     __hash__ = None  # type: ignore[assignment]
 
     def __init__(self, flat: list[Any], shape: Shape) -> None:
@@ -86,9 +88,9 @@ class ndarray:
     def max(self) -> Any:
         return max(self.flat)
 
-    def min(self, axis: int | None = None) -> Any:
+    def min(self, axis: int | None = None, initial: float = inf) -> Any:
         if axis is None:
-            return min(self.flat)
+            return min(self.flat, default=initial)
         rows = [row.flat for row in self]
         return ndarray(list(map(min, *rows)) if len(rows) > 1 else rows[0], self.shape[1:])
 
@@ -142,6 +144,9 @@ class ndarray:
 
     def __invert__(self) -> ndarray:
         return ndarray(list(map(operator.not_, self.flat)), self.shape)
+
+    def __abs__(self) -> ndarray:
+        return ndarray(list(map(operator.abs, self.flat)), self.shape)
 
     def __neg__(self) -> ndarray:
         return ndarray(list(map(operator.neg, self.flat)), self.shape)
