@@ -22,8 +22,7 @@ import { fragmentOf, MOST, textOf } from "./share";
 type Key = keyof typeof en;
 
 const SPEEDS = [1, 2, 4, 8, 1000] as const; // the last one is as fast as the computer can
-const DEBOUNCE = 20; // milliseconds without a key until a text is read
-const PAUSE = 150; // milliseconds after that until it's printed
+const PAUSE = 400; // milliseconds without a key until a text is printed
 const SITE = document.querySelector<HTMLMetaElement>("meta[name=site]")?.content ?? "./";
 
 /** A text of the playground. All of it is in English, as the site is. */
@@ -62,8 +61,9 @@ class TryIt {
       readOnly: false,
       changed: () => this.changed(),
       moved: (at) => this.moved(at),
-      keys: [{ key: "Mod-Enter", run: () => void this.run() }],
+      keys: [{ key: "Mod-Enter", run: () => undefined }], // it's the page's
     });
+    addEventListener("keydown", (event) => void (event.key === "Enter" && (event.ctrlKey || event.metaKey) && this.run()));
     this.choice.addEventListener("change", () => this.begin(examples[Number(this.choice.value)]?.[1] ?? ""));
     this.speed.addEventListener("change", () => void this.python.ask("speed", Number(this.speed.value)));
     addEventListener("hashchange", () => void this.open());
@@ -135,10 +135,10 @@ class TryIt {
     if (this.ready && !this.running) this.say(own("stage.ready"), "");
     this.tree.element.ariaBusy = "true";
     clearTimeout(this.timer);
-    this.timer = window.setTimeout(() => void this.read(), DEBOUNCE);
+    void this.read();
   }
 
-  /** Reads the newest text, one at a time. */
+  /** Reads the newest text, one at a time: of keys that come faster than that, only the last one counts. */
   private async read(): Promise<void> {
     if (this.busy || !this.ready || !this.unread) return;
     this.busy = true;

@@ -11,7 +11,7 @@ export function messageList(messages: Message[], editor: Editor, mayFix = true):
       "li",
       { class: each.severity },
       h("button", { type: "button", class: "go", title: each.code, onclick: () => editor.go(each.start) }, h("b", {}, t("write.line", { line: editor.lineAt(each.start) })), ` ${each.message}`, each.hint && h("small", {}, each.hint)),
-      ...(mayFix ? editor.fixes(each) : []).map(({ name, apply }) => h("button", { type: "button", class: "fix", dir: "auto", onclick: () => apply(editor.view, each.start, each.end) }, name)),
+      ...(mayFix ? editor.fixes(each) : []).map(({ name, apply }) => h("button", { type: "button", class: "fix", dir: "auto", onclick: () => { apply(editor.view, each.start, each.end); editor.view.focus(); } }, name)),
     );
   return messages.length ? messages.map(item) : [h("li", { class: "fine" }, t("write.fine"))];
 }
