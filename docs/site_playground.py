@@ -79,11 +79,12 @@ def on_pre_build(*, config: MkDocsConfig) -> None:
 
 
 def on_page_markdown(markdown: str, *, page: Page, config: MkDocsConfig, files: Files) -> str:
-    """Say on the page that the playground isn't there."""
-    if page.file.src_uri != TRY_IT or not _problem:
+    """Say on the page that the playground isn't there; the playground need not say where it is."""
+    if page.file.src_uri != TRY_IT:
         return markdown
     note = "The playground wasn't built with this site: Node or npm couldn't be used there."
-    return markdown.replace("\n", f'\n\n!!! warning "No playground"\n    {note}\n', 1)
+    title, _, rest = markdown.split("\n\n", 2)
+    return "\n\n".join([title, *([f'!!! warning "No playground"\n    {note}'] if _problem else []), rest])
 
 
 def on_post_page(output: str, *, page: Page, config: MkDocsConfig) -> str:

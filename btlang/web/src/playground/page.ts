@@ -43,7 +43,7 @@ class TryIt {
   private map = new MapView(() => this.robot);
   private speech = new Speech();
   private question = new Question((text) => this.python.ask("hear", text).then((answer) => this.take(answer.news)));
-  private log = new LogView((node) => this.tree.pick(node));
+  private log = this.newLog();
   private editor: Editor;
   private python: Python;
   private timer = 0;
@@ -67,7 +67,7 @@ class TryIt {
     this.choice.addEventListener("change", () => this.begin(examples[Number(this.choice.value)]?.[1] ?? ""));
     this.speed.addEventListener("change", () => void this.python.ask("speed", Number(this.speed.value)));
     addEventListener("hashchange", () => void this.open());
-    this.robot.take({ type: "up", robot: "house" });
+    this.furnish();
     fill(document.body, this.header(), this.body());
     this.python = new Python(new URL("./worker.js", import.meta.url), {
       stage: (stage) => this.stage(stage),
@@ -201,10 +201,22 @@ class TryIt {
     if (!answer.ok) return answer.messages && text === this.editor.text ? this.understand(text, answer) : this.fail(answer.problem ?? "");
     this.fail("");
     this.going(true);
-    this.robot.take({ type: "up", robot: "house" });
-    this.robot.path = [];
+    this.furnish();
     this.take((await this.python.ask("house")).news);
     this.take(answer.news);
+  }
+
+  /** A robot in a house, and a log, in which nothing has happened. */
+  private furnish(): void {
+    this.robot = new Robot("house");
+    this.robot.take({ type: "up", robot: "house" });
+    const { element } = this.log;
+    this.log = this.newLog();
+    element.replaceWith(this.log.element);
+  }
+
+  private newLog(): LogView {
+    return new LogView((node) => this.tree.pick(node));
   }
 
   private async halt(): Promise<void> {

@@ -21,6 +21,7 @@ const PERIOD = 0.05; // seconds of the mission between two ticks
 const PATIENCE = 0.03; // seconds for which ticks may keep answers waiting
 const BEHIND = 5; // periods that are caught up with: a slow computer makes the mission slower, not jerky
 const IDLE = 20; // milliseconds
+const WARM = 500; // milliseconds until what explains mistakes is loaded: the first one isn't explained more slowly than others then
 
 const reply = (data: Reply): void => (self as unknown as Worker).postMessage(data);
 
@@ -71,7 +72,8 @@ async function drive(playground: Playground): Promise<void> {
 
 reply({ stage: "python" });
 const started = start();
-started.then(() => reply({ stage: "ready" }), (error: Error) => reply({ id: 0, answer: { ok: false, problem: error.message } }));
+const warmUp = (playground: Playground): unknown => setTimeout(() => playground["ask"]!("document", "go to the kichen"), WARM);
+started.then((playground) => (reply({ stage: "ready" }), warmUp(playground)), (error: Error) => reply({ id: 0, answer: { ok: false, problem: error.message } }));
 
 addEventListener("message", async ({ data }: MessageEvent<Request>) => {
   const playground = await started;
