@@ -115,6 +115,14 @@ await visit(base, async (page, context) => {
   await page.waitForFunction(() => /started again/.test(document.querySelector(".try .problem").textContent), null, { timeout: 20_000 });
   await says(page, /^Ready/);
 
+  await replace(page, `if ${"not ".repeat(4000)}the battery is low, wave`); // too deep for the stack of a browser
+  await page.waitForFunction(() => /too much for the playground/.test(document.querySelector(".try .problem").textContent), null, { timeout: 60_000 });
+  await says(page, /^Ready/);
+  await page.waitForTimeout(1000);
+  assert.match(await page.textContent(".try .problem"), /too much for the playground/);
+  await replace(page, "wave");
+  await page.waitForSelector(".messages .fine");
+
   // By a link: nothing runs, and nothing of it is markup.
   await replace(page, `say "Hello" # ${MARKUP}`);
   await page.waitForSelector(".messages .fine");
@@ -171,4 +179,4 @@ await visit(base, async (page, context) => {
   console.log(JSON.stringify({ tree, cold, key: Math.round(median(keys)), slowest: Math.round(Math.max(...keys)), loaded }));
   assert.ok(cold < COLD, `the first run after ${cold} ms`);
   assert.ok(median(keys) < KEY, `${median(keys)} ms from a key to the tree`);
-}, {}, /status of 404|ERR_/);
+}, {}, /fatal.error|RangeError/i);

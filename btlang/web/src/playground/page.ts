@@ -53,11 +53,13 @@ class TryIt {
   private shown: Run | null = null; // the run that the tree shows; null for that of the text
   private nodes: SaidNode[] = [];
   private running = false;
+  private refused: string | null = null; // the text for which the worker was exchanged
+  private notice = ""; // that it was, until the text is changed
   private draw = oncePerFrame(() => this.show());
 
   constructor() {
     this.editor = new Editor("", t("write.text"), {
-      reader: { service: (kind, text, more) => (this.ready ? this.ask(kind, text, more) : Promise.resolve({})) },
+      reader: { service: (kind, text, more) => (this.ready && text !== this.refused ? this.ask(kind, text, more) : Promise.resolve({})) },
       readOnly: false,
       changed: () => this.changed(),
       moved: (at) => this.moved(at),
@@ -73,7 +75,7 @@ class TryIt {
       stage: (stage) => this.stage(stage),
       run: (run) => this.advance(run),
       failed: (why) => this.fail(location.protocol === "file:" ? own("file") : own("failed", { why })),
-      hung: (does) => this.hung(does === "stop" || does === "begin"),
+      exchanged: (why) => this.exchanged(why),
     });
     void this.open();
   }
@@ -124,13 +126,15 @@ class TryIt {
     document.body.dataset["ready"] = "";
     void this.python.ask("speed", Number(this.speed.value));
     void this.python.ask("house").then((answer) => this.take(answer.news));
-    this.changed();
+    this.unread = true;
+    void this.read();
   }
 
   // -- the text
 
   private changed(): void {
     this.choice.value = "";
+    this.notice = "";
     this.unread = true;
     if (this.ready && !this.running) this.say(own("stage.ready"), "");
     this.tree.element.ariaBusy = "true";
@@ -141,17 +145,19 @@ class TryIt {
   /** Reads the newest text, one at a time: of keys that come faster than that, only the last one counts. */
   private async read(): Promise<void> {
     if (this.busy || !this.ready || !this.unread) return;
+    const { text } = this.editor;
+    if (text === this.refused) return this.fail(this.notice);
     this.busy = true;
     this.unread = false;
-    const { text } = this.editor;
     const answer = await this.ask("document", text);
+    if (answer.exchanged) return;
     this.busy = false;
     if (text === this.editor.text) this.understand(text, answer);
     if (this.unread) void this.read();
   }
 
   private understand(text: string, answer: any): void {
-    this.fail(answer.problem ?? "");
+    this.fail(answer.problem ?? this.notice);
     const messages: Message[] = text.trim() ? (answer.messages ?? []) : [];
     this.editor.tell(messages);
     fill(this.messages, ...(text.trim() && !answer.problem ? messageList(messages, this.editor) : [h("li", { class: "fine" }, answer.problem ? "" : own("empty"))]));
@@ -193,11 +199,12 @@ class TryIt {
   // -- the run
 
   private async run(): Promise<void> {
-    if (!this.ready) return;
     const { text } = this.editor;
+    if (!this.ready || text === this.refused) return;
     set(this.start, { disabled: true });
     const answer = await this.python.ask("begin", text);
     set(this.start, { disabled: !this.ready });
+    if (answer.exchanged) return;
     if (!answer.ok) return answer.messages && text === this.editor.text ? this.understand(text, answer) : this.fail(answer.problem ?? "");
     this.fail("");
     this.going(true);
@@ -274,10 +281,13 @@ class TryIt {
     document.body.toggleAttribute("data-running", running);
   }
 
-  private hung(isRun: boolean): void {
+  /** What is written isn't read again before it's changed: it may have been the reason. */
+  private exchanged(why: "broken" | "slow" | "unstopped"): void {
     this.going(false);
     this.busy = false;
-    this.fail(own(isRun ? "hung.stop" : "hung.text"));
+    this.refused = why === "unstopped" ? null : this.editor.text;
+    this.notice = own(`exchanged.${why}`);
+    this.fail(this.notice);
   }
 
   // -- the rest

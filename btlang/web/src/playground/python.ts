@@ -3,12 +3,12 @@ import type { Reply, Request } from "./worker";
 
 type Does = Request["does"];
 
-/** What is heard without a question: how far the start is, what happens in a run, and that the worker was exchanged. */
+/** What is heard without a question: how far the start is, what happens in a run, and why the worker was exchanged. */
 export interface Listener {
   stage: (stage: "python" | "words" | "ready") => void;
   run: (run: any) => void;
   failed: (problem: string) => void;
-  hung: (does: Does) => void;
+  exchanged: (why: "broken" | "slow" | "unstopped") => void;
 }
 
 const PATIENCE: Partial<Record<Does, number>> = { stop: 4000 };
@@ -36,21 +36,21 @@ export class Python {
       this.waiting.set(id, done);
       this.worker.postMessage({ id, does, given } satisfies Request);
       void this.ready.then(() => {
-        if (this.waiting.has(id)) this.timers.set(id, setTimeout(() => this.exchange(does), PATIENCE[does] ?? USUAL));
+        if (this.waiting.has(id)) this.timers.set(id, setTimeout(() => this.exchange(does === "stop" ? "unstopped" : "slow"), PATIENCE[does] ?? USUAL));
       });
     });
   }
 
   /** Ends the worker, whatever it does, and starts another one. */
-  private exchange(does: Does): void {
+  private exchange(why: "broken" | "slow" | "unstopped"): void {
     this.worker.terminate();
     const open = [...this.waiting.values()];
     this.waiting.clear();
     for (const timer of this.timers.values()) clearTimeout(timer);
     this.timers.clear();
     this.start();
-    for (const done of open) done({ ok: false });
-    this.listener.hung(does);
+    this.listener.exchanged(why);
+    for (const done of open) done({ ok: false, exchanged: true });
   }
 
   private start(): void {
@@ -68,6 +68,7 @@ export class Python {
       if (data.stage === "ready") this.started();
       this.listener.stage(data.stage);
     } else if ("run" in data) this.listener.run(data.run);
+    else if ("broken" in data) this.exchange("broken");
     else if (!data.id) this.listener.failed(data.answer.problem);
     else {
       clearTimeout(this.timers.get(data.id));

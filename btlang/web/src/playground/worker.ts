@@ -8,8 +8,8 @@ export interface Request {
   given: unknown[];
 }
 
-/** What the page hears: how far the start is, answers, and news of the run that nobody asked for. */
-export type Reply = { stage: "python" | "words" | "ready" } | { id: number; answer: any } | { run: any };
+/** What the page hears: how far the start is, answers, news of the run that nobody asked for, and that Python is at its end. */
+export type Reply = { stage: "python" | "words" | "ready" } | { id: number; answer: any } | { run: any } | { broken: true };
 
 interface Playground {
   [method: string]: (...given: unknown[]) => string;
@@ -72,11 +72,23 @@ async function drive(playground: Playground): Promise<void> {
 
 reply({ stage: "python" });
 const started = start();
-const warmUp = (playground: Playground): unknown => setTimeout(() => playground["ask"]!("document", "go to the kichen"), WARM);
-started.then((playground) => (reply({ stage: "ready" }), warmUp(playground)), (error: Error) => reply({ id: 0, answer: { ok: false, problem: error.message } }));
+started.then(
+  (playground) => {
+    reply({ stage: "ready" });
+    setTimeout(() => playground["ask"]!("document", "go to the kichen"), WARM);
+  },
+  (error: Error) => reply({ id: 0, answer: { ok: false, problem: error.message } }),
+);
+
+// Playground never raises: what does come here is Python's own end, as where a text is nested too deeply for its stack.
+addEventListener("unhandledrejection", (event) => {
+  event.preventDefault();
+  reply({ broken: true });
+});
 
 addEventListener("message", async ({ data }: MessageEvent<Request>) => {
-  const playground = await started;
+  const playground = await started.catch(() => null);
+  if (!playground) return;
   const { id, does, given } = data;
   if (does === "speed") speed = given[0] as number;
   if (does === "stop" || does === "begin") turn++;
