@@ -104,7 +104,7 @@ class _HouseRun:
                 break
         if status == Status.RUNNING:
             return {"news": self.news(), "over": False, "passed": run.seconds - began, "seconds": run.seconds}
-        return self._ended(str(run.outcome), run.why())
+        return self._ended(str(run.outcome).partition("\n")[0], run.why())  # its further lines say why, too
 
     def hear(self, text: str) -> dict[str, Any]:
         """See Playground.hear."""

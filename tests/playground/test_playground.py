@@ -116,6 +116,8 @@ def test_a_failed_run_says_why() -> None:
     begin(playground, "move forward 30 m")
     last, _ = ended(playground)
     assert not last["succeeded"]
+    assert last["ended"].startswith("The mission failed after ")
+    assert "\n" not in last["ended"]
     assert "MoveForward" in last["why"]
 
 
