@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import os
+import sys
 import threading
 from pathlib import Path
 from typing import Any
@@ -10,7 +12,10 @@ from typing import Any
 import pytest
 
 from btlang.playground import playground as module
+from btlang.playground import prepare
 from btlang.playground.playground import MOST_CHARACTERS, Playground
+from btlang.support.user_dirs import user_dir
+from btlang.vocabulary.cache import stamp
 from tests.test_house import ROOT
 
 PAGE = ROOT / "btlang" / "web" / "src" / "playground"
@@ -143,6 +148,32 @@ def test_a_mission_names_no_files(tmp_path: Path) -> None:
     for line, code in ((f'world "{tmp_path}/world.toml"', "BT049"), (f'include "{tmp_path}/other.txt"', "BT001")):
         answer = json.loads(Playground().begin(f"{line}\nwave"))
         assert [message["code"] for message in answer["messages"]] == [code]
+
+
+def test_words_are_cached_for_files_that_are_unpacked_anew(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Else each visit makes them, which takes seconds: only the times of the files differ."""
+    file = tmp_path / "words.toml"
+    file.write_text("", encoding="utf-8")
+    before = stamp(str(file))
+    os.utime(file, (1, 1))
+    assert stamp(str(file)) != before
+    monkeypatch.setattr(sys, "platform", "emscripten")
+    before = stamp(str(file))
+    os.utime(file, (2, 2))
+    assert stamp(str(file)) == before
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    assert user_dir("cache") == str(tmp_path / "btlang")
+
+
+def test_a_home_from_an_archive_is_the_users_own(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    (tmp_path / "cache").mkdir()
+    (tmp_path / "cache" / "words").write_text("", encoding="utf-8")
+    for path in (tmp_path, tmp_path / "cache", tmp_path / "cache" / "words"):
+        path.chmod(0o777)
+    prepare(str(tmp_path))
+    assert {path.stat().st_mode & 0o077 for path in (tmp_path, tmp_path / "cache", tmp_path / "cache" / "words")} == {0}
+    assert sys.path[-1].endswith("stand_ins")  # behind all others: real packages come first
 
 
 def test_no_error_shows_a_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
