@@ -21,12 +21,14 @@ const PERIOD = 0.05; // seconds of the mission between two ticks
 const PATIENCE = 0.03; // seconds for which ticks may keep answers waiting
 const BEHIND = 5; // periods that are caught up with: a slow computer makes the mission slower, not jerky
 const IDLE = 20; // milliseconds
-const WARM = 500; // milliseconds until what explains mistakes is loaded: the first one isn't explained more slowly than others then
+const WARM = 500; // milliseconds between two of these, which fill what explains mistakes: else the first ones take half a second
+const MISTAKES = ["go to the kichen", "w", "wave a"];
 
 const reply = (data: Reply): void => (self as unknown as Worker).postMessage(data);
 
 let speed = 1; // seconds of the mission in a second
 let turn = 0; // of the run under way
+let driving = 0; // runs that are stepped
 
 async function start(): Promise<Playground> {
   const files = new URL("./", self.location.href);
@@ -49,11 +51,22 @@ playground
 `) as Playground;
 }
 
+/** Reads mistakes while no mission runs. */
+function warmUp(playground: Playground, [first, ...others]: string[]): void {
+  if (!first) return;
+  setTimeout(() => {
+    if (driving) return warmUp(playground, [first, ...others]);
+    playground["ask"]!("document", first);
+    warmUp(playground, others);
+  }, WARM);
+}
+
 const pause = (milliseconds: number): Promise<void> => new Promise((done) => setTimeout(done, milliseconds));
 
 /** Steps a run until it's over or another one began, and lets what the page asks come between. */
 async function drive(playground: Playground): Promise<void> {
   const own = ++turn;
+  driving++;
   let last = performance.now();
   let owed = 0; // seconds of the mission
   while (own === turn) {
@@ -68,6 +81,7 @@ async function drive(playground: Playground): Promise<void> {
     }
     await pause(owed >= PERIOD ? 0 : IDLE);
   }
+  driving--;
 }
 
 reply({ stage: "python" });
@@ -75,7 +89,7 @@ const started = start();
 started.then(
   (playground) => {
     reply({ stage: "ready" });
-    setTimeout(() => playground["ask"]!("document", "go to the kichen"), WARM);
+    warmUp(playground, MISTAKES);
   },
   (error: Error) => reply({ id: 0, answer: { ok: false, problem: error.message } }),
 );
