@@ -1,4 +1,4 @@
-"""The build hook: makes the page of the server, `btlang/web/dist`, where Node and the packages of npm can be had."""
+"""The build hook: makes the page of the server, `btlang/web/dist`, if Node and the packages of npm can be had."""
 
 from __future__ import annotations
 
@@ -6,14 +6,17 @@ import hashlib
 import shutil
 import subprocess
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
-_INSTALLING, _BUILDING = 40.0, 40.0  # seconds that each may take at most
+_PATIENCE = 40.0  # seconds that installing and building may take at most, each
 _MADE = ("dist", "node_modules")
-_INSTALL = ("ci", "--omit=dev", "--ignore-scripts", "--prefer-offline", "--fetch-retries=0", "--fetch-timeout=8000")
+NPM = ("ci", "--ignore-scripts", "--prefer-offline", "--fetch-retries=0", "--fetch-timeout=8000")
+"""How packages are installed, with those for development."""
+_INSTALL = (*NPM, "--omit=dev")
 
 
 class BuildHook(BuildHookInterface):  # type: ignore[type-arg]
@@ -28,12 +31,27 @@ class BuildHook(BuildHookInterface):  # type: ignore[type-arg]
 
 def build_page(folder: Path) -> str:
     """Builds the page, unless it's that of the present sources already. Returns what went wrong, "" for nothing."""
+    return build(folder, folder / "dist", "build.mjs")
+
+
+def build(
+    folder: Path,
+    out: Path,
+    *script: str,
+    more: bytes = b"",
+    install: Sequence[str] = _INSTALL,
+    patience: float = _PATIENCE,
+) -> str:
+    """Runs a script in a copy of a folder, and keeps the `dist` that it writes as `out`.
+
+    Not if `out` was made of the same sources, and of what else is in `more`. Returns what went wrong, "" for nothing.
+    """
     sources = sorted(path for path in folder.rglob("*") if path.is_file() and not _is_made(path.relative_to(folder)))
-    digest = hashlib.sha256()
+    digest = hashlib.sha256(more)
     for path in sources:
         digest.update(f"{path.relative_to(folder).as_posix()}\n{path.stat().st_size}\n".encode())
         digest.update(path.read_bytes())
-    built = folder / "dist" / "sources.sha256"
+    built = out / "sources.sha256"
     if built.is_file() and built.read_text(encoding="ascii") == digest.hexdigest():
         return ""
     with tempfile.TemporaryDirectory(prefix="btlang-page-") as made:
@@ -46,16 +64,16 @@ def build_page(folder: Path) -> str:
                 "cwd": copy, "return_completed_process": True, "capture_output": True, "text": True, "check": True,
                 "stdin": subprocess.DEVNULL,
             }  # fmt: skip
-            npm(_INSTALL, timeout=_INSTALLING, **options)
-            node(["build.mjs"], timeout=_BUILDING, **options)
+            npm(install, timeout=patience, **options)
+            node(script, timeout=patience, **options)
         except subprocess.CalledProcessError as error:
             lines = [line for line in str(error.stderr).splitlines() if "error" in line]
             return lines[0] if lines else f"exit code {error.returncode}"
         except (ImportError, OSError, subprocess.TimeoutExpired) as error:
             return str(error)
         (copy / "dist" / built.name).write_text(digest.hexdigest(), encoding="ascii")
-        shutil.rmtree(folder / "dist", ignore_errors=True)
-        shutil.copytree(copy / "dist", folder / "dist")
+        shutil.rmtree(out, ignore_errors=True)
+        shutil.copytree(copy / "dist", out)
     return ""
 
 

@@ -9,7 +9,7 @@ from contextlib import suppress
 
 from btlang.task.commands.answers import shorten
 from btlang.task.layer import TaskLayer
-from btlang.task.live.feed import TaskFollower
+from btlang.task.live.task_follower import TaskFollower
 from btlang.task.store.records import FINAL, TaskChange
 from btlang.text.formatting import one_line
 

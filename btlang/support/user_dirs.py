@@ -14,7 +14,7 @@ _LINUX = {
 
 def user_dir(kind: str) -> str:
     """Return the platform's folder for files, "cache", "data" or "state": $XDG_CACHE_HOME/btlang on Linux."""
-    if sys.platform == "linux":  # spelt out, because platformdirs takes longer to import than a cache may save
+    if sys.platform in ("linux", "emscripten"):  # platformdirs takes longer to import than a cache may save
         variable, usual = _LINUX[kind]
         set_to = os.environ.get(variable, "")
         return os.path.join(set_to if os.path.isabs(set_to) else os.path.expanduser(usual), "btlang")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from functools import lru_cache
 from itertools import groupby
 
 _NEAR = 70  # of 100; below it a suggestion is noise (tried on misspelt missions)
@@ -77,14 +78,23 @@ def misspelt(written: str, known: Iterable[str]) -> list[str]:
     return [name for name in nearest(written.lower(), names) if is_misspelling(written, name, ())]
 
 
-def fewest_slips(written: str, known: Iterable[str]) -> int:
+def fewest_slips(written: str, known: frozenset[str]) -> int:
     """Return how many slips away the nearest of the known words is; as many as a word may have if none is nearer."""
     from rapidfuzz import process
     from rapidfuzz.distance import OSA
 
-    most = _most_slips(written)
-    found = process.extractOne(written, known, scorer=OSA.distance, score_cutoff=most - 1) if most > 1 else None
-    return most if found is None else int(found[1])
+    nearer = _most_slips(written) - 1
+    letters, by_length = set(written), _by_length(known)
+    lengths = range(len(written) - nearer, len(written) + nearer + 1)
+    words = (word for length in lengths for word in by_length.get(length, ()))
+    likely = [word for word in words if len(letters.difference(word)) <= nearer]  # a slip changes one letter at most
+    found = process.extractOne(written, likely, scorer=OSA.distance, score_cutoff=nearer) if nearer else None
+    return nearer + 1 if found is None else int(found[1])
+
+
+@lru_cache(maxsize=2)  # there is one list of words for each language
+def _by_length(known: frozenset[str]) -> dict[int, list[str]]:
+    return {length: list(words) for length, words in groupby(sorted(known, key=len), len)}
 
 
 def respellings(written: str, known: Iterable[str], limit: int = 8) -> list[str]:

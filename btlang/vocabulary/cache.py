@@ -110,6 +110,8 @@ def stamp(path: str) -> tuple[str, int, int, int, int]:
     status = os.stat(path)
     if not stat.S_ISREG(status.st_mode):
         raise OSError(f"{path} is no file")  # a pipe is another one each time
+    if sys.platform == "emscripten":  # in a browser files come out of an archive, anew each time, and never change
+        return path, 0, status.st_size, 0, 0
     return path, status.st_ino, status.st_size, status.st_mtime_ns, status.st_ctime_ns
 
 

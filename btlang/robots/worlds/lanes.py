@@ -26,7 +26,7 @@ class LaneMap:
             along, up = lane.end[0] - lane.start[0], lane.end[1] - lane.start[1]
             for step, (row, column) in enumerate(grid.directions):
                 if not lane.one_way or column * along + row * up >= 0.0:
-                    self._on[step][window] |= near
+                    self._on[(step, *window)] |= near
         self._any = np.logical_or.reduce(self._on)
 
     def by_step(self, costs: npt.NDArray[np.float64]) -> list[list[float]]:

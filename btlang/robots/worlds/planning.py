@@ -95,7 +95,9 @@ class PathPlanner:
             self._fixed, self._walls = grid.clearance(self._obstacles, self._comfort), self._obstacles.walls
         clearance = self._fixed.copy()
         for x, y, radius in (*self._obstacles.discs, *around):
-            np.minimum(clearance, np.hypot(grid.xs - x, grid.ys - y) - radius, out=clearance)
+            window = grid.window((x, y, x, y), radius + self._comfort)
+            to_disc = np.hypot(grid.xs[window] - x, grid.ys[window] - y) - radius
+            clearance[window] = np.minimum(clearance[window], to_disc)
         for zone in self._zones.closed:
             np.minimum(clearance, grid.to_polygon(zone.points), out=clearance)
         for confines in self._zones.confines:

@@ -53,9 +53,8 @@ class ClearanceGrid:
         """
         nearest2 = np.full(self.xs.shape, np.inf)
         for segment in obstacles.segments:  # maps have thousands, so only the cells around each are looked at
-            window = self._window(segment, within)
-            near = nearest2[window]
-            np.minimum(near, self._squared(segment, window), out=near)
+            window = self.window(segment, within)
+            nearest2[window] = np.minimum(nearest2[window], self._squared(segment, window))
         for box in obstacles.boxes:
             inside = (np.abs(self.xs - box.x) <= box.width / 2) & (np.abs(self.ys - box.y) <= box.height / 2)
             nearest2[inside] = 0.0
@@ -112,10 +111,10 @@ class ClearanceGrid:
 
     def beside(self, segment: Segment, within: float) -> tuple[tuple[slice, slice], Bools]:
         """Return a window of the grid, and which of its cells are that near to a segment."""
-        window = self._window(segment, within)
+        window = self.window(segment, within)
         return window, self._squared(segment, window) < within**2
 
-    def _window(self, segment: Segment, within: float) -> tuple[slice, slice]:
+    def window(self, segment: Segment, within: float) -> tuple[slice, slice]:
         """Return the rows and the columns of the cells that may be so near to a segment."""
         ax, ay, bx, by = segment
         spans = zip((min(ay, by), min(ax, bx)), (max(ay, by), max(ax, bx)), self.origin[::-1], strict=True)

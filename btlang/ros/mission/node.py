@@ -20,7 +20,7 @@ from btlang.run.logs import PlainLines
 from btlang.task import messages
 from btlang.task.execution.emergency import shut_latch
 from btlang.task.layer import TaskLayer
-from btlang.task.live.feed import TaskFollower
+from btlang.task.live.task_follower import TaskFollower
 from btlang.task.messages import Answer, Command
 from btlang.task.store.records import ACTIVE, FINAL, WAITING, MissionText, Task, TaskChange, TaskState
 

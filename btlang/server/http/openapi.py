@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from functools import cache
 
-from btlang.server.page.processes import ASKED, TextQuery
+from btlang.editing.queries import TextQuery
+from btlang.server.page.processes import ASKED
 from btlang.task.commands.schema import schema
 from btlang.task.store.records import LibraryKind
 

@@ -9,22 +9,17 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from weakref import WeakValueDictionary
 
-from btlang.api import Mission, format_mission
+from btlang.api import Mission
 from btlang.diagnostics.diagnostic import MissionError
-from btlang.editing.changes import Change, apply_changes
-from btlang.editing.document import document, messages, text_messages
-from btlang.editing.edits import edit, read_edit
-from btlang.editing.help import complete, hover, tokens
-from btlang.editing.palette import palette
-from btlang.editing.rename import rename
+from btlang.editing.document import messages
+from btlang.editing.edits import read_edit
+from btlang.editing.queries import DOES, PLACES, TextQuery, answer_of, in_units, of_mission
 from btlang.editing.words import RobotWords
-from btlang.frontends.table import frontend_of
 from btlang.recording.film import Film, count_failures, side_by_side, try_mission
 from btlang.recording.reader import open_recording
 from btlang.server.http.access import AccessError, text_in
 from btlang.server.page.shown_documents import ShownDocuments
 from btlang.support.gc_pause import gc_paused
-from btlang.support.record import Record
 from btlang.support.worker import Worker, WorkerEnded
 from btlang.testing.trial import results_of
 from btlang.text.source import Source, Utf16Units
@@ -32,34 +27,6 @@ from btlang.text.source import Source, Utf16Units
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
-
-
-def in_units(answer: dict[str, Any], text: str) -> dict[str, Any]:
-    """Return an answer about a text with its places in units: all that is called `start`, `end` or `of`.
-
-    Where it has `changes`, its own `start` and `end` are in the text with them.
-    """
-    units = Utf16Units(text)
-    made: dict[str, Any] = _convert(answer, units) if units.wide else answer
-    if "changes" in answer and "start" in answer:
-        after = Utf16Units(apply_changes(text, [Change(**change) for change in answer["changes"]]))
-        made = {**made, "start": after.unit(answer["start"]), "end": after.unit(answer["end"])}
-    return made
-
-
-def _convert(part: Any, units: Utf16Units) -> Any:
-    if isinstance(part, Mapping):
-        return {
-            key: _place(value, units) if key in ("start", "end", "of") else _convert(value, units)
-            for key, value in part.items()
-        }
-    return [_convert(each, units) for each in part] if isinstance(part, list | tuple) else part
-
-
-def _place(value: Any, units: Utf16Units) -> Any:
-    if isinstance(value, int):
-        return units.unit(value)
-    return [units.unit(each) for each in value] if value is not None else None
 
 
 def film(path: str, language: str = "") -> bytes:
@@ -110,63 +77,6 @@ TESTS = "tests"
 """The name of tests in messages."""
 MOST_CHARACTERS = 200_000
 _PATIENCE = 10.0  # seconds for one text
-_PLACES = {"at", "to"}
-
-
-class TextQuery(Record):
-    """A query about a text: `help` is a line about it, `do` takes the source, the words, and the arguments that it
-    `needs` or only `takes`: `at` and `to`, places in the text, `name`, `tests` and `called`, texts, or `edit`
-    (btlang.editing.edits.Edit).
-    """
-
-    help: str
-    do: Callable[..., dict[str, Any]]
-    needs: tuple[str, ...] = ()
-    takes: tuple[str, ...] = ()
-
-
-def _of_mission(report: Callable[[Mission], dict[str, Any]]) -> Callable[..., dict[str, Any]]:
-    """Make a query that reports something about a mission, with its messages."""
-
-    def do(source: Source, words: RobotWords) -> dict[str, Any]:
-        mission = words.mission(source)
-        return {"messages": messages(mission.warnings, source), **report(mission)}
-
-    return do
-
-
-def _english(source: Source, words: RobotWords) -> dict[str, Any]:
-    query = _of_mission(lambda mission: {"text": mission.to("english")})
-    return {"sort": frontend_of(source), **query(source, words)}
-
-
-def _format(source: Source, words: RobotWords) -> dict[str, Any]:
-    return {"text": format_mission(source, keywords=words.keywords, world=words.world, language=words.language)}
-
-
-DOES: Mapping[str, TextQuery] = {
-    "check": TextQuery("What is wrong with a mission.", _of_mission(lambda mission: {"outline": str(mission)})),
-    "complete": TextQuery("What may follow at a place, by default the end.", complete, takes=("at",)),
-    "document": TextQuery(
-        "All that an editor shows of a text: messages, tree and outline.",
-        lambda source, words, shown=None: document(source, words),
-        takes=("shown",),
-    ),
-    "edit": TextQuery("A change of a mission by its tree.", edit, needs=("edit",)),
-    "english": TextQuery("A mission, which may be a tree in XML or JSON, in English.", _english),
-    "explain": TextQuery(
-        "How a mission is understood.", _of_mission(lambda mission: {"explanation": mission.explain()})
-    ),
-    "format": TextQuery("A mission in the usual layout.", _format),
-    "hover": TextQuery("What was understood at a place, with help.", hover, needs=("at",)),
-    "messages": TextQuery("What is wrong with a text, as its document says it.", text_messages),
-    "palette": TextQuery("All that can be put into a mission, by topic.", palette),
-    "rename": TextQuery("What gives a definition and its uses another name.", rename, needs=("at",), takes=("name",)),
-    "tokens": TextQuery("As what the words between two places are read.", tokens, takes=("at", "to")),
-    "xml": TextQuery(
-        "A mission as a tree of BehaviorTree.CPP.", _of_mission(lambda mission: {"xml": str(mission.to("xml"))})
-    ),
-}
 
 
 def _test(source: Source, words: RobotWords, tests: str, called: str) -> dict[str, Any]:
@@ -186,7 +96,7 @@ TRIES: Mapping[str, TextQuery] = {
     "test": TextQuery(
         "Tests of a mission in the simulated world, with films of those that fail.", _test, ("tests", "called")
     ),
-    "try": TextQuery("A run of a mission in the simulated world, as a film.", _of_mission(try_mission)),
+    "try": TextQuery("A run of a mission in the simulated world, as a film.", of_mission(try_mission)),
 }
 """The queries that take longer: they have a process of their own."""
 ASKED = {**DOES, **TRIES}
@@ -197,7 +107,7 @@ def arguments_of(kind: str, data: Mapping[str, Any], text: str) -> dict[str, Any
     asked = ASKED[kind]
     given = {name: data[name] for name in asked.takes if data.get(name) is not None}
     given |= {name: data.get(name) for name in asked.needs}
-    for field in _PLACES & given.keys():
+    for field in PLACES & given.keys():
         units = Utf16Units(text)
         if type(given[field]) is not int or not 0 <= given[field] <= units.length:
             raise AccessError(400, f"'{field}' must be a place in the text, a whole number of UTF-16 units.")
@@ -215,11 +125,7 @@ def arguments_of(kind: str, data: Mapping[str, Any], text: str) -> dict[str, Any
 def answer(kind: str, text: str, words: RobotWords, arguments: Mapping[str, Any] = {}) -> dict[str, Any]:
     """Return what is asked of a text, with what is wrong with it as data; places are in UTF-16 units."""
     source = words.source(text)
-    try:
-        found = {"ok": True, "messages": [], **ASKED[kind].do(source=source, words=words, **arguments)}
-    except MissionError as error:
-        found = {"ok": False, "messages": messages(error.diagnostics, source)}
-    found = in_units(found, text)
+    found = in_units(answer_of(ASKED[kind], source, words, arguments), text)
     shown = arguments.get("shown")
     return found if shown is None else _shown.shorten(found, text, shown)
 

@@ -8,7 +8,7 @@ import os
 import re
 import threading
 import time
-from collections.abc import AsyncIterator, Callable, Iterator, Sequence
+from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager, closing, contextmanager, suppress
 from functools import partial
 
@@ -26,10 +26,9 @@ from btlang.server.live.robot_connection import LONGEST
 from btlang.server.live.robot_feeds import RobotFeed
 from btlang.server.page.local_page import LocalApi, LocalPage, LocalRobots, local_page, say_where
 from btlang.session import Run
-from btlang.task.live.feed import Feed
+from btlang.task.live.feed import Feed, NoTasks
 from btlang.task.messages import Answer, EmergencyStop, List
 from btlang.task.messages import Urdf as UrdfCommand
-from btlang.task.store.records import TaskChange
 from btlang.text.formatting import one_line
 from btlang.text.output import show
 
@@ -55,21 +54,6 @@ class WatchApi(LocalApi):
         """Return only the routes that its screen asks for."""
         shown = {*_ROUTES, *_OF_RECORDING}
         return [route for route in super().routes() if getattr(route, "path", "") in shown]
-
-
-class NoTasks:
-    """The store of a feed without tasks."""
-
-    def __init__(self) -> None:
-        self.listeners: list[Callable[[], object]] = []
-
-    def latest_change(self) -> int:
-        """Return 0: there is no change."""
-        return 0
-
-    def changes(self, *, after: int, limit: int) -> Sequence[tuple[int, TaskChange]]:
-        """Return no changes."""
-        return ()
 
 
 class PageMonitor:

@@ -9,7 +9,6 @@ from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import suppress
 
 from btlang.api import Mission
-from btlang.engine.leaves.leaf import describe_exception
 from btlang.engine.status import NAMES
 from btlang.house_rules import describe_rules
 from btlang.passes.scripts import is_prepared
@@ -24,7 +23,6 @@ from btlang.session import Run
 from btlang.task.live.robot_now import BodyNow, MapNow
 from btlang.task.store.database import StoreError
 from btlang.task.store.records import TaskChange
-from btlang.task.store.task_store import TaskStore
 from btlang.text.source import Utf16Units
 
 TYPE_CHECKING = False
@@ -77,6 +75,21 @@ _AGES = 1.0  # seconds between two messages about how old the readings are, also
 _GATHERED, _GATHERED_AT_MOST = 0.2, 0.01  # of a period, and seconds: what comes so soon after other news goes with it
 _SCANS = 0.5  # seconds between two
 _MOST_EVENTS, _MOST_RUNS, _MOST_CHANGES = 1000, 16, 1000
+
+
+class NoTasks:
+    """The store of a feed without tasks."""
+
+    def __init__(self) -> None:
+        self.listeners: list[Callable[[], object]] = []
+
+    def latest_change(self) -> int:
+        """Return 0: there is no change."""
+        return 0
+
+    def changes(self, *, after: int, limit: int) -> Sequence[tuple[int, TaskChange]]:
+        """Return no changes."""
+        return ()
 
 
 class _Watched:
@@ -168,6 +181,12 @@ class Feed:
                 yield from self._messages(watcher, 1.0 / min(max(rate, least), most))
         finally:
             self._watchers.remove(watcher)
+
+    def polled(self) -> Callable[[], list[dict[str, Any]]]:
+        """Return a function that gives the messages since it was called last, without waiting: for a single thread."""
+        watcher = _Watcher(self._store.latest_change())
+        self._watchers.append(watcher)
+        return lambda: list(self._new(watcher))
 
     def take(self, watched: _Watched, event: Event) -> None:
         """Take in an event, in the thread of the run."""
@@ -342,58 +361,3 @@ def _state(state: RobotState | None) -> dict[str, Any]:
 
 def _scan(event: PeriodPassed) -> list[float | None]:
     return round_scan(ask_sensor(lambda: [float(distance) for distance in event.robot.scan()]) or ())
-
-
-_RETRY = 1.0  # seconds after which a store that could not be read is asked again
-_REST = 4.0  # times as long as it took: many changes are handed on together then
-
-
-class TaskFollower:
-    """A thread that hands the changes of this process's tasks to `changed`, each once and in order.
-
-    It begins with the changes that come after it was made, until `close`. `changed` may raise StoreError: then it gets
-    the same changes again. `trouble` gets what else it raises, for people.
-    """
-
-    def __init__(
-        self,
-        store: TaskStore,
-        changed: Callable[[Sequence[TaskChange]], object],
-        trouble: Callable[[str], object] = lambda text: None,
-    ) -> None:
-        self._store, self._changed, self._trouble = store, changed, trouble
-        self._last = store.latest_change()
-        self._closed = threading.Event()
-        self._news = threading.Event()
-        store.listeners.append(self._news.set)
-        self._thread = threading.Thread(target=self._work, name="btlang follower", daemon=True)
-        self._thread.start()
-
-    def close(self) -> None:
-        """Hand on what has happened until now, and end. May be called twice."""
-        if not self._closed.is_set():
-            self._store.listeners.remove(self._news.set)
-            self._closed.set()
-            self._news.set()
-        if threading.current_thread() is not self._thread:
-            self._thread.join()
-
-    def _work(self) -> None:
-        is_last = False
-        while not is_last:
-            self._news.wait()
-            self._news.clear()
-            is_last, began = self._closed.is_set(), time.monotonic()
-            try:
-                found = self._store.changes(after=self._last)
-                if found:
-                    self._changed([change for _, change in found])
-                    self._last = found[-1][0]
-            except StoreError:
-                self._news.set()
-                self._closed.wait(_RETRY)
-            except Exception as problem:  # the next ones may do better
-                self._last = found[-1][0]
-                self._trouble(f"An error inside btlang: {describe_exception(problem)}")
-            else:
-                self._closed.wait(_REST * (time.monotonic() - began))

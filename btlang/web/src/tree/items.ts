@@ -1,4 +1,5 @@
 // Which nodes of a tree are open. A subtree that is defined elsewhere opens in place, also where it holds itself.
+import type { Run } from "../fleet";
 
 /** A node as the server gives it; nodes come in preorder. `tree` is the name of the subtree that it's a part of. */
 export interface TreeNode {
@@ -39,6 +40,18 @@ export function joined(nodes: readonly TreeNode[]): TreeNode[] {
     Object.assign(node, { id, label, ports, asks, says: last, differs: node.differs || differs, failed: node.failed ?? failed });
   }
   return found;
+}
+
+/** The nodes of a run as a tree shows them; they come in preorder, with paths such as /0/1. */
+export function nodesOf(run: Run): TreeNode[] {
+  const numbers = new Map<string, number>();
+  const nodes = run.nodes.map(([path, id, label, ports], index) => {
+    numbers.set(path, index);
+    const above = path.slice(0, path.lastIndexOf("/")) || "/";
+    const parent = path === "/" ? -1 : (numbers.get(above) ?? -1);
+    return { parent, id, label: label === id ? "" : label, ports: Object.entries(ports ?? {}), prepared: run.prepared.has(index), asks: run.asks.has(index) };
+  });
+  return joined(nodes);
 }
 
 /** The same nodes without those before the first one of a mission, which are of the house rules round it. */

@@ -1,10 +1,7 @@
 // What the robot asks, with the ways to answer it.
-import { may } from "../api";
 import { fill, h } from "../dom";
 import type { Robot } from "../fleet";
-import { command } from "../tasks/queue";
 import { t, type Key } from "../texts";
-import type { Context } from "../view";
 
 const LONGEST = 500; // characters of an answer
 const LISTENS = "..."; // in place of a question, where the robot only listens
@@ -25,7 +22,8 @@ export class Question {
   readonly element = h("div", { class: "question" }, this.words, this.form);
   private shown = "";
 
-  constructor(private context: Context) {
+  /** `send` gives an answer to the robot; without it the questions are only shown. */
+  constructor(private send: ((text: string) => Promise<unknown>) | null) {
     this.form.hidden = true;
   }
 
@@ -37,7 +35,7 @@ export class Question {
     fill(this.words, asking && (asking === LISTENS ? t("question.listens") : t("question.asks", { text: asking })));
     fill(this.problem);
     this.text.value = "";
-    this.form.hidden = !asking || !may(this.context.me, "operator");
+    this.form.hidden = !asking || !this.send;
   }
 
   private button(key: Key, text: string): HTMLElement {
@@ -47,7 +45,7 @@ export class Question {
   private async answer(text: string): Promise<void> {
     fill(this.problem);
     try {
-      await command(this.context, "answer", { text });
+      await this.send?.(text);
       this.text.value = "";
     } catch (error) {
       fill(this.problem, (error as Error).message);

@@ -7,7 +7,8 @@ import { oldness, state } from "../robots";
 import { called, command, Queue } from "../tasks/queue";
 import { submitForm } from "../tasks/submit";
 import { t, type Key } from "../texts";
-import { TreeView, joined, withoutRules, type TreeNode } from "../tree/tree_view";
+import { nodesOf } from "../tree/items";
+import { TreeView, withoutRules } from "../tree/tree_view";
 import type { Context, View } from "../view";
 import { Body } from "./body";
 import { Failure } from "./failure";
@@ -73,7 +74,7 @@ class Watch implements View {
     this.robot = context.fleet.get(context.robot);
     this.body = new Body(context);
     this.offers = new Offers(context);
-    this.question = new Question(context);
+    this.question = new Question(may(context.me, "operator") ? (text) => command(context, "answer", { text }) : null);
     this.voice = new Voice(context);
     this.failure = new Failure((path) => this.select(path));
     this.queue = new Queue(context, () => this.refresh());
@@ -252,16 +253,4 @@ class Watch implements View {
     if (inTree) this.tree.select(node);
     this.refresh();
   }
-}
-
-/** The nodes of a run as a tree shows them; they come in preorder, with paths such as /0/1. */
-function nodesOf(run: Run): TreeNode[] {
-  const numbers = new Map<string, number>();
-  const nodes = run.nodes.map(([path, id, label, ports], index) => {
-    numbers.set(path, index);
-    const above = path.slice(0, path.lastIndexOf("/")) || "/";
-    const parent = path === "/" ? -1 : (numbers.get(above) ?? -1);
-    return { parent, id, label: label === id ? "" : label, ports: Object.entries(ports ?? {}), prepared: run.prepared.has(index), asks: run.asks.has(index) };
-  });
-  return joined(nodes);
 }

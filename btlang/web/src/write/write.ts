@@ -12,6 +12,7 @@ import type { Context, View } from "../view";
 import { nodeAt } from "../watch/words";
 import { ask } from "./ask";
 import { Editor, smallest } from "./editor";
+import { messageList } from "./message_list";
 import { Player } from "../look_back/player";
 import { SavedMission } from "./saved_mission";
 import { merge } from "./merge";
@@ -262,21 +263,8 @@ class Desk {
     this.sort = sort;
     if (!text.trim()) messages = []; // that there's no command yet is no mistake
     this.editor.tell(messages);
-    const items = messages.map((each) => this.message(each));
-    fill(this.messages, ...(items.length || !text.trim() ? items : [h("li", { class: "fine" }, t("write.fine"))]));
+    fill(this.messages, ...(text.trim() ? messageList(messages, this.editor, this.mayWrite) : []));
     if (!compiles) this.tree.element.classList.add("stale");
-  }
-
-  /** A message with its line, which is the way there, and a button for each fix. */
-  private message(each: Message): HTMLElement {
-    const { view } = this.editor;
-    const fixes = this.mayWrite ? this.editor.fixes(each) : [];
-    return h(
-      "li",
-      { class: each.severity },
-      h("button", { type: "button", class: "go", title: each.code, onclick: () => this.editor.go(each.start) }, h("b", {}, t("write.line", { line: this.editor.lineAt(each.start) })), ` ${each.message}`, each.hint && h("small", {}, each.hint)),
-      ...fixes.map(({ name, apply }) => h("button", { type: "button", class: "fix", dir: "auto", onclick: () => apply(view, each.start, each.end) }, name)),
-    );
   }
 
   private understand(text: string, nodes: SaidNode[], outline: Named[]): void {
