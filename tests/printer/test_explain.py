@@ -13,6 +13,7 @@ from btlang.text.source import Source
 from tests.conftest import matches_golden
 from tests.examples.cases import world_of
 from tests.printer.test_sentence import MISSIONS, ROOT
+from tests.profiles import amount
 
 GOLDEN = Path(__file__).parent / "golden"
 TEA = """\
@@ -65,8 +66,10 @@ def _readings(shown: str) -> list[str]:
     return re.findall(r"^  read as: (.*)$", shown, re.MULTILINE)
 
 
+@pytest.mark.long
 def test_deep_missions() -> None:
-    tree = parse_tree("(" * 5000 + "wave" + " then nod) twice" * 5000)
+    depth = amount(1200, 5000)
+    tree = parse_tree("(" * depth + "wave" + " then nod) twice" * depth)
     assert tree.explain(80).startswith("line 1:")
 
 

@@ -27,7 +27,7 @@ from tests.examples.cases import world_of
 from tests.language import sentences
 from tests.language.letters import letters, read
 from tests.printer import trees
-from tests.profiles import searches
+from tests.profiles import amount, searches
 
 PARSERS = ("shunting-yard", "lark")
 BRACKETS = ("needed", "clear", "all")
@@ -221,9 +221,10 @@ def test_facts_come_first() -> None:
     keeps_its_tree(mission, vocabulary)
 
 
+@pytest.mark.long
 def test_depth_does_not_matter() -> None:
     node: ast.Ast = trees.phrase("u")
-    for i in range(10_000):
+    for i in range(amount(2_000, 10_000)):
         node = ast.Chain(("sequence", "parallel")[i % 2], (node, trees.phrase("v")), True, trees.SPAN)
     mission = ast.Program(node, (), trees.SPAN)
     text = english(mission, letters())
