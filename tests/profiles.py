@@ -21,9 +21,14 @@ def amount(usual: int, long: int) -> int:
     return long if os.environ.get(LONG) else usual
 
 
-def cases(names: str | tuple[str, ...], values: Sequence[Any], usual: int, **options: Any) -> Callable[[Any], Any]:
-    """A test of many cases does `usual` of them in each run, one here and one there, and all in a long one."""
-    some = values[:: -(-len(values) // amount(usual, len(values)))]
+def cases(
+    names: str | tuple[str, ...], values: Sequence[Any], usual: int, first: int = 0, **options: Any
+) -> Callable[[Any], Any]:
+    """A test of many cases does `usual` of them in each run, one here and one there, and all in a long one.
+
+    Tests of the same cases begin with another `first` one each, so that each case is in one of them.
+    """
+    some = values[amount(first, 0) :: -(-len(values) // amount(usual, len(values)))]
 
     def decorate(test: Any) -> Any:
         return pytest.mark.long(pytest.mark.parametrize(names, some, **options)(test))

@@ -27,7 +27,7 @@ from tests.examples.cases import world_of
 from tests.language import sentences
 from tests.language.letters import letters, read
 from tests.printer import trees
-from tests.profiles import amount, searches
+from tests.profiles import amount, cases, searches
 
 PARSERS = ("shunting-yard", "lark")
 BRACKETS = ("needed", "clear", "all")
@@ -104,7 +104,7 @@ def test_blocks_keep_the_tree(mission: ast.Program, width: int, brackets: str) -
         assert compiled("\n".join(lines), letters(), parser)[1] == tree, "\n".join(lines)
 
 
-@pytest.mark.parametrize("path", MISSIONS, ids=lambda path: path.stem)
+@cases("path", MISSIONS, usual=34, ids=lambda path: path.stem)
 def test_missions_that_ship_keep_their_tree(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(path.parent)  # where it includes from
     text = path.read_text(encoding="utf-8-sig")
