@@ -20,7 +20,6 @@ from btlang.engine.nodes.templates import NAMES, TEMPLATES
 from btlang.engine.status import FAILURE, RUNNING, SUCCESS
 from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.node import Node
-
 from tests.profiles import amount
 
 from .scripted import World, n

@@ -9,7 +9,6 @@ from btlang.engine.blackboard import Blackboard
 from btlang.engine.instance import EngineError
 from btlang.engine.status import FAILURE, SUCCESS
 from btlang.tree.node import Node, Tree
-
 from tests.profiles import amount
 
 from .scripted import LETTER, World, n

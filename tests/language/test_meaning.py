@@ -36,8 +36,8 @@ def in_one_line(mission: btlang.Mission) -> str:
 
 
 FILES = (
-    "meaning", "said", "users", "chosen", "outcomes", "attempts", "replies", "times", "waits", "counts", "carried", "order",
-    "journeys",
+    "meaning", "said", "users", "chosen", "outcomes", "attempts", "replies", "times", "waits", "counts", "carried",
+    "order", "journeys",
 )  # fmt: skip
 ROWS = [row for file in FILES for row in rows(f"{file}.txt")]
 SPOKEN, REFUSED = rows("spoken.txt"), [*rows("refused.txt"), *rows("unclear.txt")]
