@@ -49,7 +49,7 @@ def each_of(rows: Sequence[tuple[Any, ...]], at_a_time: int) -> Callable[[Any], 
                 pytest.fail("\n\n".join(failed), pytrace=False)
 
         wraps(test)(of_rows)
-        del of_rows.__wrapped__  # whose parameters pytest would take for those of fixtures
+        del of_rows.__wrapped__  # type: ignore[attr-defined] # whose parameters pytest would take for those of fixtures
         return pytest.mark.parametrize("group", groups, ids=[str(group[0][0]) for group in groups])(of_rows)
 
     return decorate
