@@ -50,7 +50,9 @@ def each_of(rows: Sequence[tuple[Any, ...]], at_a_time: int) -> Callable[[Any], 
 
         wraps(test)(of_rows)
         del of_rows.__wrapped__  # type: ignore[attr-defined] # whose parameters pytest would take for those of fixtures
-        return pytest.mark.parametrize("group", groups, ids=[str(group[0][0]) for group in groups])(of_rows)
+        return pytest.mark.parametrize("group", groups, ids=[f"{group[0][0]} to {group[-1][0]}" for group in groups])(
+            of_rows
+        )
 
     return decorate
 
@@ -61,7 +63,8 @@ def _failure(test: Any, row: tuple[Any, ...]) -> str:
         test(*row)
     except (Exception, pytest.fail.Exception) as error:
         where = traceback.extract_tb(error.__traceback__)[-1]
-        return f"{row[0]}\n{type(error).__name__}, {Path(where.filename).name}:{where.lineno}: {error}"
+        name = ", ".join(getattr(part, "__name__", str(part)) for part in row)
+        return f"{name}\n{type(error).__name__}, {Path(where.filename).name}:{where.lineno}: {error}"
     return ""
 
 
