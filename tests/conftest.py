@@ -58,6 +58,17 @@ _WAITING = {"asyncio", "subprocess", "threading", "time"}
 """What a module of tests imports whose tests do so, too, in whatever folder it is."""
 _AT_ONCE = 2
 """The tests of OVER_DDS that run at a time: they wait most of the time. Of three on two cores some come too late."""
+LONGEST = (
+    "tests/backends/test_grammar.py::test_both_parsers_read_what_the_grammar_makes",
+    "tests/backends/test_grammar.py::test_every_rule_that_is_used_is_there",
+    "tests/components/test_faults.py::test_twenty_components_in_a_storm",
+    "tests/components/test_new.py::test_a_robot_with_words_as_its_readme_says",
+    "tests/guide/test_guide.py::test_weeks_of_the_museum",
+    "tests/lsp/test_session.py::test_a_session_of_edits_ends_as_a_fresh_text",
+    "tests/server/test_mcp.py::test_a_model_writes_checks_mends_and_simulates_a_mission",
+    "tests/task/test_museum_week.py::",
+)
+"""Tests that take more than five seconds: they begin early, so that no core waits for the last one."""
 _WORKER = int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw"))
 _GIVING_WAY, _FIRST = 15, -10
 """How nice a test that only computes is, and one over DDS."""
@@ -156,13 +167,14 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     if workers > len(chains):
         chains.append([item for item in items if item.nodeid.startswith("tests/web/")])
     first = {item for chain in chains for item in chain}
-    others = [item for item in items if item not in first]
+    others = [item for item in items if item not in first and not item.nodeid.startswith(LONGEST)]
+    longest = [item for item in items if item not in first and item.nodeid.startswith(LONGEST)]
     share, ordered = len(items) // workers, list[pytest.Item]()
     for chain in chains:
         beside = max(0, share - len(chain))
         ordered += [*chain, *others[:beside]]
         others = others[beside:]
-    items[:] = [*ordered, *others]
+    items[:] = [*ordered, *longest, *others]
 
 
 def pytest_collection_finish() -> None:

@@ -26,7 +26,8 @@ from warnings import simplefilter
 
 ROOT = Path(__file__).parent.parent
 _PRELOADED = (
-    "btlang.cli.robots", "btlang.cli.run", "btlang.server.http.app", "btlang.task.layer", "numpy", "uvicorn",
+    "btlang.cli.robots", "btlang.cli.run", "btlang.lsp.features", "btlang.server.http.app", "btlang.task.layer",
+    "numpy", "uvicorn",
 )  # fmt: skip
 _PRELOADED_FOR_ROS = (
     *_PRELOADED, "btlang.ros.mission.node", "btlang.ros.robot.robot", "btlang.ros.serving.server",

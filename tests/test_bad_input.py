@@ -93,10 +93,12 @@ def test_a_mission_of_many_lines(parser: str) -> None:
     assert len(tree.root.children) == pairs * 4  # the lines' sequences are one with the mission's
 
 
+@pytest.mark.long
 @BOTH
-def test_10_000_definitions_that_use_each_other(parser: str) -> None:
-    text = "n0 is wave\n" + "".join(f"n{i} is n{i - 1} then nod\n" for i in range(1, 10_000)) + "n9999"
-    assert len(parse_tree(text, parser=parser).tree.subtrees) == 10_000
+def test_thousands_of_definitions_that_use_each_other(parser: str) -> None:
+    count = amount(2_000, 10_000)
+    text = "n0 is wave\n" + "".join(f"n{i} is n{i - 1} then nod\n" for i in range(1, count)) + f"n{count - 1}"
+    assert len(parse_tree(text, parser=parser).tree.subtrees) == count
 
 
 @BOTH

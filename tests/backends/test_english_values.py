@@ -22,7 +22,7 @@ from btlang.vocabulary.lexicon import Lexicon
 from tests.examples.cases import world_of
 from tests.language.letters import letters
 from tests.printer import trees
-from tests.profiles import searches
+from tests.profiles import cases, searches
 
 PARSERS = ("shunting-yard", "lark")
 ROOT = Path(__file__).parent.parent.parent
@@ -51,7 +51,7 @@ def natural(text: str) -> str:
     return said_and_read(lower_mission(read_mission(Source(text), vocabulary).mission, vocabulary), vocabulary)
 
 
-@pytest.mark.parametrize("path", MISSIONS, ids=lambda path: path.stem)
+@cases("path", MISSIONS, usual=34, first=1, ids=lambda path: path.stem)
 def test_missions_that_ship(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(path.parent)  # where it includes from
     text = path.read_text(encoding="utf-8-sig")

@@ -63,11 +63,14 @@ UNKNOWABLE = {
 """What no grammar knows; few sentences may have it."""
 
 
+_MAKERS = dict(GRAMMARS)
+
+
 @cache
 def grammar(to: str, language: str = "en") -> str:
     """Made by one of the processes that run tests: that of English takes three seconds."""
     return made_once(
-        f"{language}.{to}", lambda: GRAMMARS[to](WORDS if language == "en" else world_vocabulary(language=language))
+        f"{language}.{to}", lambda: _MAKERS[to](WORDS if language == "en" else world_vocabulary(language=language))
     )
 
 

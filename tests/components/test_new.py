@@ -17,7 +17,7 @@ import pytest
 
 from btlang.cli import main
 from btlang.templates.project import KINDS, make_project
-from tests.profiles import only_long
+from tests.profiles import cases, only_long
 
 ROOT = Path(__file__).parent.parent.parent
 NAME = "coffee_machine"
@@ -127,7 +127,7 @@ def test_a_robot_file_is_checked_without_missions(folder: Path, capsys: pytest.C
         assert "btc check: it needs a FILE or -c TEXT\n" in capsys.readouterr().err
 
 
-@EVERY
+@cases("kind", [*KINDS], usual=1)
 def test_its_own_tests_pass_inside_another_project(kind: str, folder: Path) -> None:
     (folder / "pyproject.toml").write_text('[tool.pytest.ini_options]\naddopts = ["--of-another-project"]\n', "utf-8")
     make_project(kind, NAME)

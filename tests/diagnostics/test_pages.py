@@ -23,6 +23,7 @@ from btlang.diagnostics.explain import PAGES
 from tests.conftest import take_away_what_is_missed
 from tests.editing.edited import edit_sample
 from tests.editing.renames import refusal
+from tests.profiles import each_of
 from tests.recording.trials import try_sample
 from tests.ros.bound import bind_words
 from tests.task.schedules import read_schedules
@@ -105,7 +106,7 @@ def test_every_code_has_a_page_and_every_page_a_code() -> None:
     assert sorted(TEXTS) == sorted(CODES)
 
 
-@pytest.mark.parametrize("code", sorted(TEXTS))
+@each_of([(code,) for code in sorted(TEXTS)], at_a_time=70)
 def test_form(code: str) -> None:
     """A title, a few lines of prose, no line that a narrow terminal would wrap, no block that is not tested."""
     page = TEXTS[code]

@@ -227,7 +227,7 @@ def test_all_of_the_palette_can_be_put_in(world: str | None) -> None:
     assert own["items"][2]["insert"] == 'do "quick"'
     assert {"motion", "power", "repeating"} <= {each["topic"] for each in others}
     for topic in topics:
-        for item in topic["items"][:: 1 if world is None else amount(5, 1)]:
+        for item in topic["items"][:: amount(3 if world is None else 9, 1)]:
             before = text + ("check " if item["sort"] == "condition" else "")
             words.mission(Source(before + item["insert"]))
     going = next(item for topic in others for item in topic["items"] if item["words"].startswith("go to {place}"))

@@ -20,8 +20,11 @@ from btlang.engine.nodes.templates import NAMES, TEMPLATES
 from btlang.engine.status import FAILURE, RUNNING, SUCCESS
 from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.node import Node
+from tests.profiles import amount
 
 from .scripted import World, n
+
+VERY_DEEP = amount(10_000, 30_000)
 
 ATTRIBUTES = {
     *("fault", "unknown", "unknowns", "interrupts", "append", "pop"),
@@ -149,11 +152,12 @@ def test_ctrl_c_while_it_is_generated_leaves_one_or_the_other(interrupted: str) 
     assert engine.save()["nodes"]["0"][0]["result"] is True
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("watched", [False, True])
 @pytest.mark.parametrize(
     ("around", "depth"),
     [
-        ("Sequence Inverter Fallback Inverter", 30_000),
+        ("Sequence Inverter Fallback Inverter", VERY_DEEP),
         ("ReactiveFallback Parallel ReactiveSequence Sequence", 1_000),
         ("IfThenElse WhileDoElse Repeat Timeout", 1_000),
     ],
@@ -174,10 +178,11 @@ def test_depth_does_not_matter(around: str, depth: int, watched: bool) -> None:
     assert world.log == ["A", "B.start", "B.tick", "A", "B.start", "B.halt"]
 
 
+@pytest.mark.long
 def test_a_region_for_each_of_many_levels_is_ticked_and_halted() -> None:
     world = World()
     root = world.cls("A", "r")
-    for level in range(30_000):
+    for level in range(VERY_DEEP):
         root = n(("Sequence", "Sequence", "Parallel")[level % 3], root)
     with patch.object(generation, "MOST_NODES", 100_000):
         engine = generated(world, root)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterator
+from itertools import product
 
 import pytest
 from hypothesis import given
@@ -12,7 +13,7 @@ from btlang.engine.engine import Engine
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SUCCESS
 from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.node import Node
-from tests.profiles import searches
+from tests.profiles import each_of, searches
 
 from .checked import CheckedWorld
 from .every_type import RUNS, around, running
@@ -38,8 +39,7 @@ def told_in_order(engine: Engine, before: dict[int, int], changes: list[tuple[in
         assert not any(below.startswith(path) for below in paths[at + 1 :])
 
 
-@every_type
-@pytest.mark.parametrize("order", ["halt", "suspend"])
+@each_of([*product(RUNS, ("halt", "suspend"))], at_a_time=25)
 def test_a_halt_reaches_every_running_leaf_once(id: str, order: str) -> None:
     world, engine, run = running(id)
     before = dict(world.changes)
@@ -213,8 +213,7 @@ def engine_with(leaf: Callable[[World], Node], world: World, id: str, **options:
     return engine
 
 
-@every_type
-@pytest.mark.parametrize("leaf", [in_start, in_tick, in_function, in_generator, exits_in_tick, exits])
+@each_of([*product(RUNS, (in_start, in_tick, in_function, in_generator, exits_in_tick, exits))], at_a_time=60)
 def test_an_exception_in_a_leaf_is_its_failure(id: str, leaf: Callable[[World], Node]) -> None:
     world = World()
     engine = engine_with(leaf, world, id, watched=True)
@@ -237,8 +236,7 @@ def test_an_exit_stays_within_the_tree_also_where_nobody_watches(id: str) -> Non
         engine.tick()
 
 
-@every_type
-@pytest.mark.parametrize("order", ["halt", "suspend"])
+@each_of([*product(RUNS, ("halt", "suspend"))], at_a_time=25)
 def test_an_exception_in_halt_keeps_no_other_leaf_from_halting(id: str, order: str) -> None:
     def stubborn() -> Iterator[None]:
         try:

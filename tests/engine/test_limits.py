@@ -62,14 +62,15 @@ def test_a_deep_tree_is_drawn() -> None:
     usual=3,
 )
 def test_a_deep_tree_runs(id: str, ports: dict[str, str], watched: bool) -> None:
+    depth = amount(2_000, DEPTH) if ports else DEPTH  # seconds, of a level with conditions
     world = World()
     leaf = world.cls("A", "r" * 5 + "s")
     if id == "SubTree":
-        names = [f"t{level}" for level in range(DEPTH)]
+        names = [f"t{level}" for level in range(depth)]
         uses = [n("SubTree", ID=name, _autoremap="true") for name in names] + [leaf]
         tree = Tree(uses[0], tuple(zip(names, uses[1:], strict=True)))
     else:
-        tree = Tree(chain(leaf, id, **ports))
+        tree = Tree(chain(leaf, id, depth, **ports))
     engine = world.engine(tree, watched)
     engine.blackboard.set("n", 1)
     assert engine.tick() == RUNNING
@@ -78,9 +79,9 @@ def test_a_deep_tree_runs(id: str, ports: dict[str, str], watched: bool) -> None
     engine.halt()
     assert world.ticks(engine, 4) == "rrrs"
     assert world.log == ["A.start", "A.halt", "A.start", "A.halt", "A.start", "A.tick", "A.tick", "A.tick"]
-    assert engine.path(DEPTH) == "/0" * DEPTH
+    assert engine.path(depth) == "/0" * depth
     if watched:
-        assert sum(status == SUCCESS for _, status in world.changes) == DEPTH + 1
+        assert sum(status == SUCCESS for _, status in world.changes) == depth + 1
 
 
 def test_a_deep_branch_halts_another_one_that_is_as_deep() -> None:

@@ -9,6 +9,7 @@ from btlang.engine.blackboard import Blackboard
 from btlang.engine.instance import EngineError
 from btlang.engine.status import FAILURE, SUCCESS
 from btlang.tree.node import Node, Tree
+from tests.profiles import amount
 
 from .scripted import LETTER, World, n
 
@@ -176,13 +177,15 @@ def test_what_a_lasting_round_has_not_reached_is_told_when_it_is() -> None:
     assert told(root, world, 3) == ["2r2f4s3f1f0r", "2r1r", "2f4s3f1f2r2f4s3f"]
 
 
+@pytest.mark.long
 def test_a_deep_tree_that_lasts_after_a_round_within_a_tick() -> None:
     world = World()
     root = world.fn("A", "sr")
-    for _ in range(10_000):
+    depth = amount(2_000, 10_000)  # it takes time of its square; even, as the levels turn the status
+    for _ in range(depth):
         root = n("Inverter", root)
     words = told(n("RetryUntilSuccessful", n("Inverter", root), num_attempts=-1), world, 2)
-    assert [len(word.split("r")) for word in words] == [2, 10_003]
+    assert [len(word.split("r")) for word in words] == [2, depth + 3]
 
 
 def test_an_interrupted_action_is_told_before_the_one_that_replaces_it() -> None:

@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from copy import copy
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import btlang
+from btlang.frontends.mission import reader
+from btlang.frontends.mission.tokens.lexer import Lexer
+from btlang.text.source import Source
 from btlang.tree.dump import plain
+from btlang.vocabulary.cache import recent
+from btlang.vocabulary.lexicon import Lexicon
+from tests.profiles import amount, each_of
 
 HERE = Path(__file__).parent
 WORLD = str(HERE / "meaning.toml")
@@ -26,44 +35,62 @@ def in_one_line(mission: btlang.Mission) -> str:
     return " | ".join(plain(mission.tree).replace("  ", ">").splitlines())
 
 
-@pytest.mark.parametrize(
-    ("sentence", "tree"),
-    [
-        *rows("meaning.txt"),
-        *rows("said.txt"),
-        *rows("users.txt"),
-        *rows("chosen.txt"),
-        *rows("outcomes.txt"),
-        *rows("attempts.txt"),
-        *rows("replies.txt"),
-        *rows("times.txt"),
-        *rows("waits.txt"),
-        *rows("counts.txt"),
-        *rows("carried.txt"),
-        *rows("order.txt"),
-        *rows("journeys.txt"),
-    ],
-    ids=lambda text: text,
-)
+FILES = (
+    "meaning", "said", "users", "chosen", "outcomes", "attempts", "replies", "times", "waits", "counts", "carried",
+    "order", "journeys",
+)  # fmt: skip
+ROWS = [row for file in FILES for row in rows(f"{file}.txt")]
+SPOKEN, REFUSED = rows("spoken.txt"), [*rows("refused.txt"), *rows("unclear.txt")]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _words_are_read_once() -> Iterator[None]:
+    """Both parsers read what the same lexer found, as does whoever reads back what English was tried."""
+    latest = dict[tuple[str, int], Lexer]()
+
+    def lexed(source: Source, vocabulary: Lexicon, **options: Any) -> Lexer:
+        kept = recent(latest, (source.text, id(vocabulary)), lambda: Lexer(source, vocabulary, **options))
+        lexer = copy(kept)
+        lexer.tokens = [token.copy() for token in kept.tokens]  # which are changed as they are grouped
+        return lexer
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(reader, "Lexer", lexed)
+        yield
+
+
+@each_of(ROWS, at_a_time=25)
 def test_meaning(sentence: str, tree: str) -> None:
     missions = [btlang.parse_tree(sentence, world=WORLD, parser=parser) for parser in PARSERS]
     assert [in_one_line(mission) for mission in missions] == [tree.strip()] * 2
+
+
+@each_of(ROWS[:: -(-len(ROWS) // amount(400, len(ROWS)))], at_a_time=20)
+@pytest.mark.long
+def test_every_form_keeps_the_meaning(sentence: str, tree: str) -> None:
+    mission = btlang.parse_tree(sentence, world=WORLD)
     for form in ("xml", "json", "english"):
-        text = str(missions[0].to(form))
-        assert btlang.parse_tree(text, world=WORLD).tree == missions[0].tree, text
+        text = str(mission.to(form))
+        assert btlang.parse_tree(text, world=WORLD).tree == mission.tree, text
 
 
-@pytest.mark.parametrize(("sentence", "tree"), rows("spoken.txt"), ids=lambda text: text)
+@each_of(SPOKEN, at_a_time=25)
 def test_numbers_that_are_said(sentence: str, tree: str) -> None:
     missions = [btlang.parse_tree(sentence, world=WORLD, parser=parser) for parser in PARSERS]
     assert [in_one_line(mission) for mission in missions] == [tree.strip()] * 2
+
+
+@each_of(SPOKEN[:: -(-len(SPOKEN) // amount(40, len(SPOKEN)))], at_a_time=20)
+@pytest.mark.long
+def test_every_form_keeps_numbers_that_are_said(sentence: str, tree: str) -> None:
+    mission = btlang.parse_tree(sentence, world=WORLD)
     for form in ("json", "english"):
-        assert btlang.parse_tree(str(missions[0].to(form)), world=WORLD).tree == missions[0].tree
-    typed = btlang.parse_tree(str(missions[0].to("xml")), world=WORLD)
+        assert btlang.parse_tree(str(mission.to(form)), world=WORLD).tree == mission.tree
+    typed = btlang.parse_tree(str(mission.to("xml")), world=WORLD)
     assert btlang.parse_tree(str(typed.to("english")), world=WORLD).tree == typed.tree
 
 
-@pytest.mark.parametrize(("sentence", "code"), [*rows("refused.txt"), *rows("unclear.txt")], ids=lambda text: text)
+@each_of(REFUSED, at_a_time=20)
 def test_what_is_refused(sentence: str, code: str) -> None:
     for parser in PARSERS:
         with pytest.raises(btlang.MissionError) as refused:

@@ -142,10 +142,10 @@ TWINS = {
 }  # fmt: skip
 
 
-@pytest.fixture
-def names(tmp_path: Path) -> list[str]:
+@pytest.fixture(scope="module")
+def names(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
     """A keyword file with Spanish words for names of the world."""
-    path = tmp_path / "nombres.toml"
+    path = tmp_path_factory.mktemp("names") / "nombres.toml"
     path.write_text(NAMES, encoding="utf-8")
     return [str(path)]
 

@@ -4,17 +4,22 @@ from __future__ import annotations
 
 import asyncio
 import json
+import logging
 import os
+import subprocess
 import sys
 from collections.abc import AsyncIterator, Awaitable, Callable, Coroutine, Iterator, Sequence
 from contextlib import asynccontextmanager
 from pathlib import Path
+from tempfile import TemporaryFile
 from typing import Any
 
 from lsprotocol import types
+from pygls.io_ import run_async
 from pygls.lsp.client import LanguageClient
 from pygls.protocol import LanguageServerProtocol, default_converter
 
+from tests.forked import Process, popen
 from tests.lsp.texts import changed, position_of, unit_of
 
 ROOT = Path(__file__).parent.parent.parent
@@ -52,6 +57,7 @@ class Client(LanguageClient):
         self.log: list[str] = []
         self.wrong: list[Any] = []
         self.started: Any = None
+        self._process: Process
         self._news = asyncio.Event()
         self.feature(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS)(lambda params: self._publish(params))
         self.feature(types.WINDOW_LOG_MESSAGE)(lambda params: self.log.append(params.message))
@@ -61,11 +67,30 @@ class Client(LanguageClient):
         self.published.setdefault(params.uri, []).append(params)
         self._news.set()
 
+    async def start_forked(self, options: Sequence[str], errors: int) -> None:
+        """Starts the server as `start_io` does, but forked: most of its start is the import of the protocol's types."""
+        words = [sys.executable, "-m", "btlang", "lsp", *options]
+        environment, pipe = {**os.environ, "PYTHONPATH": str(ROOT)}, subprocess.PIPE
+        process = popen(words, env=environment, stdin=pipe, stdout=pipe, stderr=errors)
+        loop, reader = asyncio.get_running_loop(), asyncio.StreamReader()
+        await loop.connect_read_pipe(lambda: asyncio.StreamReaderProtocol(reader), process.stdout)
+        transport, flow = await loop.connect_write_pipe(asyncio.streams.FlowControlMixin, process.stdin)
+        self.protocol.set_writer(asyncio.StreamWriter(transport, flow, None, loop))
+        options_of_reading = {"stop_event": self._stop_event, "protocol": self.protocol, "logger": logging.getLogger()}
+        reading = run_async(reader=reader, error_handler=self.report_server_error, **options_of_reading)  # type: ignore[arg-type]
+        self._async_tasks.append(asyncio.create_task(reading))
+        self._process = process
+
+    async def stop(self) -> None:
+        """Waits until the server has ended."""
+        await asyncio.to_thread(self._process.wait)
+        self._stop_event.set()
+        await asyncio.gather(*self._async_tasks)
+
     @property
     def process_id(self) -> int:
         """That of the server."""
-        assert self._server is not None
-        return self._server.pid
+        return self._process.pid
 
     def open(self, uri: str, text: str, language: str = "btlang") -> str:
         """Opens a document."""
@@ -149,17 +174,19 @@ def _numbers(range: types.Range) -> tuple[int, int, int, int]:
 async def client(*options: str, is_checked: bool = True) -> AsyncIterator[Client]:
     """A client of a server of its own, which ends cleanly, wrote nothing to standard error, and sent what it may."""
     made = Client(is_checked)
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    await made.start_io(sys.executable, "-m", "btlang", "lsp", *options, env=environment)
-    capabilities = types.ClientCapabilities()
-    async with asyncio.timeout(PATIENCE):
-        made.started = await made.initialize_async(types.InitializeParams(capabilities=capabilities))
-    made.initialized(types.InitializedParams())
-    yield made
-    async with asyncio.timeout(PATIENCE):
-        await made.shutdown_async(None)
-        made.exit(None)
-        await made.stop()  # type: ignore[no-untyped-call]
+    with TemporaryFile() as errors:
+        await made.start_forked(options, errors.fileno())
+        capabilities = types.ClientCapabilities()
+        async with asyncio.timeout(PATIENCE):
+            made.started = await made.initialize_async(types.InitializeParams(capabilities=capabilities))
+        made.initialized(types.InitializedParams())
+        yield made
+        async with asyncio.timeout(PATIENCE):
+            await made.shutdown_async(None)
+            made.exit(None)
+            await made.stop()
+        errors.seek(0)
+        assert errors.read() == b""
     assert made.wrong == []
     assert made.log == []
 

@@ -66,7 +66,7 @@ def test_a_session_of_edits_ends_as_a_fresh_text() -> None:
         async with client() as editor:
             uri = editor.open("file:///nowhere/session.txt", text)
             await editor.settled(uri)
-            for number in range(amount(200, 10_000)):
+            for number in range(amount(80, 10_000)):
                 place, new = edited(random, text)
                 text = changed(text, place, new)
                 editor.change(uri, number + 2, (place, new))

@@ -7,8 +7,8 @@ import pytest
 from btlang.robots.mission_vocabulary import world_vocabulary
 from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.node import Node, Tree
-from btlang.vocabulary.lexicon import Lexicon
 from tests.people.notation import FOLDER, PACK, WORLD, Sample, compiled, parsed, samples, written
+from tests.profiles import each_of
 
 NEW: dict[str, set[str]] = {
     "Choose": {"how", "output", "type"},
@@ -29,19 +29,14 @@ def test_there_are_enough_of_each_kind() -> None:
     assert sum(sample.refused or sample.warned for sample in SAMPLES) >= 10
 
 
-@pytest.mark.parametrize("sample", MEANT, ids=lambda sample: sample.place)
-def test_trees_are_in_the_notation(sample: Sample) -> None:
+@each_of([(sample.place, sample) for sample in MEANT], at_a_time=50)
+def test_trees_are_in_the_notation(place: str, sample: Sample) -> None:
     assert written(parsed(sample.tree)) == sample.tree
 
 
-@pytest.fixture(scope="module")
-def vocabulary() -> Lexicon:
-    return world_vocabulary([PACK], WORLD)
-
-
-@pytest.mark.parametrize("sample", MEANT, ids=lambda sample: sample.place)
-def test_nodes_and_values_are_known(sample: Sample, vocabulary: Lexicon) -> None:
-    tree = parsed(sample.tree)
+@each_of([(sample.place, sample) for sample in MEANT], at_a_time=50)
+def test_nodes_and_values_are_known(place: str, sample: Sample) -> None:
+    tree, vocabulary = parsed(sample.tree), world_vocabulary([PACK], WORLD)
     names = {name for name, _ in tree.subtrees}
     for node in tree.walk():
         entry, kind = vocabulary.entry(node.id), CATALOGUE.get(node.id)

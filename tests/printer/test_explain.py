@@ -13,6 +13,7 @@ from btlang.text.source import Source
 from tests.conftest import matches_golden
 from tests.examples.cases import world_of
 from tests.printer.test_sentence import MISSIONS, ROOT
+from tests.profiles import amount, cases
 
 GOLDEN = Path(__file__).parent / "golden"
 TEA = """\
@@ -41,7 +42,7 @@ def test_examples(name: str, world: str | None) -> None:
     matches_golden(parse_tree(text, world=where).explain(80) + "\n", GOLDEN / f"{name}.txt")
 
 
-@pytest.mark.parametrize("path", MISSIONS, ids=lambda path: path.stem)
+@cases("path", MISSIONS, usual=34, first=2, ids=lambda path: path.stem)
 def test_every_mission_fits(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(path.parent)  # where it includes from
     text = path.read_text(encoding="utf-8-sig")
@@ -65,8 +66,10 @@ def _readings(shown: str) -> list[str]:
     return re.findall(r"^  read as: (.*)$", shown, re.MULTILINE)
 
 
+@pytest.mark.long
 def test_deep_missions() -> None:
-    tree = parse_tree("(" * 5000 + "wave" + " then nod) twice" * 5000)
+    depth = amount(1200, 5000)
+    tree = parse_tree("(" * depth + "wave" + " then nod) twice" * depth)
     assert tree.explain(80).startswith("line 1:")
 
 

@@ -23,7 +23,7 @@ from tests.examples.cases import world_of
 from tests.language import sentences
 from tests.language.letters import letters
 from tests.printer.test_sentence import MISSIONS
-from tests.profiles import searches
+from tests.profiles import cases, searches
 
 _BLANKS = ["", " ", "  ", "\t", " \t ", "\u00a0", "\f", "\ufeff"]
 _COMMENTS = ["", "", "", "# one", "#", '#two "x', "# (;,.  a \t b", "# it's # here"]
@@ -98,7 +98,7 @@ def test_any_layout(text: str) -> None:
     check_layout(text, letters())
 
 
-@pytest.mark.parametrize("path", MISSIONS, ids=lambda path: path.stem)
+@cases("path", MISSIONS, usual=34, first=1, ids=lambda path: path.stem)
 def test_missions_that_ship(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(path.parent)  # where it includes from
     text = path.read_bytes().decode("utf-8")

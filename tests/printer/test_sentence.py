@@ -27,7 +27,7 @@ from tests.examples.cases import world_of
 from tests.language import sentences
 from tests.language.letters import letters, read
 from tests.printer import trees
-from tests.profiles import searches
+from tests.profiles import amount, cases, searches
 
 PARSERS = ("shunting-yard", "lark")
 BRACKETS = ("needed", "clear", "all")
@@ -104,7 +104,7 @@ def test_blocks_keep_the_tree(mission: ast.Program, width: int, brackets: str) -
         assert compiled("\n".join(lines), letters(), parser)[1] == tree, "\n".join(lines)
 
 
-@pytest.mark.parametrize("path", MISSIONS, ids=lambda path: path.stem)
+@cases("path", MISSIONS, usual=34, ids=lambda path: path.stem)
 def test_missions_that_ship_keep_their_tree(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(path.parent)  # where it includes from
     text = path.read_text(encoding="utf-8-sig")
@@ -221,9 +221,10 @@ def test_facts_come_first() -> None:
     keeps_its_tree(mission, vocabulary)
 
 
+@pytest.mark.long
 def test_depth_does_not_matter() -> None:
     node: ast.Ast = trees.phrase("u")
-    for i in range(10_000):
+    for i in range(amount(2_000, 10_000)):
         node = ast.Chain(("sequence", "parallel")[i % 2], (node, trees.phrase("v")), True, trees.SPAN)
     mission = ast.Program(node, (), trees.SPAN)
     text = english(mission, letters())

@@ -15,10 +15,11 @@ from tests.robots.motion.bodies import GUIDE
 from tests.robots.test_gesture_file import NOD, POINT, robot_file
 
 
-@pytest.fixture
-def robot(tmp_path: Path) -> str:
+@pytest.fixture(scope="module")
+def robot(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """Nobody writes into its folder, so that its words are made once."""
     return robot_file(
-        tmp_path,
+        tmp_path_factory.mktemp("robot"),
         'gestures = ["gestures"]',
         bow='phrase = ["bow", "take [a] bow"]\n' + NOD,
         show='phrase = ["beckon [to] {target}", "point at {target}"]\nmirror = "nearer"\n' + POINT,

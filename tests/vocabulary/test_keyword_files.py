@@ -99,6 +99,22 @@ def test_a_type_that_breaks_the_words_that_ship_is_to_blame(text: str, reason: s
     assert reason in problem.message
 
 
+@pytest.fixture(scope="module")
+def of_units(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """A keyword file with types that share units."""
+    file = tmp_path_factory.mktemp("words") / "own.toml"
+    file.write_text(
+        '[[type]]\nname = "humidity"\nunits = [{ words = ["%", "percent"], factor = "1" }]\n'
+        '[[type]]\nname = "ratio"\nunits = [{ words = ["%"], factor = "1/100" }]\n'
+        '[[type]]\nname = "depth"\nunits = [{ words = ["mm"], factor = "1" }, { words = ["m"], factor = "1000" }]\n'
+        '[[quantity]]\nphrase = "humidity"\ntype = "humidity"\nid = "Humidity"\n'
+        '[[action]]\nphrase = "open valve to {ratio}"\nid = "OpenValve"\n'
+        '[[action]]\nphrase = "dig {depth}"\nid = "Dig"\n',
+        encoding="utf-8",
+    )
+    return str(file)
+
+
 @pytest.mark.parametrize(
     ("text", "tree"),
     [
@@ -110,21 +126,11 @@ def test_a_type_that_breaks_the_words_that_ship_is_to_blame(text: str, reason: s
         ("move forward 2 m", "MoveForward distance=2"),
     ],
 )
-def test_types_share_units(text: str, tree: str, tmp_path: Path) -> None:
+def test_types_share_units(text: str, tree: str, of_units: str) -> None:
     """The slot says which type is meant, so that a type with `%` leaves the battery alone."""
-    file = tmp_path / "own.toml"
-    file.write_text(
-        '[[type]]\nname = "humidity"\nunits = [{ words = ["%", "percent"], factor = "1" }]\n'
-        '[[type]]\nname = "ratio"\nunits = [{ words = ["%"], factor = "1/100" }]\n'
-        '[[type]]\nname = "depth"\nunits = [{ words = ["mm"], factor = "1" }, { words = ["m"], factor = "1000" }]\n'
-        '[[quantity]]\nphrase = "humidity"\ntype = "humidity"\nid = "Humidity"\n'
-        '[[action]]\nphrase = "open valve to {ratio}"\nid = "OpenValve"\n'
-        '[[action]]\nphrase = "dig {depth}"\nid = "Dig"\n',
-        encoding="utf-8",
-    )
     for parser in ("shunting-yard", "lark"):
-        assert plain(parse_tree(text, keywords=[str(file)], parser=parser).tree) == tree
-    used = parse_tree("set level to 50%. check humidity is above level. charge to level", keywords=[str(file)])
+        assert plain(parse_tree(text, keywords=[of_units], parser=parser).tree) == tree
+    used = parse_tree("set level to 50%. check humidity is above level. charge to level", keywords=[of_units])
     assert "Charge percent={level}" in plain(used.tree)
 
 

@@ -40,9 +40,9 @@ id = "IsTired"
 """
 
 
-@pytest.fixture(name="pack")
-def _pack(tmp_path: Path) -> str:
-    path = tmp_path / "host.toml"
+@pytest.fixture(name="pack", scope="module")
+def _pack(tmp_path_factory: pytest.TempPathFactory) -> str:
+    path = tmp_path_factory.mktemp("pack") / "host.toml"
     path.write_text(PACK, encoding="utf-8")
     return str(path)
 

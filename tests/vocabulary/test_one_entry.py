@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 
 from btlang.cli import main
@@ -21,9 +19,9 @@ resources = ["left arm", "right arm"]
 """
 
 
-@pytest.fixture
-def pack(tmp_path: Path) -> str:
-    path = tmp_path / "circus.toml"
+@pytest.fixture(scope="module")
+def pack(tmp_path_factory: pytest.TempPathFactory) -> str:
+    path = tmp_path_factory.mktemp("pack") / "circus.toml"
     path.write_text(ENTRY, encoding="utf-8")
     return str(path)
 

@@ -437,7 +437,7 @@ def _drop_commas(text: Words, vocabulary: Lexicon) -> None:
     waits = vocabulary.firsts["wait_up_to"]
     for at in reversed([at for at in range(1, len(words) - 1) if words[at] == ","]):
         joins = words[at - 1] in joints and words[at + 1] in vocabulary.before_conditions
-        if joins or (not waits.isdisjoint(words) and _is_time_waited(text, at, waits, vocabulary)):
+        if joins or (not waits.isdisjoint(text.distinct) and _is_time_waited(text, at, waits, vocabulary)):
             text.drop(at, at + 1)
 
 
