@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 
+from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.frontends.mission.symbols.names import Names
 from btlang.frontends.mission.token import Header, Token
 from btlang.frontends.mission.tokens.looked_at import LookedAt, LookedUp, WordsLookedUp
@@ -52,7 +53,9 @@ class LineMemo:
 
     def __init__(self) -> None:
         self._worlds: list[_World] = []
-        self._tries: list[tuple[object, Any]] = []
+        self._tries: list[dict[Any, Any]] = []
+        self.warnings: tuple[object, list[Diagnostic]] | None = None
+        """Those of the latest text without the sentences in which something is wrong, with what they depend on."""
 
     @contextmanager
     def used(self) -> Iterator[None]:
@@ -71,12 +74,18 @@ class LineMemo:
         world.before, world.lines = world.lines, {}
         return world
 
-    def trie(self, signature: object, trie: Any) -> Any:
-        """Return the first trie of the same names, so that equal names are identical ones."""
-        known = next((kept for of, kept in self._tries if of == signature), None)
-        if known is None:
-            self._tries = [(signature, known := trie), *self._tries[: _MOST_WORLDS - 1]]
+    def trie(self, trie: dict[Any, Any]) -> dict[Any, Any]:
+        """Return the first one of equal tries of names, so that these are identical."""
+        known = next((kept for kept in self._tries if _is_equal(kept, trie)), trie)
+        self._tries = [known, *(kept for kept in self._tries if kept is not known)][:_MOST_WORLDS]
         return known
+
+
+def _is_equal(trie: object, other: object) -> bool:
+    try:
+        return trie == other
+    except RecursionError:  # names of a thousand words
+        return False
 
 
 class _World:
@@ -137,6 +146,11 @@ class _Line(Record):
     denies_none: bool
 
 
+def memo_in_use() -> LineMemo | None:
+    """Return the memo with which texts are read, None for most."""
+    return _used.get()
+
+
 def memo_for(text: Words) -> LineMemo | None:
     """Return the memo with which a text is read, None for most."""
     return _used.get() if len(text.lines) >= _FEWEST_LINES else None
@@ -147,14 +161,13 @@ def watch(text: Words, names: Names, memo: LineMemo) -> None:
     text.words = LookedAt(text.words)
     text._distinct = made = WordsLookedUp(text.distinct)
     made.asked = {}
-    names.definitions.trie = memo.trie(_signature(names), names.definitions.trie)
+    names.definitions.trie = memo.trie(names.definitions.trie)
 
 
 def _signature(names: Names) -> object:
     """Return what decides how the names of a text are read; identities are those of what a memo keeps."""
     found = names.definitions
-    own = [(each.name, each.parameters, each.is_quoted, found.types.get(each.body)) for each in found.headers.values()]
-    return names.vocabulary, own, names.included, found.subtrees
+    return names.vocabulary, id(found.trie), found.subtrees, names.included, names.known
 
 
 class LineReader:
@@ -183,7 +196,7 @@ class LineReader:
         kinds = [(type(part), name) for part, name in self._fields]
         named = _signature(names), names.meanings, names.chosen, text.has_shared_places, own["_explain"]
         given = named, kinds, [content_of(value) for value in self._initial]
-        self._world = memo.world(given, (names.vocabulary, self._initial), self._distinct)
+        self._world = memo.world(given, (names, self._initial), self._distinct)
         if self._world.is_full:
             self._world.forget()
         self._distinct.asked = self._world.asked
