@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 _MOST_FILES = 4  # whose lines are kept
 _lines: dict[str, LineMemo] = {}
-"""The lines of the texts that were read last, by their files: of the next text only those are read that have changed."""
+"""The lines of the texts that were read last, by their files."""
 
 
 def _memo(name: str) -> LineMemo:

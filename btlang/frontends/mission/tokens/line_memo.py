@@ -23,12 +23,15 @@ from btlang.frontends.mission.tokens.reader_state import (
     content_of,
     copied,
     is_constant,
+    moved,
     parts_of,
+    size_of,
     state_fields,
 )
 from btlang.frontends.mission.tokens.word_reader import WordReader
 from btlang.support.record import Record
 from btlang.text.words import Words
+from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import longest
 
@@ -44,6 +47,7 @@ _MOST_WORDS, _MOST_TOKENS = 200, 40  # beside a line
 _MOST_WORLDS = 4  # sets of names with which lines are kept
 _FIRST = 8  # words and tokens of a text whose readers may ask how many there are before them
 _MOST_STATES = 20_000
+_MOST_ALIKE = 4  # lines with the same words in the same state, beside others
 
 _used: ContextVar[LineMemo | None] = ContextVar("lines", default=None)
 
@@ -66,12 +70,18 @@ class LineMemo:
         finally:
             _used.reset(token)
 
-    def world(self, given: object, kept: object, distinct: WordsLookedUp) -> _World:
-        """Return the lines that were read with the same names, where the same words were missing in the text."""
+    def world(self, given: object, kept: object, distinct: WordsLookedUp, count: int) -> _World:
+        """Return the lines that were read with the same names, where the same words were missing in the text.
+
+        It keeps four times as many as the `count` of the text, those that were read last.
+        """
         found = (each for each in self._worlds if each.given == given and distinct.agrees(each.asked))
         world = next(found, None) or _World(given, kept)
         self._worlds = [world, *(each for each in self._worlds if each is not world)][:_MOST_WORLDS]
-        world.before, world.lines = world.lines, {}
+        if len(world.lines) > 2 * count:
+            world.before, world.lines = world.lines, {}
+        if len(world.states) > _MOST_STATES:
+            world.forget()
         return world
 
     def trie(self, trie: dict[Any, Any]) -> dict[Any, Any]:
@@ -89,7 +99,7 @@ def _is_equal(trie: object, other: object) -> bool:
 
 
 class _World:
-    """The lines that were read with the same names, in the last text and in the one before it.
+    """The lines that were read with the same names; `before` are those that weren't read for the longest time.
 
     `kept` is alive as long as identities in `given` count.
     """
@@ -117,11 +127,6 @@ class _World:
             self.states.append(values)
         return number
 
-    @property
-    def is_full(self) -> bool:
-        """Whether too much is kept."""
-        return len(self.states) > _MOST_STATES
-
     def forget(self) -> None:
         """Keep nothing of all this."""
         self.lines, self.before, self.states, self._numbers = {}, {}, [], {}
@@ -132,7 +137,7 @@ class _Line(Record):
 
     Places of words count from its first one, characters from where that begins. `words` are those from `low` to `high`
     (exclusive) and their characters, if any beside it were looked at; `before` are tokens before it. The last `cut` of
-    these became others. A `named_at` of None is no change; `denies_none` is one.
+    these became others. `named` and `denied` are what the calls note with places, in a tuple; () for no change.
     """
 
     low: int
@@ -142,8 +147,8 @@ class _Line(Record):
     cut: int
     tokens: list[Copy]
     state: int
-    named_at: int | None
-    denies_none: bool
+    named: tuple[int, ...]
+    denied: tuple[Match | None, ...]
 
 
 def memo_in_use() -> LineMemo | None:
@@ -193,20 +198,20 @@ class LineReader:
         self._looking = [part for part in parts if hasattr(part, "_looked")]
         self._fields = state_fields(parts)
         self._initial = [getattr(part, name) for part, name in self._fields]
+        self._sizes = [size_of(value) for value in self._initial]
         kinds = [(type(part), name) for part, name in self._fields]
         named = _signature(names), names.meanings, names.chosen, text.has_shared_places, own["_explain"]
         given = named, kinds, [content_of(value) for value in self._initial]
-        self._world = memo.world(given, (names, self._initial), self._distinct)
-        if self._world.is_full:
-            self._world.forget()
+        self._world = memo.world(given, (names, self._initial), self._distinct, len(text.lines))
         self._distinct.asked = self._world.asked
         self._others = sorted(names.others)
+        self._headers = {id(header): at for at, header in names.definitions.headers.items()}
         self._before = 0  # the first word of the line before
         self._is_real = True  # whether the readers are in the state
         self._state = self._number()
 
     def read_line(self, first: int, last: int, is_statement: bool, is_followed: bool) -> None:
-        """Read the words of a line; `is_statement` and `is_followed` say whether a statement begins there and behind."""
+        """Read a line; `is_statement` and `is_followed` say whether a statement begins with it, and behind it."""
         if first >= self._own["_bounds"][0]:
             self._make_real()
             self._reader.pass_bounds(first)
@@ -224,7 +229,8 @@ class LineReader:
         if line is None:
             self._state = self._number()
             if made is not None and self._state is not None and key is not None:
-                self._world.lines.setdefault(key, []).append(made.replace(state=self._state))
+                alike = self._world.lines.get(key, [])[: _MOST_ALIKE - 1]
+                self._world.lines[key] = [made.replace(state=self._state), *alike]
 
     def finish(self) -> None:
         """Say what is left to say at the end of the text, whose words nobody watches any more."""
@@ -301,10 +307,10 @@ class LineReader:
                 made.words = range(words.start + first, words.stop + first)
             tokens.append(made)
         own = vars(self._calls)
-        if line.named_at is not None:
-            own["_named_at"] = line.named_at and first + line.named_at
-        if line.denies_none:
-            own["_denied"] = None
+        if line.named:
+            own["_named_at"] = line.named[0] and first + line.named[0]
+        if line.denied:
+            own["_denied"] = moved(line.denied[0], first)
         self._state, self._is_real = line.state, False
 
     def _make_real(self) -> None:
@@ -324,8 +330,8 @@ class LineReader:
     def _number(self) -> int | None:
         """Return the number of the state that the readers are in, None if it can't be compared."""
         values = [
-            None if (value := getattr(part, name)) is initial and is_constant(value) else (value,)
-            for (part, name), initial in zip(self._fields, self._initial, strict=True)
+            None if (value := getattr(part, name)) is initial and is_constant(value, size) else (value,)
+            for (part, name), initial, size in zip(self._fields, self._initial, self._sizes, strict=True)
         ]
         try:
             contents = tuple([each and content_of(each) for each in values])
@@ -363,7 +369,7 @@ class LineReader:
             own["_lists"] = {}
         cut = count - min(tokens.cut, count)
         back = count - min(tokens.low, tokens.cut, count)
-        if is_used or own["_lists"] or (self._calls.has_denied and own["_denied"] is not None):
+        if is_used or own["_lists"]:
             return None
         if len(problems) != told or problems.high >= 0 or len(text.assumed) != assumed:
             return None
@@ -371,24 +377,23 @@ class LineReader:
             return None
         before = saved[len(saved) - back :]
         for token, (kind, start, end, value, role) in before[: back - cut]:
-            if (token.kind, token.start - base, token.end - base, token.role) != (kind, start, end, role):
-                return None
-            if token.value is not value:
+            now = token.kind, token.start - base, token.end - base, token.role
+            if now != (kind, start, end, role) or token.value is not value:
                 return None
         low, high = min(self._words.low, first - 1), max(self._words.high + 1, last + 2)
         if low < 1 or high >= len(self._plain) or high - low > last - first + _MOST_WORDS:
             return None
         is_beside = low < first - 1 or high > last + 2
         made = [self._copy(token, base, first) for token in list.__getitem__(tokens, slice(count - cut, None))]
-        named_at = own["_named_at"] and own["_named_at"] - first if self._calls.has_named else None
+        named = (own["_named_at"] and own["_named_at"] - first,) if self._calls.has_named else ()
+        denied = (moved(own["_denied"], -first),) if self._calls.has_denied else ()
         return _Line(
             low - first, high - first, self._beside(low, high) if is_beside else (), [of for _, of in before], cut,
-            made, 0, named_at, self._calls.has_denied,
+            made, 0, named, denied,
         )  # fmt: skip
 
     def _copy(self, token: Token, base: int, first: int) -> Copy:
-        value, words = token.value, token.words
-        if isinstance(value, Header):
-            value = next(at for at, each in self._names.definitions.headers.items() if each is value) - first
+        words = token.words
+        value = self._headers[id(token.value)] - first if isinstance(token.value, Header) else token.value
         places = None if words is None else range(words.start - first, words.stop - first)
         return token.kind, token.start - base, token.end - base, value, token.role, places

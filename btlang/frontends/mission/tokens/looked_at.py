@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any, SupportsIndex
+    from typing import Any
 
 
 class LookedAt(list["Any"]):
@@ -26,11 +26,9 @@ class LookedAt(list["Any"]):
         if first <= last:
             self.low, self.high = min(self.low, first), max(self.high, last)
 
-    def _change(self, at: SupportsIndex | slice) -> None:
-        places = range(len(self))[at]  # type: ignore[index]
-        if isinstance(at, slice):
-            places = at.indices(len(self))[0]
-        self.cut = min(self.cut, places)  # type: ignore[type-var]
+    def _change(self, at: int | slice) -> None:
+        first = at.indices(len(self))[0] if isinstance(at, slice) else range(len(self))[at]
+        self.cut = min(self.cut, first)
 
     def __getitem__(self, at: Any) -> Any:
         if type(at) is slice:
@@ -55,9 +53,9 @@ class LookedAt(list["Any"]):
         self._note(0, len(self) - 1)
         return list.__eq__(self, other)
 
-    __hash__ = None  # type: ignore[assignment]
+    __hash__ = None
 
-    def __add__(self, other: list[Any]) -> list[Any]:  # type: ignore[override]
+    def __add__(self, other: list[Any]) -> list[Any]:
         return [*self, *other]
 
     def index(self, value: Any, *bounds: Any) -> int:
@@ -75,16 +73,16 @@ class LookedAt(list["Any"]):
         self._change(at)
         list.__setitem__(self, at, value)
 
-    def __delitem__(self, at: SupportsIndex | slice) -> None:
+    def __delitem__(self, at: Any) -> None:
         self._change(at)
         list.__delitem__(self, at)
 
-    def pop(self, at: SupportsIndex = -1) -> Any:
+    def pop(self, at: Any = -1) -> Any:
         self._change(at)
         self[at]
         return list.pop(self, at)
 
-    def insert(self, at: SupportsIndex, value: Any) -> None:
+    def insert(self, at: Any, value: Any) -> None:
         self._change(slice(at, None))
         list.insert(self, at, value)
 

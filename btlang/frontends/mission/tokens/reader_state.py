@@ -9,6 +9,7 @@ from btlang.frontends.mission.token import Token
 from btlang.frontends.mission.tokens.calls import Calls
 from btlang.support.record import Record
 from btlang.vocabulary.entry import Entry
+from btlang.vocabulary.match import Match
 from btlang.vocabulary.reading_context import Known
 
 TYPE_CHECKING = False
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 
     Fields: TypeAlias = list[tuple[object, str]]
 
-_LARGE = 8  # the length of a container that no line fills
+_LARGE = 16  # items from which on a container that is as large as it was is taken for a table of the language
 _READERS = "btlang.frontends.mission.tokens."
 
 _PASSING = frozenset(("_origin", "_root", "_shares", "_bounds", "_looked", "_found", "_told", "_untold", "_verb_forms"))
@@ -80,9 +81,14 @@ def _is_service(value: object) -> bool:
     return callable(value) or type(value).__module__.startswith("btlang.")
 
 
-def is_constant(value: object) -> bool:
-    """Return whether a value that is still the first one has not changed."""
-    return not isinstance(value, list | dict | set) or len(value) > _LARGE
+def size_of(value: object) -> int:
+    """Return how many items a value has that lines may change in place; -1 for others."""
+    return len(value) if isinstance(value, list | dict | set) else -1
+
+
+def is_constant(value: object, size: int) -> bool:
+    """Return whether a value that is still the first one has not changed; its `size` was the first one's."""
+    return size < 0 or (size > _LARGE and size_of(value) == size)
 
 
 def content_of(value: Any) -> object:
@@ -109,6 +115,14 @@ def copied(value: Any) -> Any:
     if type(value) is tuple:
         return tuple([copied(each) for each in value])
     return set(value) if type(value) is set else value
+
+
+def moved(match: Match | None, words: int) -> Match | None:
+    """Return a phrase so many words further on."""
+    if match is None:
+        return None
+    values = [value.replace(first=value.first + words, last=value.last + words) for value in match.values]
+    return match.replace(last=match.last + words, values=tuple(values))  # type: ignore[no-any-return]
 
 
 def _is_plain(values: dict[Any, Any]) -> bool:
