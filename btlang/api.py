@@ -10,7 +10,7 @@ from importlib import import_module
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.frontends.mission.reader import DEFAULT_PARSER, read_mission
-from btlang.frontends.mission.tokens.line_memo import memo_in_use
+from btlang.frontends.mission.tokens.lines_in_use import in_use
 from btlang.frontends.table import frontend_of, read_text
 from btlang.passes import compile_mission, errors_of, lower_mission, run_passes
 from btlang.passes.compilation import Compilation
@@ -87,7 +87,7 @@ def parse_tree(
 
 
 def _warnings_of(source: Source, vocabulary: Lexicon, parser: str, known: Mapping[str, Known]) -> list[Diagnostic]:
-    memo, depends = memo_in_use(), (source.text, source.name, vocabulary, parser, known)
+    memo, depends = in_use.memo, (source.text, source.name, vocabulary, parser, known)
     if memo is not None and memo.warnings is not None and memo.warnings[0] == depends:
         return memo.warnings[1]
     read = read_mission(source, vocabulary, parser, known)

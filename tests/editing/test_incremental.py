@@ -12,7 +12,7 @@ import pytest
 from btlang.api import parse_tree
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.formats import to_data
-from btlang.frontends.mission.tokens import line_memo
+from btlang.frontends.mission.tokens import lexer
 from btlang.frontends.mission.tokens.line_memo import LineMemo, LineReader
 from btlang.printer.mission import mission_lines, printer_of
 from btlang.text.source import Source
@@ -113,7 +113,7 @@ def all_of(text: str, parser: str, memo: LineMemo | None) -> object:
 @pytest.mark.parametrize("parser", ["shunting-yard", "lark"])
 @pytest.mark.parametrize("seed", range(amount(2, 100)))
 def test_an_edited_text_is_read_as_a_new_one(seed: int, parser: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(line_memo, "_FEWEST_LINES", 1)
+    monkeypatch.setattr(lexer, "FEWEST_LINES", 1)
     replayed = 0
 
     def replay(self: LineReader, *given: Any) -> None:

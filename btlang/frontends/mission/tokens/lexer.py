@@ -15,8 +15,7 @@ from btlang.frontends.mission.tokens.counted_things import with_counted_things
 from btlang.frontends.mission.tokens.ended_rules import with_ends
 from btlang.frontends.mission.tokens.framed_rules import with_framed_rules
 from btlang.frontends.mission.tokens.left_out import find_unplaced
-from btlang.frontends.mission.tokens.line_memo import LineReader, memo_for, watch
-from btlang.frontends.mission.tokens.looked_at import LookedAt
+from btlang.frontends.mission.tokens.lines_in_use import in_use
 from btlang.frontends.mission.tokens.other_things import (
     with_goals_there,
     with_other_things,
@@ -65,6 +64,12 @@ from btlang.text.source import Source, Span
 from btlang.text.words import Words, split
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import Known, ReadingContext
+
+FEWEST_LINES = 100
+"""The lines of a text from which on it is worth it to keep them for the next one."""
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.frontends.mission.tokens.line_memo import LineReader
 
 
 class Lexer:
@@ -148,12 +153,15 @@ class Lexer:
 
     def _read_lines(self, explain: bool) -> None:
         """Read all lines, those that an editor's last text had by what was kept of them."""
-        memo = memo_for(self.text)
-        if memo is None:
+        memo = in_use.memo
+        if memo is None or len(self.text.lines) < FEWEST_LINES:
             reader = WordReader(self.text, self.names, self.context, self.tokens, self.problems, explain)
             self._lines(reader)
             reader.finish()
             return
+        from btlang.frontends.mission.tokens.line_memo import LineReader, watch  # only editors read so
+        from btlang.frontends.mission.tokens.looked_at import LookedAt
+
         watch(self.text, self.names, memo)
         self.tokens, self.problems = tokens, problems = LookedAt(), LookedAt(self.problems)
         watched = WordReader(self.text, self.names, self.context, tokens, problems, explain)

@@ -11,11 +11,11 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections.abc import Iterator
 from contextlib import contextmanager
-from contextvars import ContextVar
 
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.frontends.mission.symbols.names import Names
 from btlang.frontends.mission.token import Header, Token
+from btlang.frontends.mission.tokens.lines_in_use import in_use
 from btlang.frontends.mission.tokens.looked_at import LookedAt, LookedUp, WordsLookedUp
 from btlang.frontends.mission.tokens.reader_state import (
     NotComparableError,
@@ -42,14 +42,11 @@ if TYPE_CHECKING:
     Key: TypeAlias = tuple[object, ...]
     Copy: TypeAlias = tuple[str, int, int, Any, str, range | None]
 
-_FEWEST_LINES = 100  # of a text that is worth it
 _MOST_WORDS, _MOST_TOKENS = 200, 40  # beside a line
 _MOST_WORLDS = 4  # sets of names with which lines are kept
 _FIRST = 8  # words and tokens of a text whose readers may ask how many there are before them
 _MOST_STATES = 20_000
 _MOST_ALIKE = 4  # lines with the same words in the same state, beside others
-
-_used: ContextVar[LineMemo | None] = ContextVar("lines", default=None)
 
 
 class LineMemo:
@@ -64,11 +61,11 @@ class LineMemo:
     @contextmanager
     def used(self) -> Iterator[None]:
         """Read texts with these lines, and keep theirs."""
-        token = _used.set(self)
+        outer, in_use.memo = in_use.memo, self
         try:
             yield
         finally:
-            _used.reset(token)
+            in_use.memo = outer
 
     def world(self, given: object, kept: object, distinct: WordsLookedUp, count: int) -> _World:
         """Return the lines that were read with the same names, where the same words were missing in the text.
@@ -149,16 +146,6 @@ class _Line(Record):
     state: int
     named: tuple[int, ...]
     denied: tuple[Match | None, ...]
-
-
-def memo_in_use() -> LineMemo | None:
-    """Return the memo with which texts are read, None for most."""
-    return _used.get()
-
-
-def memo_for(text: Words) -> LineMemo | None:
-    """Return the memo with which a text is read, None for most."""
-    return _used.get() if len(text.lines) >= _FEWEST_LINES else None
 
 
 def watch(text: Words, names: Names, memo: LineMemo) -> None:
