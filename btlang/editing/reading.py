@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from btlang.passes.compilation import Origins
 
 
-_MOST_FILES = 4  # whose lines are kept
+_MOST_FILES = 3  # whose lines are kept
 _lines: dict[str, LineMemo] = {}
 """The lines of the texts that were read last, by their files."""
 

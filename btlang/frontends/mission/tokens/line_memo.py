@@ -43,9 +43,9 @@ if TYPE_CHECKING:
     Copy: TypeAlias = tuple[str, int, int, Any, str, range | None]
 
 _MOST_WORDS, _MOST_TOKENS = 200, 40  # beside a line
-_MOST_WORLDS = 4  # sets of names with which lines are kept
+_MOST_WORLDS = 3  # sets of names with which lines are kept
 _FIRST = 8  # words and tokens of a text whose readers may ask how many there are before them
-_MOST_STATES = 20_000
+_MOST_STATES = 10_000
 _MOST_ALIKE = 4  # lines with the same words in the same state, beside others
 
 
@@ -70,12 +70,12 @@ class LineMemo:
     def world(self, given: object, kept: object, distinct: WordsLookedUp, count: int) -> _World:
         """Return the lines that were read with the same names, where the same words were missing in the text.
 
-        It keeps four times as many as the `count` of the text, those that were read last.
+        It keeps about twice as many as the `count` of the text, those that were read last.
         """
         found = (each for each in self._worlds if each.given == given and distinct.agrees(each.asked))
         world = next(found, None) or _World(given, kept)
         self._worlds = [world, *(each for each in self._worlds if each is not world)][:_MOST_WORLDS]
-        if len(world.lines) > 2 * count:
+        if len(world.lines) > count:
             world.before, world.lines = world.lines, {}
         if len(world.states) > _MOST_STATES:
             world.forget()
