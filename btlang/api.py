@@ -89,7 +89,8 @@ def parse_tree(
 def _warnings_of(source: Source, vocabulary: Lexicon, parser: str, known: Mapping[str, Known]) -> list[Diagnostic]:
     memo, depends = in_use.memo, (source.text, source.name, vocabulary, parser, known)
     if memo is not None and memo.warnings is not None and memo.warnings[0] == depends:
-        return memo.warnings[1]
+        kept: list[Diagnostic] = memo.warnings[1]
+        return kept
     read = read_mission(source, vocabulary, parser, known)
     warnings = run_passes(Compilation(vocabulary, read.mission, warnings=read.warnings)).warnings
     if memo is not None and not read.mission.includes:

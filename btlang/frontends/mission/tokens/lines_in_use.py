@@ -6,12 +6,12 @@ from _thread import _local  # `threading` and `contextvars` take longer to impor
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.frontends.mission.tokens.line_memo import LineMemo
+    from typing import Any
 
 
 class _InUse(_local):
-    memo: LineMemo | None = None
+    memo: Any = None
 
 
 in_use = _InUse()
-"""Its `memo` is that of the thread."""
+"""Its `memo` is the LineMemo with which the thread reads, if there is one."""
