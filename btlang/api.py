@@ -10,6 +10,7 @@ from importlib import import_module
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.frontends.mission.reader import DEFAULT_PARSER, read_mission
+from btlang.frontends.mission.tokens.lines_in_use import in_use
 from btlang.frontends.table import frontend_of, read_text
 from btlang.passes import compile_mission, errors_of, lower_mission, run_passes
 from btlang.passes.compilation import Compilation
@@ -86,8 +87,15 @@ def parse_tree(
 
 
 def _warnings_of(source: Source, vocabulary: Lexicon, parser: str, known: Mapping[str, Known]) -> list[Diagnostic]:
+    memo, depends = in_use.memo, (source.text, source.name, vocabulary, parser, known)
+    if memo is not None and memo.warnings is not None and memo.warnings[0] == depends:
+        kept: list[Diagnostic] = memo.warnings[1]
+        return kept
     read = read_mission(source, vocabulary, parser, known)
-    return run_passes(Compilation(vocabulary, read.mission, warnings=read.warnings)).warnings
+    warnings = run_passes(Compilation(vocabulary, read.mission, warnings=read.warnings)).warnings
+    if memo is not None and not read.mission.includes:
+        memo.warnings = depends, warnings
+    return warnings
 
 
 @contextmanager

@@ -8,6 +8,7 @@ from btlang.api import Mission
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError
 from btlang.editing.words import RobotWords
 from btlang.frontends.mission.reader import lexed
+from btlang.frontends.mission.tokens.line_memo import LineMemo
 from btlang.frontends.table import frontend_of
 from btlang.passes.lint.tree_lints import UNDECLARED
 from btlang.support.gc_pause import gc_paused
@@ -19,10 +20,24 @@ if TYPE_CHECKING:
     from btlang.passes.compilation import Origins
 
 
+_MOST_FILES = 3  # whose lines are kept
+_lines: dict[str, LineMemo] = {}
+"""The lines of the texts that were read last, by their files."""
+
+
+def _memo(name: str) -> LineMemo:
+    """Return the lines of the latest texts of a file."""
+    memo = _lines.pop(name, None) or LineMemo()
+    while len(_lines) >= _MOST_FILES:
+        del _lines[next(iter(_lines))]
+    return _lines.setdefault(name, memo)
+
+
 class TextReading:
     """A text that was read: its mission, None for one that doesn't compile, and what is wrong with it.
 
-    It doesn't notice changes of the files that the text names.
+    It doesn't notice changes of the files that the text names. Lines that are as they were in the last text of the same
+    file aren't read again.
     """
 
     def __init__(self, source: Source, words: RobotWords) -> None:
@@ -32,7 +47,7 @@ class TextReading:
         self.problems: Sequence[Diagnostic] = ()
         self._key = _cache_key(source, words)
         self._lexer: Lexer | None = None
-        with gc_paused:
+        with gc_paused, _memo(source.name).used():
             try:
                 self.mission = words.mission(source, self.origins)
             except MissionError as error:
@@ -47,7 +62,7 @@ class TextReading:
         used.
         """
         if self._lexer is None:
-            with gc_paused:
+            with gc_paused, _memo(self.source.name).used():
                 self._lexer = lexed(self.source, self.words.vocabulary(self.source))
         return self._lexer
 

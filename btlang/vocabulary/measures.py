@@ -106,7 +106,7 @@ class Measures:
         if is_told or self.quantity(text, at) is not None:
             return None
         minute = int(hour % 12) * 60 + (minutes or 0)
-        has_halves = not self._halves.isdisjoint(text.distinct)
+        has_halves = not text.distinct.isdisjoint(self._halves)
         behind = self._end_of_span(text, at, end) if has_halves else None
         beside = behind or (self._latest_told(text, at) if has_halves else None)
         if beside is None:

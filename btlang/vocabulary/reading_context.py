@@ -119,7 +119,7 @@ class ReadingContext:
             found = shared if shared is not None and (found is None or shared[1] > found[1]) else found
         if found is None and kind in WORLD:
             named = self._named_after(kind, text, at) if text.words[at] in self.before else None
-            if named is None and not self.values.ones.isdisjoint(text.distinct):
+            if named is None and not text.distinct.isdisjoint(self.values.ones):
                 named = self.values.antecedents.named(kind, text, at)
             named = named or self.values.shared_heads.behind_last(kind, text, at) or self._said_again(kind, text, at)
             latest = self.latest.get(kind, "") if kind == PLACE and named is None and chosen is not None else ""

@@ -24,8 +24,8 @@ def find_beside_errors(
     if len(broken) in (0, len(sentences)) or any(span.source is not source for span in wrong):
         return []
     rest = source.text
-    for first, last in broken:
-        rest = rest[:first] + " " * (last - first) + rest[last:]
+    for first, last in reversed(broken):
+        rest = f"{rest[:first]} {rest[last:]}"  # the same while one sentence is typed; only what is before it counts
     try:
         found = warnings_of(Source(rest, source.name))
     except MissionError:

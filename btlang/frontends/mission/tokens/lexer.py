@@ -15,6 +15,7 @@ from btlang.frontends.mission.tokens.counted_things import with_counted_things
 from btlang.frontends.mission.tokens.ended_rules import with_ends
 from btlang.frontends.mission.tokens.framed_rules import with_framed_rules
 from btlang.frontends.mission.tokens.left_out import find_unplaced
+from btlang.frontends.mission.tokens.lines_in_use import in_use
 from btlang.frontends.mission.tokens.other_things import (
     with_goals_there,
     with_other_things,
@@ -64,6 +65,12 @@ from btlang.text.words import Words, split
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import Known, ReadingContext
 
+FEWEST_LINES = 100
+"""The lines of a text from which on it is worth it to keep them for the next one."""
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.frontends.mission.tokens.line_memo import LineReader
+
 
 class Lexer:
     """Reads one source. `tokens` are raw tokens, `problems` what was unknown; both are complete after construction.
@@ -93,9 +100,7 @@ class Lexer:
         self.context = ReadingContext(self.vocabulary.values)
         self.context.keys = self.names.chosen
         self.tokens: list[Token] = []
-        self._words = WordReader(self.text, self.names, self.context, self.tokens, self.problems, explain)
-        self._lines()
-        self._words.finish()
+        self._read_lines(explain)
         self.problems += with_repeats_apart(self.tokens, source)
         with_counted_answers(self.tokens, self.vocabulary)
         self.problems += with_replacements(self.tokens, self.vocabulary, source)
@@ -146,11 +151,31 @@ class Lexer:
         included = self.names.included
         return Lexer(source, self._given, explain=False, load=lambda path, _: included.get(path), known=self._shared)
 
-    def _lines(self) -> None:
+    def _read_lines(self, explain: bool) -> None:
+        """Read all lines, those that an editor's last text had by what was kept of them."""
+        memo = in_use.memo
+        if memo is None or len(self.text.lines) < FEWEST_LINES:
+            reader = WordReader(self.text, self.names, self.context, self.tokens, self.problems, explain)
+            self._lines(reader)
+            reader.finish()
+            return
+        from btlang.frontends.mission.tokens.line_memo import LineReader, watch  # only editors read so
+        from btlang.frontends.mission.tokens.looked_at import LookedAt
+
+        watch(self.text, self.names, memo)
+        self.tokens, self.problems = tokens, problems = LookedAt(), LookedAt(self.problems)
+        watched = WordReader(self.text, self.names, self.context, tokens, problems, explain)
+        lines = LineReader(watched, self.text, self.names, memo)
+        self._lines(lines)
+        lines.finish()
+        self.tokens, self.problems = tokens.plain(), problems.plain()
+
+    def _lines(self, reader: WordReader | LineReader) -> None:
         """Line ends, indents and dedents around the tokens of each line, as in Python."""
         lines = self.text.lines
         indents = [lines[0].indent] if lines else [0]
         opens_block = is_too_far = False
+        ends = self._begins_statement(0, indents[0])
         for number, line in enumerate(lines):
             was_too_far, is_too_far = is_too_far, line.indent > indents[-1] and not opens_block
             if line.indent > indents[-1]:
@@ -169,14 +194,18 @@ class Lexer:
                     self.problems.append(diagnostic("BT007", self.text.span(line.first, line.first)))
             if number and not opens_block:
                 self._mark("newline", line.first)
-            if line.indent <= indents[0] and line.first not in self.text.going_on:
-                self._words.end_statement()
-            self._words.read(line.first, line.last)
+            begins, ends = ends, self._begins_statement(number + 1, indents[0])
+            reader.read_line(line.first, line.last, begins, ends)
             opens_block = bool(self.tokens) and self.tokens[-1].kind == "colon"  # politeness may stand behind it
         if opens_block:
             self.problems.append(diagnostic("BT027", self._last_span()))
         for _ in indents[1:]:
             self._mark("dedent", len(self.text.words) - 1)
+
+    def _begins_statement(self, number: int, margin: int) -> bool:
+        """Whether a statement begins with a line, which may be behind the last one."""
+        line = self.text.lines[number] if number < len(self.text.lines) else None
+        return line is None or (line.indent <= margin and line.first not in self.text.going_on)
 
     def _mark(self, kind: str, at: int) -> None:
         start = self.text.starts[at] if at < len(self.text.starts) else len(self.text.source.text)

@@ -105,10 +105,10 @@ class Mentions:
         somebody = self._vocabulary.negative_subjects.keys()
         names_none = all(slot.type != PERSON for slot in entry.slots)
         is_somebody = entry.phrases and not somebody.isdisjoint(entry.phrases[0].split())
-        exception = self._vocabulary.word("unless") in self._text.words[self._named_at : match.last]
-        if exception and self._named_at and PERSON in self._context.latest:
-            return  # `bring Alice the cup, unless somebody is near. Tell her "Hi"`
         if names_none and (is_somebody or _MEETS in entry.achieves):
+            exception = self._vocabulary.word("unless") in self._text.words[self._named_at : match.last]
+            if exception and self._named_at and PERSON in self._context.latest:
+                return  # `bring Alice the cup, unless somebody is near. Tell her "Hi"`
             places = [value for value in match.values if value.type in _WHERE and not value.more]
             parts = tuple((_WHERE[value.type], value.text) for value in places if value.text[:1] not in ODD)
             self.note_somebody(parts, SPEAKING if entry.id == SOMEBODY_SAYS else "nearest")

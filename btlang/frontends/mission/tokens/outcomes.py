@@ -68,7 +68,7 @@ class Outcomes(Limits):
         if role == WORKS and self._text.words[at] in self._vocabulary.joining and tokens[-2:-1] != []:
             if tokens[-2].kind not in (*JOINTS, *STATEMENT_ENDS):
                 tokens.insert(-1, Token("comma", token.start, token.start))  # `pick it up and if that works, wave`
-        if role == "for" and begins(tokens[:-1]) and (behind := self._phrase(match.last)) is not None:
+        if role == "for" and begins(tokens[-2:-1]) and (behind := self._phrase(match.last)) is not None:
             if behind.meaning.role == "command":  # `for 5 minutes wave`
                 tokens.append(Token("comma", token.end, token.end))
                 return match.last

@@ -123,14 +123,23 @@ class WordReader:
         self._shares = False  # the match at hand has the words of that condition in front
         self._root = vocabulary.trie  # where the match at hand was found
 
-    def read(self, at: int, last: int) -> None:
-        """Reads the words of a line from one to another (exclusive)."""
+    def read_line(self, first: int, last: int, is_statement: bool, is_followed: bool = True) -> None:
+        """Read the words of a line from one to another (exclusive), with which a statement may begin."""
+        if is_statement:
+            self.end_statement()
+        self._read(first, last)
+
+    def pass_bounds(self, at: int) -> None:
+        """Know the values that are known at a word."""
+        self._bounds = self._bounds[bisect_right(self._bounds, at) :]
+        self._context.set_known(self._names.known_at(at))
+
+    def _read(self, at: int, last: int) -> None:
         words, others, tokens = self._text.words, self._names.others, self._tokens
         self._origin = None
         while at < last:
             if at >= self._bounds[0]:
-                self._bounds = self._bounds[bisect_right(self._bounds, at) :]
-                self._context.set_known(self._names.known_at(at))
+                self.pass_bounds(at)
             if at in others:
                 at = self._no_command(at)
             elif tokens and tokens[-1].kind in BEFORE_ASIDE and (end := self._order.aside(at)):
