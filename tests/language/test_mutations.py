@@ -13,7 +13,7 @@ from tests.profiles import amount
 @pytest.mark.long
 def test_mutations() -> None:
     cures: Counter[str] = Counter()
-    for mutant in mutants(amount(120, 3600), 3):
+    for mutant in mutants(amount(320, 3600), 3):
         result = checked(mutant)
         assert not result.crash, f"{mutant.where}\n{mutant.text}\n{result.crash}"
         if mutant.kind == "misspelt" and result.tree is None:

@@ -54,14 +54,14 @@ def say_subject_first(text: Words, vocabulary: Lexicon) -> None:
     for at in reversed([at for at in range(len(words) - 3) if words[at] in inverted]):
         end = next(i for i in range(at, len(words)) if words[i] in ENDING or words[i] == ",")
         begins = at == text.earlier(at)[1] or words[at - 1] in (*vocabulary.joining, ",")
-        if not begins or words[end] != ",":
-            continue  # `should I go?`
+        if not begins or words[end] != "," or words[at + 1] in vocabulary.trie.get(words[at], ()):
+            continue  # `should I go?`, `should one be missing, A`
         found = [each for verb in range(at + 2, end) for each in _straight(text, at, verb, end, vocabulary)]
         _, verb, rest, said = max(found, key=lambda each: each[0], default=(0, at, at, []))
         if said:
             text.drop(verb + 1, rest)
             text.replace(verb, said)
-        text.replace(at, [vocabulary.word("if")])
+            text.replace(at, [vocabulary.word("if")])
 
 
 def _straight(
