@@ -91,7 +91,7 @@ def test_no_help_shows_what_only_programs_understand(capsys: pytest.CaptureFixtu
         assert " object at " not in capsys.readouterr().out
 
 
-@cases("name", [*CASES], 11)
+@cases("name", [*CASES], 6)
 def test_the_command_of_a_copy_runs_in_its_folder(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

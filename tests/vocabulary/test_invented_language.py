@@ -27,6 +27,7 @@ from btlang.vocabulary.language_tables import WORD_LISTS
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.shipped import ENGLISH, keyword_files, shipped
 from btlang.vocabulary.value_type import Unit, ValueType
+from tests.profiles import cases
 
 GOOD = Path(__file__).parents[1] / "samples" / "good"
 # What a mission includes is in English; ids and ports of nodes, and the attribute `name`, are so in every language.
@@ -115,7 +116,7 @@ def invented_vocabulary() -> Lexicon:
     return vocabulary.with_names(by_type, features)
 
 
-@pytest.mark.parametrize("sample", SAMPLES, ids=[s.stem for s in SAMPLES])
+@cases("sample", SAMPLES, usual=27, ids=lambda sample: sample.stem)
 @pytest.mark.parametrize("parser", ["shunting-yard", "lark"])
 def test_a_mission_in_invented_words_has_the_same_tree_and_is_said_in_them(sample: Path, parser: str) -> None:
     text = read_source(str(sample)).text
