@@ -17,7 +17,12 @@ from btlang.passes.lint.asked_too_late import find_asked_too_late
 from btlang.passes.lint.chosen_in_a_branch import find_chosen_in_a_branch
 from btlang.passes.lint.definitions import find_line_ends, find_rules_only, find_unused
 from btlang.passes.lint.known_people import find_known_only
-from btlang.passes.lint.reactions import find_commands_behind_conditions, find_conditions_behind_rules, find_short_stops
+from btlang.passes.lint.reactions import (
+    find_commands_behind_conditions,
+    find_conditions_behind_rules,
+    find_late_stops,
+    find_short_stops,
+)
 from btlang.passes.lint.tree_lints import (
     find_busy_loops,
     find_cut_off,
@@ -70,6 +75,7 @@ PASSES = (
     Pass("goes on at once", find_short_stops, needs_text=True),
     Pass("conditions behind rules", find_conditions_behind_rules, needs_text=True),
     Pass("commands behind conditions", find_commands_behind_conditions, needs_text=True),
+    Pass("late stops", find_late_stops, needs_text=True),
     Pass("asked once", find_asked_once, needs_text=True),
     Pass("asked too late", find_asked_too_late, needs_text=True),
     Pass("half turns", find_half_turns, needs_text=True),

@@ -1,4 +1,4 @@
-"""Lints on how far rules and conditions reach: stops that take no time (BT256), and what stands behind either."""
+"""Lints on how far rules and conditions reach, and on stops: some take no time (BT256), others come late."""
 
 from __future__ import annotations
 
@@ -98,3 +98,17 @@ def find_commands_behind_conditions(compilation: Compilation) -> Iterator[Diagno
 def _is_behind(form: ast.If) -> bool:
     """Whether a condition without an alternative stands behind its command."""
     return form.otherwise is None and form.body.span.end <= form.condition.span.start
+
+
+def find_late_stops(compilation: Compilation) -> Iterator[Diagnostic]:
+    """Report `A. Stop at noon`: once A is done the robot waits until noon, or A is to end then."""
+    word = compilation.vocabulary.word
+    for body in ast.bodies(compilation.mission):
+        for node in compilation.syntax(body):
+            items = node.items if isinstance(node, ast.Chain) and node.operator == "sequence" else ()
+            for before, wait, stop in zip(items, items[1:], items[2:], strict=False):
+                if isinstance(wait, ast.WaitTime) and _stops(stop) and stop.span.start < wait.span.start:
+                    done, time = before.span.text, wait.time
+                    whole = Span(before.span.source, before.span.start, max(stop.span.end, wait.span.end))
+                    late = f"{word('wait_until')} {time}, {word('then')} {stop.span.text.lower()}"
+                    yield two_readings(whole, f"{done}, {word('then')} {late}", f"{done} {word('until')} {time}")

@@ -198,6 +198,16 @@ def find_ended_rounds(compilation: Compilation) -> Iterator[Diagnostic]:
                 return
 
 
+def _asked_from_here(node: ast.Ast) -> list[str]:
+    """Return the people whom a list of questions, or a round for each of them, asks from where the robot is."""
+    phrases = _phrases(ast.parents_first(node))
+    questions = [each for each in phrases if each.entry.id == ASK]
+    if not isinstance(node, ast.ForEach) or not questions:
+        return [_person_of(each) for each in questions]
+    drives = any(drives_robot(each.entry) for each in phrases[: phrases.index(questions[0])])
+    return [] if drives or node.kind != PERSON else [*node.values]
+
+
 def find_distant_questions(compilation: Compilation) -> Iterator[Diagnostic]:
     """Report a question to somebody by name, or at a place, before which nothing moves the robot or asks about them.
 
@@ -209,12 +219,11 @@ def find_distant_questions(compilation: Compilation) -> Iterator[Diagnostic]:
     phrases = _phrases(nodes)
     if all(each.entry.id != ASK and "|" not in "".join(text for _, text in each.arguments) for each in phrases):
         return  # as nearly always: nobody is asked, and nothing is chosen by what it is like
-    for node in (node for node in nodes if isinstance(node, ast.Chain) and ast.is_list(node)):
-        asked = [_person_of(each) for each in _phrases(node.items) if each.entry.id == ASK]
+    for node in (node for node in nodes if isinstance(node, ast.ForEach) or ast.is_list(node)):
+        asked = _asked_from_here(node)
         if len({*asked} - {""}) > 1:  # from beside one of them, the others are asked from afar
-            word = vocabulary.word
-            all_of = joined(asked, word("and"))
-            fixed = f"{' '.join(vocabulary.asking['journey'])} {all_of} {word('and')} ask each of them ..."
+            all_of = joined(asked, joint := vocabulary.word("and"))
+            fixed = f"{' '.join(vocabulary.asking['journey'])} {all_of} {joint} ask each of them ..."
             yield diagnostic("BT149", node.span, words=node.span.text, person=all_of, fixed=fixed)
             return
     sights = {id(node.condition) for node in nodes if isinstance(node, ast.If)}
