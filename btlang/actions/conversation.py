@@ -114,15 +114,25 @@ def has_heard(robot: Listening, text: str) -> bool:
     return _among(robot, robot.ears.since(0), text)
 
 
-def somebody_says(robot: Listening, text: str = "") -> bool:
-    """Return whether somebody has said these words, or anything, since the last check. Unknown as in `has_heard`."""
+def somebody_says(robot: Listening, text: str) -> bool:
+    """Return whether somebody has said these words since the last check. Unknown as in `has_heard`."""
     return _among(robot, robot.ears.news(text, robot.time), text)
 
 
-def person_says(robot: Listening, person: str, text: str = "") -> bool:
+def person_says(robot: Listening, person: str, text: str) -> bool:
     """Return the same for one person. A speaker whose voice isn't recognised may be that person."""
     heard = robot.ears.news(text, robot.time)
     return _among(robot, [each for each in heard if each.who in (person, "")], text)
+
+
+def somebody_speaks(robot: Listening) -> bool:
+    """Return whether somebody has said anything since the last check. Unknown as in `has_heard`."""
+    return somebody_says(robot, "")
+
+
+def person_speaks(robot: Listening, person: str) -> bool:
+    """Return the same for one person, as in `person_says`."""
+    return person_says(robot, person, "")
 
 
 def answers(texts: Iterable[str], body: Body) -> Expected:
