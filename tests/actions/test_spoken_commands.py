@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 import btlang
-from btlang.actions.conversation import answer_is, ask, meaning_of
+from btlang.actions.conversation import answer_is, answer_number, ask, meaning_of
+from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.robot import RobotError
 from btlang.robots.spoken_commands import SpokenCommands, choices
 from btlang.run.bus import INLINE
@@ -97,6 +98,34 @@ def test_a_rule_hears_what_is_said_since_it_looked_last() -> None:
                 session.robot.hear("Well, hello robot!", "Alice")
             prepared.tick()
     assert greeted == ["Good day", "Good day"]
+
+
+def test_a_rule_hears_that_somebody_speaks_whatever_they_say() -> None:
+    mission = btlang.parse_tree('whenever Alice speaks: say "Yes?"\nwait 3 s, then wait 3 s')
+    greeted: list[str] = []
+    with btlang.Session() as session:
+        prepared = session.prepare(mission, speed="max", sinks=[Greetings(greeted)])
+        for at in range(150):
+            if at in (20, 60, 90):
+                session.robot.hear("nice weather", "Bob" if at == 60 else "Alice")
+            prepared.tick()
+    assert greeted == ["Yes?", "Yes?"]
+
+
+@pytest.mark.parametrize(
+    ("answer", "holds"), [("8", True), ("it is about seven", True), ("6.5 or so", False), ("twenty-five", True)]
+)
+def test_the_number_in_an_answer_is_compared(answer: str, holds: bool) -> None:
+    with btlang.Session() as session:
+        session.robot.ears.answer = answer
+        assert bool(answer_number(session.robot, at_least=7)) is holds
+
+
+def test_an_answer_without_a_number_compares_with_none() -> None:
+    with btlang.Session() as session:
+        session.robot.ears.answer = "a lot"
+        with pytest.raises(ActionFailed, match="no number"):
+            answer_number(session.robot, above=7)
 
 
 def test_an_answer_is_none_to_a_question_that_could_not_be_asked() -> None:
