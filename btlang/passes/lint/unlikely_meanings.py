@@ -199,13 +199,13 @@ def find_ended_rounds(compilation: Compilation) -> Iterator[Diagnostic]:
 
 
 def _asked_from_here(node: ast.Ast) -> list[str]:
-    """Return the people whom a list of questions, or a round for each of them, asks from where the robot is."""
+    """Return the people by name whom a list of questions, or a round for each, asks from where the robot is."""
     phrases = _phrases(ast.parents_first(node))
     questions = [each for each in phrases if each.entry.id == ASK]
     if not isinstance(node, ast.ForEach) or not questions:
         return [_person_of(each) for each in questions]
     drives = any(drives_robot(each.entry) for each in phrases[: phrases.index(questions[0])])
-    return [] if drives or node.kind != PERSON else [*node.values]
+    return [] if drives or node.kind != PERSON else [name for name in node.values if name in node.span.text]
 
 
 def find_distant_questions(compilation: Compilation) -> Iterator[Diagnostic]:
