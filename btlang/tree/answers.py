@@ -54,7 +54,7 @@ def with_answers(mission: ast.Program) -> tuple[ast.Program, list[Diagnostic]]:
         nodes = ast.parents_first(root)
         if any(map(_is_told, nodes)):
             problems.extend(told for node in nodes if isinstance(node, ast.Chain) for told in _lost_answers(node))
-        if not asks(root):
+        if not any(_is_one(each, ABOUT_ANSWERS) for each in nodes):
             return root
         return fold(
             root, ast.parts, lambda node, done: _go_on(_gather(_ask_until(ast.with_parts(node, done)), problems))
@@ -68,7 +68,11 @@ def with_answers(mission: ast.Program) -> tuple[ast.Program, list[Diagnostic]]:
 
 def asks(node: ast.Ast, ids: Container[str] = ABOUT_ANSWERS) -> bool:
     """Whether a condition of these, by default one about an answer, is in a node."""
-    return any(isinstance(each, ast.Phrase) and each.entry.id in ids for each in ast.parents_first(node))
+    return any(_is_one(each, ids) for each in ast.parents_first(node))
+
+
+def _is_one(node: ast.Ast, ids: Container[str]) -> bool:
+    return isinstance(node, ast.Phrase) and node.entry.id in ids
 
 
 def _is_told(node: ast.Ast) -> bool:

@@ -7,6 +7,7 @@ from itertools import pairwise
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic, two_readings
 from btlang.passes.compilation import Compilation
+from btlang.passes.lint.two_readings import is_behind
 from btlang.text.source import Span
 from btlang.tree import ast
 from btlang.vocabulary.capabilities import HEARS
@@ -15,15 +16,19 @@ from btlang.vocabulary.lexicon import Lexicon
 _STOP = "Stop"
 
 
+def _sequences(compilation: Compilation) -> Iterator[ast.Chain]:
+    """Yield what is done one after the other."""
+    nodes = (node for body in ast.bodies(compilation.mission) for node in compilation.syntax(body))
+    yield from (node for node in nodes if isinstance(node, ast.Chain) and node.operator == "sequence")
+
+
 def find_short_stops(compilation: Compilation) -> Iterator[Diagnostic]:
     """Report the rules beside other commands whose reaction ends with a stop, which takes no time."""
-    for body in ast.bodies(compilation.mission):
-        for node in compilation.syntax(body):
-            items = node.items if isinstance(node, ast.Chain) and node.operator == "sequence" else ()
-            rules = [item for item in items if isinstance(item, ast.Whenever)]
-            if len(rules) < len(items):
-                stops = ((rule, _last(rule.body)) for rule in rules)
-                yield from (_goes_on(rule, stop.span, compilation.vocabulary) for rule, stop in stops if _stops(stop))
+    for chain in _sequences(compilation):
+        rules = [item for item in chain.items if isinstance(item, ast.Whenever)]
+        if len(rules) < len(chain.items):
+            stops = ((rule, _last(rule.body)) for rule in rules)
+            yield from (_goes_on(rule, stop.span, compilation.vocabulary) for rule, stop in stops if _stops(stop))
 
 
 def _last(reaction: ast.Ast) -> ast.Ast:
@@ -60,15 +65,12 @@ def _denied(condition: str, vocabulary: Lexicon) -> str:
 
 def find_conditions_behind_rules(compilation: Compilation) -> Iterator[Diagnostic]:
     """Report `whenever C, A. If D, B` in one line: B may be done at the start, or each time that A was done."""
-    for body in ast.bodies(compilation.mission):
-        for node in compilation.syntax(body):
-            items = node.items if isinstance(node, ast.Chain) and node.operator == "sequence" else ()
-            for rule, form in pairwise(items):
-                if isinstance(rule, ast.Whenever) and isinstance(form, ast.If) and _may_belong(rule, form):
-                    whole = Span(rule.span.source, rule.span.start, form.span.end)
-                    done, then = form.span.text, compilation.vocabulary.word("then")
-                    other = f"{rule.span.text}, {then} {done[:1].lower()}{done[1:]}"
-                    yield two_readings(whole, f"{rule.span.text}.\n{done}", other)
+    for rule, form in (pair for chain in _sequences(compilation) for pair in pairwise(chain.items)):
+        if isinstance(rule, ast.Whenever) and isinstance(form, ast.If) and _may_belong(rule, form):
+            whole = Span(rule.span.source, rule.span.start, form.span.end)
+            done, then = form.span.text, compilation.vocabulary.word("then")
+            other = f"{rule.span.text}, {then} {done[:1].lower()}{done[1:]}"
+            yield two_readings(whole, f"{rule.span.text}.\n{done}", other)
 
 
 def _may_belong(rule: ast.Whenever, form: ast.If) -> bool:
@@ -80,35 +82,27 @@ def _may_belong(rule: ast.Whenever, form: ast.If) -> bool:
 
 def find_commands_behind_conditions(compilation: Compilation) -> Iterator[Diagnostic]:
     """Report `A if C and B` without a comma: B may be done in any case, or only if C."""
-    word = compilation.vocabulary.word
-    joint = word("and")
-    for body in ast.bodies(compilation.mission):
-        for node in compilation.syntax(body):
-            items = node.items if isinstance(node, ast.Chain) else ()
-            for form, behind in pairwise(items):
-                between = form.span.source.text[form.span.end : behind.span.start].strip()
-                if isinstance(form, ast.If) and _is_behind(form) and between == joint:
-                    asked, done = form.condition.span, behind.span.text
-                    opener = form.span.source.text[form.body.span.end : asked.start].strip()
-                    whole = Span(asked.source, form.span.start, behind.span.end)
-                    other = f"{opener} {asked.text}, {form.body.span.text} {joint} {done}"
-                    yield two_readings(whole, f"{form.span.text}, {joint} {done}", other)
-
-
-def _is_behind(form: ast.If) -> bool:
-    """Whether a condition without an alternative stands behind its command."""
-    return form.otherwise is None and form.body.span.end <= form.condition.span.start
+    joint = compilation.vocabulary.word("and")
+    nodes = (node for body in ast.bodies(compilation.mission) for node in compilation.syntax(body))
+    chains = (node for node in nodes if isinstance(node, ast.Chain))
+    for form, behind in (pair for chain in chains for pair in pairwise(chain.items)):
+        if not isinstance(form, ast.If) or not is_behind(form):
+            continue
+        source, asked, done = form.span.source, form.condition.span, behind.span.text
+        if source.text[form.span.end : behind.span.start].strip() == joint:
+            opener = source.text[form.body.span.end : asked.start].strip()
+            whole = Span(source, form.span.start, behind.span.end)
+            other = f"{opener} {asked.text}, {form.body.span.text} {joint} {done}"
+            yield two_readings(whole, f"{form.span.text}, {joint} {done}", other)
 
 
 def find_late_stops(compilation: Compilation) -> Iterator[Diagnostic]:
     """Report `A. Stop at noon`: once A is done the robot waits until noon, or A is to end then."""
     word = compilation.vocabulary.word
-    for body in ast.bodies(compilation.mission):
-        for node in compilation.syntax(body):
-            items = node.items if isinstance(node, ast.Chain) and node.operator == "sequence" else ()
-            for before, wait, stop in zip(items, items[1:], items[2:], strict=False):
-                if isinstance(wait, ast.WaitTime) and _stops(stop) and stop.span.start < wait.span.start:
-                    done, time = before.span.text, wait.time
-                    whole = Span(before.span.source, before.span.start, max(stop.span.end, wait.span.end))
-                    late = f"{word('wait_until')} {time}, {word('then')} {stop.span.text.lower()}"
-                    yield two_readings(whole, f"{done}, {word('then')} {late}", f"{done} {word('until')} {time}")
+    for items in (chain.items for chain in _sequences(compilation)):
+        for before, wait, stop in zip(items, items[1:], items[2:], strict=False):
+            if isinstance(wait, ast.WaitTime) and _stops(stop) and stop.span.start < wait.span.start:
+                done, time = before.span.text, wait.time
+                whole = Span(before.span.source, before.span.start, max(stop.span.end, wait.span.end))
+                late = f"{word('wait_until')} {time}, {word('then')} {stop.span.text.lower()}"
+                yield two_readings(whole, f"{done}, {word('then')} {late}", f"{done} {word('until')} {time}")

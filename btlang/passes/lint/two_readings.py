@@ -137,7 +137,7 @@ def find_conditional_alternatives(compilation: Compilation) -> Iterator[Diagnost
     vocabulary = compilation.vocabulary
     for body in ast.bodies(compilation.mission):
         for node in compilation.syntax(body):
-            if isinstance(node, ast.If) and _is_alternative(node.body) and _is_behind(node):
+            if isinstance(node, ast.If) and _is_alternative(node.body) and is_behind(node):
                 yield make_warning(_listed_readings(node, node.body), make_printer(compilation))
             if not isinstance(node, ast.Chain) or node.operator != "fallback":
                 continue
@@ -158,7 +158,7 @@ def _is_alternative(node: ast.Ast) -> TypeGuard[ast.Chain]:
     return not node.span.source.text[: node.span.start + 1].rstrip().endswith("(")
 
 
-def _is_behind(node: ast.If) -> bool:
+def is_behind(node: ast.If) -> bool:
     """Return whether the condition is behind the command, without an `otherwise`."""
     return node.otherwise is None and node.body.span.end <= node.condition.span.start
 

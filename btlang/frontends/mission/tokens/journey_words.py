@@ -6,7 +6,7 @@ from btlang.frontends.mission.token import JOINTS, RULES, STATEMENT_ENDS, Called
 from btlang.frontends.mission.tokens.sentence_reader import SentenceReader
 from btlang.frontends.mission.tokens.settling import STAYS
 from btlang.frontends.mission.tokens.silent_words import BEGINS, begins, begins_item
-from btlang.frontends.mission.tokens.word_matches import match_of, relocated, rest_of
+from btlang.frontends.mission.tokens.word_matches import forms_of, match_of, relocated, rest_of
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.language_tables import NOT_ALONE
 from btlang.vocabulary.match import Match, SlotValue
@@ -308,12 +308,7 @@ class JourneyWords(SentenceReader):
         if not behind or (match.meaning.entry is None and match.meaning.role not in ("wait_for", "wait_up_to")):
             return 0
         verb, found = text.words[behind + 1], None
-        forms = [
-            verb.removesuffix(end) + ending
-            for ending, ends_of_verb in vocabulary.third_person.items()
-            for end in ends_of_verb
-            if verb.endswith(end)
-        ]
+        forms = forms_of(verb, vocabulary.third_person)
         is_being = verb == vocabulary.asking["being"][0]
         places = [*range(first, behind), *rest_of(text, behind + 1)]
         for form in vocabulary.asking["being"][1:] if is_being else forms:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btlang.frontends.mission.tokens.each_and_any import ENDING
-from btlang.frontends.mission.tokens.word_matches import doing, match_of, with_verb
+from btlang.frontends.mission.tokens.word_matches import doing, forms_of, match_of, with_verb
 from btlang.text.words import Words
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.pattern import ways
@@ -79,8 +79,7 @@ def _straight(
     elif denial:
         forms = [*asking["doing_theirs"], *asking["doing_ours"]]
     else:
-        endings = ((end, other) for other, ends in vocabulary.third_person.items() for end in ends)
-        forms = [base.removesuffix(end) + other for end, other in endings if base.endswith(end)] + [base]
+        forms = [*forms_of(base, vocabulary.third_person), base]
     for form in forms:
         said = [form, *denial]
         places = [*range(at, verb), *[verb] * len(said), *range(rest, end)]

@@ -63,6 +63,11 @@ def _verbs(word: str, endings: Mapping[str, Sequence[str]]) -> Iterator[str]:
             yield from (word[: -len(ending)] + end for end in bare)
 
 
+def forms_of(verb: str, endings: Mapping[str, Sequence[str]]) -> list[str]:
+    """The forms that a verb may have with these endings: `closes` of `close`."""
+    return [verb.removesuffix(end) + form for form, ends in endings.items() for end in ends if verb.endswith(end)]
+
+
 def rest_of(text: Words, at: int) -> range:
     """The words of the line from one on, with what ends it."""
     last = at
